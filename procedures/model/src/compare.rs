@@ -1,4 +1,4 @@
-//! Two revisions of a model side by side.
+//! Comparison of two revisions of a model.
 
 use crate::fit::evaluate;
 use crate::report::comparison::{Comparison, ParameterPair, Wider};
@@ -6,11 +6,10 @@ use crate::report::fit::{Fit, Parameter};
 use crate::{ModelError, words};
 use jointbench_instrument::RunTable;
 
-/// What the second model has that the first has not, and the other way round, parameter by parameter, and the error of
-/// both on one run.
+/// Effects that only one of the models has, their parameters in pairs, and the errors of both on one run.
 ///
-/// Two values differ where they are further apart than both half intervals together allow, √(a² + b²). The intervals of
-/// two fits to the same run share their noise, so there the question is asked too strictly, never too easily.
+/// Two values differ if their distance exceeds the combined half intervals, √(a² + b²). Two fits to the same run
+/// share their noise, so that the test is conservative there.
 pub fn compare(first: &Fit, second: &Fit, run: &RunTable) -> Result<Comparison, ModelError> {
     if first.kind != second.kind {
         return Err(ModelError::OtherKind { first: first.kind, second: second.kind });
@@ -41,7 +40,7 @@ pub fn compare(first: &Fit, second: &Fit, run: &RunTable) -> Result<Comparison, 
 fn pair(first: Option<&Parameter>, second: Option<&Parameter>) -> ParameterPair {
     let differ = first.zip(second).and_then(|(a, b)| {
         let reach = |p: &Parameter, up: bool| if up { p.ci95[1] - p.value } else { p.value - p.ci95[0] };
-        // The sides of the intervals that face each other.
+        // The facing sides of both intervals.
         let room = reach(a, b.value > a.value).hypot(reach(b, b.value <= a.value));
         (room.is_finite() && room > 0.0).then(|| (a.value - b.value).abs() > room)
     });
@@ -52,9 +51,9 @@ fn pair(first: Option<&Parameter>, second: Option<&Parameter>) -> ParameterPair 
     ParameterPair { effect, name, unit, first: first.cloned(), second: second.cloned(), differ, wider: None }
 }
 
-/// An interval so many times as wide as the other is told.
+/// Ratio of two intervals from which on it is reported.
 const WIDER: f64 = 1.5;
-/// So much fewer rows, or so much less left over, is a reason.
+/// A ratio of rows or errors below this is a reason for a wider interval.
 const FEWER: f64 = 0.8;
 
 fn wider(fits: [&Fit; 2], pair: &ParameterPair) -> Option<Wider> {
@@ -68,7 +67,7 @@ fn wider(fits: [&Fit; 2], pair: &ParameterPair) -> Option<Wider> {
     (times > WIDER).then(|| Wider { second, times, why: why_wider(wide, narrow, pair) })
 }
 
-/// The first of the reasons that the fits themselves tell.
+/// The first reason that the fits themselves give.
 fn why_wider(wide: &Fit, narrow: &Fit, pair: &ParameterPair) -> String {
     let me = format!("{}.{}", pair.effect, pair.name);
     let partners = |fit: &Fit| -> Vec<(String, f64)> {

@@ -1,4 +1,4 @@
-//! What an effect is: one physical cause with its formula, its parameters and the signals that it needs.
+//! An effect: one physical cause with its formula, its parameters and the signals that it needs.
 
 use crate::signal::Signal;
 use crate::view::View;
@@ -7,22 +7,22 @@ use jointbench_instrument::spelling::nearest;
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// What people read about an effect, and what it needs. Borrowed: from the program for an effect of the library, from
-/// the model for one that a user wrote.
+/// Description and requirements of an effect. A library effect borrows them from the program, a user effect from the
+/// model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EffectInfo<'e> {
     pub id: &'e str,
     pub kind: Kind,
     pub title: &'e str,
-    /// One sentence that a technician understands.
+    /// One sentence for users.
     pub sentence: &'e str,
     pub formula: &'e str,
     /// Document and equation, or paper.
     pub source: &'e str,
-    /// How the residual looks when the effect is missing.
+    /// Appearance of the residual if the effect is missing.
     pub looks: &'e str,
     pub parameters: &'e [ParameterInfo],
-    /// Columns beside the required ones, without which the effect is not visible.
+    /// Columns in addition to the required ones, without which the effect is not visible.
     pub needs: &'e [&'static str],
 }
 
@@ -32,12 +32,12 @@ impl<'e> EffectInfo<'e> {
         self.parameter(name).map_or("1", |p| &p.unit)
     }
 
-    /// The least and the largest value of a parameter that is physically sensible.
+    /// Physical bounds of a parameter.
     pub(crate) fn bounds(&self, name: &str) -> (f64, f64) {
         self.parameter(name).map_or((f64::NEG_INFINITY, f64::INFINITY), |p| (p.min, p.max))
     }
 
-    /// `a_2` is the second of its kind and is what `a` is.
+    /// `a_2` is the second parameter of the family `a` and has its properties.
     fn parameter(&self, name: &str) -> Option<&'e ParameterInfo> {
         let family = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
         let find = |name: &str| self.parameters.iter().find(|p| p.name == name);
@@ -45,7 +45,7 @@ impl<'e> EffectInfo<'e> {
     }
 }
 
-/// A parameter with what is physically sensible for it.
+/// A parameter with its physical bounds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParameterInfo {
     pub name: Cow<'static, str>,
@@ -59,22 +59,22 @@ pub(crate) const fn parameter(name: &'static str, unit: &'static str, min: f64, 
     ParameterInfo { name: Cow::Borrowed(name), unit: Cow::Borrowed(unit), min, max }
 }
 
-/// Columns of an effect at the points of a view: the effect is their sum, each times its factor.
+/// Columns of an effect at the points of a view: the effect is the sum of coefficient times column.
 pub type Columns = Vec<Vec<f64>>;
 
-/// One way of writing an effect. The forms of one effect are one group: at most one of them is in a model.
+/// A form of an effect. A model contains at most one form of each effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Form<'e> {
     pub name: &'e str,
-    /// Names of the factors, one for each column.
+    /// Names of the coefficients, one for each column.
     pub linear: Vec<&'e str>,
-    /// Parameters that the columns depend on.
+    /// Nonlinear parameters of the columns.
     pub shape: Vec<Shape<'e>>,
-    /// Starting points of the search, one value for each shape parameter.
+    /// Starting points of the search, one value for each nonlinear parameter.
     pub grid: Vec<Vec<f64>>,
 }
 
-/// A parameter that an effect is not linear in, with the range that this data can speak about.
+/// A nonlinear parameter, with the range that this data can identify.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape<'e> {
     pub name: &'e str,
@@ -83,21 +83,21 @@ pub struct Shape<'e> {
     pub search: ShapeSearch,
 }
 
-/// How the best value of a shape parameter is found.
+/// Search method for a nonlinear parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShapeSearch {
     /// Refined continuously, in its logarithm.
     Smooth,
-    /// Refined continuously, in itself: it may be zero or negative.
+    /// Refined continuously without a logarithm: it may be zero or negative.
     Signed,
-    /// A whole number: found on the grid and not refined.
+    /// An integer: found on the grid and not refined.
     Whole,
-    /// A moment at which the columns jump: narrowed down by halving.
+    /// A changepoint of the columns: refined by interval reduction.
     Jump,
 }
 
 impl Shape<'_> {
-    /// The value after a step: in its logarithm, or in shares of its range.
+    /// The value after a step, in its logarithm or as a share of its range.
     pub fn moved(&self, value: f64, step: f64) -> f64 {
         match self.search {
             ShapeSearch::Signed => value + step * (self.max - self.min),
@@ -105,56 +105,56 @@ impl Shape<'_> {
         }
     }
 
-    /// A value lies at the edge of what the data can speak about.
+    /// Whether a value is at a bound of the identifiable range.
     pub fn is_edge(&self, value: f64) -> bool {
         self.is_at(value, self.min) || self.is_at(value, self.max)
     }
 
-    /// A value is as good as one of the ends.
+    /// Whether a value practically equals `end`.
     pub fn is_at(&self, value: f64, end: f64) -> bool {
         (value - end).abs() <= 1e-3 * end.abs().max(1e-3 * (self.max - self.min))
     }
 
-    /// It is refined continuously, and not held where it is.
+    /// Whether it is refined continuously and not fixed.
     pub fn is_smooth(&self) -> bool {
         self.min < self.max && matches!(self.search, ShapeSearch::Smooth | ShapeSearch::Signed)
     }
 }
 
 impl<'e> Form<'e> {
-    /// A form without shape parameters.
+    /// A form without nonlinear parameters.
     pub fn linear(linear: &[&'e str]) -> Self {
         Self { name: "linear", linear: linear.to_vec(), shape: Vec::new(), grid: vec![Vec::new()] }
     }
 }
 
-/// On which part of the data an effect is judged.
+/// The part of the data that an effect is judged on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regime {
-    /// Where the motion has settled.
+    /// Constant speed and load.
     SteadyState,
-    /// Where speed changes: plateaus say nothing about it.
+    /// Changing speed; steady-state means contain no such effects.
     Transient,
-    /// Around reversals, where the past matters.
+    /// Around reversals, where the loading history matters.
     Hysteresis,
 }
 
 pub trait Effect: Sync {
     fn info(&self) -> EffectInfo<'_>;
 
-    /// Ways of writing the effect that this data can speak about. Empty: not visible.
+    /// Forms of the effect that this data can identify. Empty: not visible.
     fn forms(&self, view: &View) -> Vec<Form<'_>>;
 
     /// The columns of one form at the points of the view.
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns;
 
-    /// The formula of one form, where it is not that of all.
+    /// The formula of one form, if it differs from that of the effect.
     fn formula_of(&self, _form: &str) -> &str {
         self.info().formula
     }
 
-    /// The form with one more part and one more shape parameter, and the form that finds this part alone. `None` for a
-    /// form that is not a sum of like parts, or is long enough.
+    /// The form with one more component and one more nonlinear parameter, and the name of the form of that component
+    /// alone. `None` for a form that is not a sum of equal components, or is long enough.
     fn extended(&self, _form: &Form) -> Option<(&'static str, Form<'static>)> {
         None
     }
@@ -163,59 +163,61 @@ pub trait Effect: Sync {
         Regime::SteadyState
     }
 
-    /// The angle over which it is a wave, as often in a turn as its shape says.
+    /// The angle of a periodic effect; its nonlinear parameter is the number of waves in a turn.
     fn wave(&self) -> Option<Signal> {
         None
     }
 
-    /// A shape parameter that says only how suddenly the effect comes and goes. At the edge of its range the effect is there
-    /// all the same.
+    /// A nonlinear parameter that only describes how suddenly the effect starts and ends. At the bound of its range
+    /// the effect is still identified.
     fn exponent_parameter(&self) -> Option<&'static str> {
         None
     }
 
-    /// Its formula is no approximation: what is left of the effect is not what the formula cannot follow.
+    /// Whether the formula is exact, so that the effect leaves no form error.
     fn is_exact(&self) -> bool {
         false
     }
 
-    /// Its factors are those of this run's repeats: another run has others, of the same size.
+    /// Whether the coefficients belong to this run's repeats: another run has other values of the same size.
     fn is_nuisance(&self) -> bool {
         false
     }
 
-    /// The effect enters with a factor of one and nothing to fit.
+    /// Whether the effect is an offset term: it has the coefficient one and no parameters.
     fn is_offset(&self) -> bool {
         false
     }
 
-    /// The first column without which the effect cannot be computed here.
+    /// The first missing column that the effect needs.
     fn missing(&self, view: &View) -> Option<&'static str> {
         let absent = |need: &&&str| view.find(Signal::named(need)).is_none();
         self.info().needs.iter().find(absent).copied()
     }
 
-    /// It is computed from the motion of the link. Where one side of the joint is held that motion is the twist itself.
+    /// Whether it is computed from the motion of the link. If one side of the joint is clamped, that motion is the
+    /// twist itself.
     fn needs_motion(&self) -> bool {
         false
     }
 
-    /// The effect that this one is one and the same with in such data, and that stands for both.
+    /// The aliased effect that is identical to this one in such data, and represents both.
     fn same_as(&self, _view: &View) -> Option<&'static str> {
         None
     }
 
-    /// The effect whose formula this one corrects: it is sought beside that one only (marginality, Nelder 1977).
+    /// The effect whose formula this one corrects: it is a candidate only together with that one (marginality, Nelder
+    /// 1977).
     fn corrects(&self) -> Option<&'static str> {
         None
     }
 
-    /// What there would have to be to see, or why there is nothing.
+    /// The missing excitation, or why the effect is not visible.
     fn unseen(&self) -> &str {
         self.info().looks
     }
 
-    /// Why this data cannot show the effect: a needed signal is missing or never changes.
+    /// Why this data cannot show the effect: a needed signal is missing or constant.
     fn hidden(&self, view: &View) -> Option<String> {
         let info = self.info();
         if let Some(need) = self.missing(view) {

@@ -1,9 +1,9 @@
-//! Why a model cannot be fitted or a run cannot be diagnosed. What the data merely cannot show is a verdict, not an error.
+//! Errors of fits and diagnoses. An effect that the data cannot show is part of the verdict, not an error.
 
 use jointbench_instrument::Kind;
 use jointbench_instrument::spelling::instead;
 
-/// Every message says what to do next.
+/// Every message states what to do next.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ModelError {
     #[error("effect {id} is not known for {kind} runs; {}", instead(id, &.known.iter().map(String::as_str).collect::<Vec<_>>()))]
@@ -32,14 +32,14 @@ pub enum ModelError {
     Constant { column: String },
     #[error("{column} reaches {value:e}, with which nothing can be computed; check its unit and how it was written")]
     TooLarge { column: String, value: f64 },
-    /// A user's effect is not written as it should be, with the character.
+    /// An invalid user effect, with the position of the error.
     #[error(transparent)]
     Formula(#[from] Box<crate::FormulaFault>),
     #[error(
         "effect {effect} is not finite at {points} points of this data, {first}; \
          write a formula that is defined there, or give its parameters bounds that keep it so"
     )]
-    /// `first`: where, or that it is so whatever the signals are.
+    /// `first`: the first position, or a statement that the formula fails for any signals.
     NotFinite { effect: String, points: usize, first: String },
     #[error("signal {signal}: {why}")]
     BadSignal { signal: String, why: String },

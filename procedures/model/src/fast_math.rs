@@ -1,19 +1,20 @@
-//! e^x and ln x without branches, so that a loop over a column becomes vector instructions.
+//! e^x and ln x without branches, so that a loop over a column is vectorized.
 //!
-//! Within 2⁻⁵⁰ of the true value, relative for e^x and absolute for ln x where that is larger; the same on every machine.
+//! Within 2⁻⁵⁰ of the true value (relative for e^x, absolute for ln x where that is larger), and identical on every
+//! machine.
 
 use std::f64::consts::{FRAC_1_SQRT_2, LOG2_E, SQRT_2};
 
-/// ln 2 in two parts: the first times a whole number below 2¹¹ is exact.
+/// ln 2 in two parts: the first times an integer below 2¹¹ is exact.
 const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
-/// Added to a number below 2⁵¹ and taken away again it leaves a whole one, which then lies in the lowest bits.
+/// Adding and subtracting this number rounds a number below 2⁵¹ to an integer, which is then in the lowest bits.
 const WHOLE: f64 = 6_755_399_441_055_744.0;
-/// 2⁵², in whose bits the lower half counts ones.
+/// 2⁵²: adding an integer puts it in the lower bits.
 const ONES: f64 = 4_503_599_627_370_496.0;
-/// Exponent of 1.0 as it is written in its bits.
+/// Exponent of 1.0 in its bit representation.
 const BIAS: u64 = 1023;
 
-/// e^x. What no normal number holds is the smallest or the largest that is about one.
+/// e^x, limited to about the smallest and the largest normal number.
 #[inline(always)]
 pub fn exp(x: f64) -> f64 {
     let x = if x > -708.0 { x } else { -708.0 };
@@ -21,7 +22,7 @@ pub fn exp(x: f64) -> f64 {
     let shifted = x * LOG2_E + WHOLE;
     let whole = shifted - WHOLE;
     let r = (x - whole * LN_2[0]) - whole * LN_2[1];
-    // Taylor's series up to r¹³/13!: |r| ≤ ln 2 / 2 leaves less than 1e-17 of it.
+    // Taylor series up to r¹³/13!: for |r| ≤ ln 2 / 2 the remainder is below 1e-17.
     let mut sum = 1.0 / 6_227_020_800.0;
     for n in [
         1.0 / 479_001_600.0,
@@ -43,7 +44,7 @@ pub fn exp(x: f64) -> f64 {
     sum * f64::from_bits(shifted.to_bits().wrapping_add(BIAS) << 52)
 }
 
-/// ln x of x > 0 that is a normal number.
+/// ln x of a normal number x > 0.
 #[inline(always)]
 pub fn ln(x: f64) -> f64 {
     let bits = x.to_bits();

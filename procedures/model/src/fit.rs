@@ -1,4 +1,4 @@
-//! Fitting a model to a run, and holding a fit against another run.
+//! Fits a model to a run, and evaluates a fit on another run.
 
 use crate::inference::confounding;
 use crate::inference::form_error::{nuisance, presliding};
@@ -7,7 +7,7 @@ use crate::linear::basis::dot;
 use crate::linear::condition;
 use crate::prediction::{predict_effects, predict_nuisance, prepare_alike};
 use crate::preprocess::{Prepared, prepare};
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport};
@@ -17,19 +17,20 @@ use jointbench_instrument::RunTable;
 
 /// Fits the effects of a model to a run.
 ///
-/// Linear parts by least squares on scaled columns, shape parameters by variable projection, 95 % intervals by a jackknife over
-/// blocks. Effects that the run cannot show stay in the model at zero and are named in the notes.
-/// [`ModelError::Collinear`] where two effects are proportional in this data.
+/// Coefficients by least squares on scaled columns, nonlinear parameters by variable projection, 95 % intervals by a
+/// jackknife over blocks. Effects that the run cannot show stay in the model with zero coefficients, and the notes name
+/// them. [`ModelError::Collinear`] if two effects are proportional in this data.
 pub fn fit(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
     fit_prepared(&prepare(run, options)?, spec, options)
 }
 
-/// As [`fit`], of a run that is prepared once for several models: on a long one that is most of the work.
+/// As [`fit`], for a run that is preprocessed once for several models: for a long run this is most of the
+/// computation.
 pub fn fit_prepared(prepared: &Prepared, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
     report(&TwoStageModel::new(prepared, spec, options)?)
 }
 
-/// The contract's object of a model that is laid out.
+/// The report of a fitted model.
 pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     let prepared = assembly.prepared;
     let main = &assembly.main;
@@ -46,12 +47,12 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         let found = intervals(part, prepared.motion);
         parameters.extend(found.parameters);
         trade_offs.extend(found.trade_offs);
-        for (term, factors) in part.terms.iter().zip(part.linear().factors) {
+        for (term, coefficients) in part.terms.iter().zip(part.linear().coefficients) {
             terms.push(TermReport {
                 effect: term.id().into(),
                 form: term.form.name.into(),
                 shape: term.shape.clone(),
-                linear: factors,
+                linear: coefficients,
                 names: term
                     .form
                     .linear
@@ -81,7 +82,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     if assembly.effects.iter().any(|e| e == "direction_offset") {
         notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
     }
-    if prepared.main.view.goes_one_way() && main.contains("coulomb") {
+    if prepared.main.view.is_one_directional() && main.contains("coulomb") {
         let note = "the motion has one direction only (less than a tenth of a trajectory in the other is omitted): Coulomb \
                     friction and an offset are confounded, and tau_c contains both; measure the other direction as well";
         notes.push(note.into());
@@ -98,7 +99,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         effects: assembly.effects.clone(),
         own,
         rms: (linear.sse / n).sqrt(),
-        validation_rms: (held_out(main).iter().sum::<f64>() / n).sqrt(),
+        validation_rms: (validation_losses(main).iter().sum::<f64>() / n).sqrt(),
         effects_rms: nuisance.as_ref().map(|nuisance| nuisance.effects_rms),
         unit: prepared.unit(),
         residual: prepared.about.residual,
@@ -116,8 +117,8 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     Ok(fit)
 }
 
-/// Settled motion hardly accelerates, and much of that little is the scatter of its velocity. Where the set-up states another
-/// inertia the run does not determine it: the interval reaches the stated one.
+/// At steady state the acceleration is small, and mostly noise of the velocity. If the set-up states another inertia,
+/// the run does not determine it: the interval is extended to the stated one.
 fn undetermined_inertia(parameters: &mut [Parameter], prepared: &Prepared) -> Option<String> {
     let stated = prepared.main.view.constants.rotor_inertia.filter(|_| prepared.main.settled)?;
     let is_other = |p: &&mut Parameter| p.effect == "inertia" && !(p.ci95[0]..=p.ci95[1]).contains(&stated);
@@ -132,16 +133,16 @@ fn undetermined_inertia(parameters: &mut [Parameter], prepared: &Prepared) -> Op
     })
 }
 
-/// The formula that an effect has in this data, where that is not the one of the library.
+/// The formula of an effect in this data, if it differs from the library.
 pub fn written(term: &Term) -> Option<String> {
     let (info, formula) = (term.effect.info(), term.effect.formula_of(term.form.name));
     (formula != info.formula).then(|| format!("{} is {formula} in this data", info.id))
 }
 
-/// The square of more is no number any more.
+/// The square of a larger number overflows.
 const LARGEST: f64 = 1e150;
 
-/// Condition of the scaled columns by QR; refuses columns that depend on each other.
+/// Condition number of the scaled columns by QR; linearly dependent columns are an error.
 fn check_columns(terms: &LinearModel) -> Result<f64, ModelError> {
     let columns = terms.columns();
     let found = condition(&columns);
@@ -179,7 +180,7 @@ fn unseen(assembly: &TwoStageModel, id: &str, why: &str) -> Vec<Parameter> {
         .collect()
 }
 
-/// Holds a fit against a run that took no part in it. The run is prepared as the first one was.
+/// Evaluates a fit on a run that was not used for it. The run is preprocessed as the fitted one.
 pub fn evaluate(fit: &Fit, run: &RunTable) -> Result<Evaluation, ModelError> {
     let prepared = prepare_alike(fit, run)?;
     let problem = prepared.judged(&fit.effects);

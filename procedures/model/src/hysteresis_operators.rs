@@ -1,8 +1,10 @@
-//! States that remember: exact for a signal that moves in straight steps, so they are stable at any step.
+//! Hysteresis operators: exact for a signal that is linear between samples, so that they are stable for any step
+//! size.
 
 use crate::view::Start;
 
-/// Dahl: dz = (1 − z·sgn dx)·dx/reach, from its past at every start. What is left to ±1 shrinks exponentially.
+/// Dahl: dz = (1 − z·sgn dx)·dx/reach, from its loading history at every start. The distance to ±1 decays
+/// exponentially.
 pub fn dahl(x: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
     remember(x, starts, |_, z, step| {
         let end = if step < 0.0 { -1.0 } else { 1.0 };
@@ -10,7 +12,8 @@ pub fn dahl(x: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
     })
 }
 
-/// An elastic element that slips at ±1: dz = dx/reach within ±1, from its past at every start.
+/// Stop operator, an elastic element that slips at ±1: dz = dx/reach within ±1, from its loading history at every
+/// start.
 pub fn stop(x: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
     remember(x, starts, |_, z, step| (z + step / reach).clamp(-1.0, 1.0))
 }
@@ -18,8 +21,8 @@ pub fn stop(x: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
 /// Elements of a Maxwell slip.
 pub const MAXWELL_ELEMENTS: usize = 4;
 
-/// Generalised Maxwell slip with elements of equal strength whose reaches are spread evenly up to `reach`: a stop that
-/// yields little by little. One number more than that would be one more that reversals hardly decide.
+/// Generalised Maxwell slip with elements of equal strength and reaches evenly spaced up to `reach`: a stop with
+/// gradual slip. One more free parameter would hardly be identified by reversals.
 pub fn maxwell_slip(x: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
     const ELEMENTS: usize = MAXWELL_ELEMENTS;
     let mut sum = vec![0.0; x.len()];
@@ -30,10 +33,11 @@ pub fn maxwell_slip(x: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
     sum
 }
 
-/// LuGre without bristle damping: a Dahl state that ends at ±`strength`, which falls with speed as Stribeck's curve does.
+/// LuGre without bristle damping: a Dahl state with the limits ±`strength`, which fall with speed according to the
+/// Stribeck curve.
 ///
-/// dz = (1 − z·sgn dx/strength)·dx/reach with the strength of each sample. The damping of the bristles acts for the
-/// blink of a reversal only, where delays of the instruments look the same.
+/// dz = (1 − z·sgn dx/strength)·dx/reach with the strength of each sample. The bristle damping acts only in the first
+/// moment of a reversal, where instrument delays look the same.
 pub fn lugre(x: &[f64], strength: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
     remember(x, starts, |i, z, step| {
         let end = if step < 0.0 { -strength[i] } else { strength[i] };
@@ -41,7 +45,7 @@ pub fn lugre(x: &[f64], strength: &[f64], reach: f64, starts: &[Start]) -> Vec<f
     })
 }
 
-/// First-order lag; `share` is the sample step by the time constant. Starts settled.
+/// First-order lag; `share` is the sample step divided by the time constant. Starts at its steady state.
 pub fn lag(x: &[f64], share: f64, starts: &[Start]) -> Vec<f64> {
     let keep = (-share).exp();
     let mut state = 0.0;
@@ -54,7 +58,7 @@ pub fn lag(x: &[f64], share: f64, starts: &[Start]) -> Vec<f64> {
         .collect()
 }
 
-/// The signal comes back by more than `depth` after it has gone: only then has a memory something to show.
+/// Whether the signal reverses by more than `depth`; only then is a hysteresis visible.
 pub fn turns(x: &[f64], depth: f64) -> bool {
     let (mut high, mut low) = (f64::NEG_INFINITY, f64::INFINITY);
     let (mut fell, mut rose) = (false, false);
@@ -73,7 +77,7 @@ pub fn turns(x: &[f64], depth: f64) -> bool {
     fell && rose
 }
 
-/// From rest at every start, or from where the way through its past has led.
+/// The states from zero at every start, or after the loading history of the start.
 fn remember(x: &[f64], starts: &[Start], next: impl Fn(usize, f64, f64) -> f64) -> Vec<f64> {
     let mut state = 0.0;
     let mut last = x.first().copied().unwrap_or_default();

@@ -24,43 +24,44 @@ pub(crate) fn prepare_alike(fit: &Fit, run: &RunTable) -> Result<Prepared, Model
     prepare_with(run, &options, about.bristles.as_ref())
 }
 
-/// What a fit predicts at the rows of a problem: its effects and its nuisance terms.
+/// Prediction of a fit at the rows of a problem: its effects and its nuisance terms.
 pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
     let (effects, nuisance) = (predict_effects(fit, problem)?, predict_nuisance(fit, problem)?);
     Ok(effects.iter().zip(&nuisance).map(|(effects, nuisance)| effects + nuisance).collect())
 }
 
-/// What the effects of a fit predict at the rows of a problem.
+/// Prediction of the effects of a fit at the rows of a problem.
 pub(crate) fn predict_effects(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
-    // Contacts that bend are in the direction already.
+    // The direction signal of sampled runs already contains presliding.
     let is_column = |term: &&Term| problem.form_error.is_none() || term.effect != PRESLIDING;
     let sampled = Fit { terms: fit.terms.iter().filter(is_column).cloned().collect(), ..fit.clone() };
     predict_on(&sampled, &problem.view, problem.rows(), |column| problem.reduce.apply(column))
 }
 
-/// What the nuisance terms of a fit predict there.
+/// Prediction of the nuisance terms of a fit at the rows of a problem.
 pub(crate) fn predict_nuisance(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
     let mut predicted = vec![0.0; problem.rows()];
     let Some(form_error) = problem.form_error.as_deref() else { return Ok(predicted) };
-    let mut add = |column: &[f64], factor: f64| predicted.iter_mut().zip(column).for_each(|(p, c)| *p += factor * c);
+    let mut add =
+        |column: &[f64], coefficient: f64| predicted.iter_mut().zip(column).for_each(|(p, c)| *p += coefficient * c);
     for term in &fit.form_error {
         match find_with_own(fit.kind, &fit.own, &term.name) {
             Ok(effect) => {
                 let columns = columns(effect, &term.form, &term.shape, problem);
-                columns.iter().zip(&term.linear).for_each(|(column, factor)| add(column, *factor));
+                columns.iter().zip(&term.linear).for_each(|(column, coefficient)| add(column, *coefficient));
             }
             Err(_) => {
                 let place = term.shape.first().map_or(0, |place| *place as usize);
-                let mut of_name = form_error.columns.iter().filter(|column| column.lives.name() == term.name);
-                let column = of_name.nth(place).zip(term.linear.first());
-                column.into_iter().for_each(|(column, factor)| add(&column.values, *factor));
+                let mut columns_of_kind = form_error.columns.iter().filter(|column| column.lives.name() == term.name);
+                let column = columns_of_kind.nth(place).zip(term.linear.first());
+                column.into_iter().for_each(|(column, coefficient)| add(&column.values, *coefficient));
             }
         }
     }
     Ok(predicted)
 }
 
-/// The same at the points of a view, each column reduced to rows.
+/// Prediction at the points of a view, each column reduced to rows.
 pub(crate) fn predict_on(
     fit: &Fit,
     view: &View,
@@ -68,9 +69,9 @@ pub(crate) fn predict_on(
     reduce: impl Fn(Vec<f64>) -> Vec<f64>,
 ) -> Result<Vec<f64>, ModelError> {
     let mut predicted = vec![0.0; rows];
-    let mut add = |columns: Vec<Vec<f64>>, factors: &[f64]| {
-        for (column, factor) in columns.into_iter().zip(factors) {
-            predicted.iter_mut().zip(reduce(column)).for_each(|(p, c)| *p += factor * c);
+    let mut add = |columns: Vec<Vec<f64>>, coefficients: &[f64]| {
+        for (column, coefficient) in columns.into_iter().zip(coefficients) {
+            predicted.iter_mut().zip(reduce(column)).for_each(|(p, c)| *p += coefficient * c);
         }
     };
     for id in &fit.effects {

@@ -1,7 +1,7 @@
-//! The residual of a fit at every point with everything that it may depend on.
+//! The residual of a fit at every point, with all quantities that it may depend on.
 
 use crate::prediction::{predict, prepare_alike};
-use crate::preprocess::independent_blocks::pieces;
+use crate::preprocess::independent_blocks::independent_blocks;
 use crate::preprocess::{Prepared, Problem};
 use crate::report::fit::Fit;
 use crate::report::residuals::{Axis, ResidualSet};
@@ -9,10 +9,11 @@ use crate::signal::Signal;
 use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
 
-/// Measured against model, with axes for pictures. Points in ramps and reversals come last and are marked held out.
+/// Measured and predicted values, with axes for plots. Points of ramps and reversals come last and are marked as not
+/// fitted.
 ///
-/// The run is prepared as it was for the fit; `options` is there for callers that keep one set for every call and only
-/// its limits are checked.
+/// The run is preprocessed as for the fit. Callers may pass the `options` that they use for all calls; only their
+/// limits are checked.
 pub fn residuals(run: &RunTable, fit: &Fit, options: &Options) -> Result<ResidualSet, ModelError> {
     options.check()?;
     let prepared = prepare_alike(fit, run)?;
@@ -40,7 +41,7 @@ fn axes(prepared: &Prepared) -> Vec<Axis> {
     shown(prepared).map(|s| axis(prepared.column_name(s), prepared.column_unit(s))).collect()
 }
 
-/// Signals that the run has, those that people look at first.
+/// Signals of the run, the most important ones first.
 fn shown(prepared: &Prepared) -> impl Iterator<Item = Signal> {
     [
         Signal::Velocity,
@@ -79,6 +80,6 @@ fn append(
     set.segment.extend_from_slice(&problem.segment);
     set.repeat.extend_from_slice(&problem.repeat);
     let next = set.piece.last().map_or(0, |last| last + 1);
-    set.piece.extend(pieces(problem, 1).0.into_iter().map(|piece| next + piece));
+    set.piece.extend(independent_blocks(problem, 1).0.into_iter().map(|piece| next + piece));
     Ok(())
 }

@@ -1,22 +1,22 @@
-//! What the columns of a run mean to the models, and their values.
+//! Signals: the meaning of a run's columns for the models, and their values.
 
 use jointbench_instrument::units::unit_of;
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What a signal means to the models, whatever its column is called.
+/// Meaning of a signal for the models, independent of its column name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Signal {
-    /// Since the first sample [s].
+    /// Time since the first sample [s].
     Time,
     /// Motor, reference encoder or brake shaft [rad].
     Position,
-    /// The same [rad/s].
+    /// Velocity of the same shaft [rad/s].
     Velocity,
     Acceleration,
-    /// Change of the acceleration [rad/s³].
+    /// Derivative of the acceleration [rad/s³].
     Jerk,
-    /// +1 or −1, the sign of the velocity, denoised.
+    /// +1 or −1, the denoised sign of the velocity.
     Direction,
     /// Link side [rad].
     Link,
@@ -25,16 +25,16 @@ pub enum Signal {
     Temperature,
     /// Coil current of a brake [A].
     Current,
-    /// Smooth estimate of the motor torque, made without the noise of the measured one [Nm].
+    /// Smooth estimate of the motor torque without the noise of the measured one [Nm].
     Drive,
     /// Number of the repeat, from 0.
     Repeat,
-    /// A column that no effect of the library knows, by its name.
+    /// A column that no effect of the library uses, by its name.
     Column(&'static str),
 }
 
 impl Signal {
-    /// Those that the library knows.
+    /// The signals of the library.
     pub const ALL: [Signal; 12] = [
         Signal::Time,
         Signal::Position,
@@ -50,8 +50,8 @@ impl Signal {
         Signal::Repeat,
     ];
 
-    /// A column of a run that may be none that the library knows. Its name is kept for good, once: there are as many as
-    /// people give to their columns.
+    /// A column of a run that the library may not contain. Each name is stored once and never freed: the number of
+    /// names is limited by the columns of users.
     pub fn named(column: &str) -> Signal {
         static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
         if let Some(known) = Signal::of_column(column) {
@@ -64,7 +64,7 @@ impl Signal {
         Signal::Column(name)
     }
 
-    /// The signal that a column of the run table becomes, where the library knows it.
+    /// The signal of a run-table column, if the library contains it.
     pub fn of_column(column: &str) -> Option<Signal> {
         Some(match column {
             "time_s" => Signal::Time,
@@ -80,7 +80,7 @@ impl Signal {
     }
 }
 
-/// Signals of equal length. A copy shares them.
+/// Signals of equal length. Copies share the data.
 #[derive(Debug, Clone, Default)]
 pub struct Signals {
     columns: Vec<(Signal, Arc<Vec<f64>>)>,
@@ -114,23 +114,23 @@ impl Signals {
         self.columns.iter().map(|(signal, values)| (*signal, values.as_slice()))
     }
 
-    /// Columns that no effect knows, and on which what is left may depend.
+    /// Columns that no effect uses and that the residual may depend on.
     pub fn unknown(&self) -> impl Iterator<Item = Signal> {
         self.iter().map(|(signal, _)| signal).filter(|s| matches!(s, Signal::Column(column) if may_cause(column)))
     }
 }
 
-/// What is told in these units follows from the torque and does not cause it, is motion, which known columns tell, or a
-/// clock. Over the drive's own effort every scatter of the torque shows.
+/// Units of quantities that do not cause the torque: they follow from the torque, describe motion that known columns
+/// already contain, or are a clock. Any scatter of the torque would depend on the drive's own effort.
 const NO_CAUSE: [&str; 9] = ["Nm", "A", "V", "W", "rad", "rad/s", "rad/s²", "s", "ms"];
 
-/// Where a stage stood: set from outside, and no motion of the joint.
+/// Position of a stage: set from outside, no motion of the joint.
 pub fn is_pose(column: &str) -> bool {
     column.starts_with("stage_")
 }
 
-/// What is left may depend on a column of this name. Not on one without a unit: it may be the response under another
-/// name.
+/// Whether the residual may depend on a column of this name. A column without a unit is excluded, because it may be
+/// the response under another name.
 pub fn may_cause(column: &str) -> bool {
     is_pose(column) || unit_of(column).is_some_and(|unit| !NO_CAUSE.contains(&unit))
 }

@@ -1,4 +1,4 @@
-//! What is asked: a model as a kind plus a set of effects, and how to go about it.
+//! Inputs of fits and diagnoses: a model as a kind and a set of effects, and the options.
 
 use crate::effect::Effect;
 use crate::thresholds::{ALPHA, FLIPS, PRACTICAL_SHARE};
@@ -7,13 +7,13 @@ use crate::{ModelError, OwnEffect};
 use jointbench_instrument::{Kind, RunTable};
 use serde::{Deserialize, Serialize};
 
-/// A model: a kind and the effects that it is the sum of.
+/// A model: a kind and the effects whose sum it is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModelSpec {
     pub kind: Kind,
     /// Stable effect ids, in the order in which they were added.
     pub effects: Vec<String>,
-    /// Effects that the user wrote: the model may hold them, and a diagnosis may suggest them.
+    /// User effects: the model may contain them, and a diagnosis may suggest them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<OwnEffect>,
 }
@@ -24,7 +24,7 @@ impl ModelSpec {
         Self::with_own(kind, effects, Vec::new())
     }
 
-    /// The same with effects that the user wrote; those of other kinds are left out.
+    /// The same with user effects; those of other kinds are ignored.
     pub fn with_own(
         kind: Kind,
         effects: impl IntoIterator<Item = impl Into<String>>,
@@ -53,17 +53,17 @@ impl ModelSpec {
         Self::new(run.kind(), run.meta().baseline.iter())
     }
 
-    /// Effects separated by commas, as the command line gives them.
+    /// Effects separated by commas, as on the command line.
     pub fn parse(kind: Kind, list: &str) -> Result<Self, ModelError> {
         Self::new(kind, list.split(',').map(str::trim).filter(|id| !id.is_empty()))
     }
 
-    /// Every effect that a model of this kind may hold.
+    /// Every effect that a model of this kind may contain.
     pub fn known(&self) -> impl Iterator<Item = &dyn Effect> {
         user_effects::with_own(self.kind, &self.own)
     }
 
-    /// The effect with an id. [`ModelError::UnknownEffect`] names those that are known.
+    /// The effect with an id. [`ModelError::UnknownEffect`] lists the known ids.
     pub fn find(&self, id: &str) -> Result<&dyn Effect, ModelError> {
         user_effects::find_with_own(self.kind, &self.own, id)
     }
@@ -82,29 +82,29 @@ impl ModelSpec {
     }
 }
 
-/// How to prepare a run and how sure to be. Every default is chosen from the data where it is `None`.
+/// Options of preprocessing and significance. `None` selects a value from the data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
-    /// What the residual is made of. `None`: plateau means where the run has plateaus, filtered samples else.
+    /// The data of the residual. `None`: steady-state means if the run has steady states, otherwise filtered samples.
     pub residual: Option<crate::ResidualKind>,
-    /// Corner of the zero-phase Butterworth filter, 4th order, on positions [Hz].
+    /// Corner frequency of the zero-phase Butterworth filter, 4th order, on positions [Hz].
     pub cutoff_hz: Option<f64>,
-    /// One row is kept of so many samples, after a zero-phase Chebyshev filter.
+    /// Decimation: keeps every n-th sample after the low-pass filter.
     pub decimation: Option<usize>,
-    /// Length of the chunks that plateaus are averaged over [s].
+    /// Length of the chunks of steady-state means [s].
     pub chunk_s: Option<f64>,
-    /// Family-wise error over everything that is shown.
+    /// Family-wise error probability over everything that is reported.
     pub alpha: f64,
-    /// The smallest share of the remaining squared error that is worth a name.
+    /// Least partial R² of a named effect.
     pub practical_share: f64,
-    /// Sign flips for the error control.
+    /// Number of sign flips in permutation tests.
     pub flips: usize,
     pub seed: u64,
 }
 
 impl Options {
-    /// Refuses what no run can be prepared or judged with.
+    /// Rejects values that no run can be preprocessed or judged with.
     pub(crate) fn check(&self) -> Result<(), ModelError> {
         let positive = |value: Option<f64>| value.is_none_or(|v| v.is_finite() && v > 0.0);
         let share = |value: f64| value > 0.0 && value < 1.0;

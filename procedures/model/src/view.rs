@@ -1,6 +1,6 @@
-//! The signals of a run as the effects see them: prepared, in SI units, one value for each point.
+//! The signals of a run for the effects: preprocessed, in SI units, one value for each point.
 //!
-//! A point is a chunk of settled motion or a filtered sample. Memory effects are simulated on the samples behind the
+//! A point is a steady-state chunk or a filtered sample. Hysteresis effects are simulated on the samples behind the
 //! points and averaged over them.
 
 use crate::signal::{Signal, Signals};
@@ -9,36 +9,36 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Facts about the set-up that effects ask for.
+/// Constants of the set-up that effects use.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Constants {
     pub pole_pairs: Option<u32>,
     pub poles: Option<u32>,
-    /// As the set-up states it [kg·m²].
+    /// Rotor inertia from the set-up [kg·m²].
     pub rotor_inertia: Option<f64>,
-    /// The axis slides: nothing repeats with its angle.
+    /// The axis slides, so that nothing is periodic in its position.
     pub slides: bool,
-    /// Torque once per link turn that the measured load does not hold, about: factors of cos and sin [Nm].
+    /// Gravity torque that the measured load does not contain: approximate coefficients of cos and sin of the link
+    /// angle [Nm].
     pub weight: Option<[f64; 2]>,
-    /// Of a run that is judged sample by sample: waves as fast as this pass whole, and none that is twice as fast [Hz].
+    /// For a run that is judged sample by sample: the filter passes waves up to this frequency and blocks waves of
+    /// twice this frequency [Hz].
     pub followed_hz: Option<f64>,
-    /// Its fastest speed but for what stands out [rad/s].
+    /// Its fastest speed without outliers [rad/s].
     pub speeds: Option<f64>,
-    /// Ways over which its reversals can be remembered and seen [rad].
+    /// Range of reaches that its reversals can identify [rad].
     pub reaches: Option<[f64; 2]>,
-    /// One side of the joint is held: the motion of the other one is the twist itself. The turns that the link makes.
+    /// Turns of the link, if one side of the joint is clamped and the motion of the other side is the twist itself.
     pub held_turns: Option<f64>,
-    /// RMS by which the response is rounded where it stays within the same steps of its encoders, as that of a joint does that is
-    /// held.
+    /// RMS quantization error of the response, if it stays within the same encoder counts, as for a clamped joint.
     pub rounding: f64,
 }
 
-/// The first sample of a recording, and what a memory brings along from before it.
+/// The first sample of a recording, with the loading history before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start {
     pub at: usize,
-    /// Where the signal that is remembered went last before it came back to where the recording begins. `None`: the memory
-    /// is empty.
+    /// The last extreme of the signal before the recording. `None`: no loading history.
     pub past: Option<f64>,
 }
 
@@ -53,12 +53,12 @@ impl From<usize> for Start {
 pub struct View {
     pub points: Signals,
     pub samples: Signals,
-    /// The samples of each point. Empty where points are samples.
+    /// The samples of each point. Empty if points are samples.
     pub chunks: Vec<Range<usize>>,
-    /// First samples of recordings, at which what came before is not in the run.
+    /// First samples of recordings; the history before them is not in the run.
     pub starts: Vec<Start>,
     pub sample_s: f64,
-    /// The load of each sample as it was felt, where `samples` holds a smoother one.
+    /// The measured load of each sample, if `samples` contains a smoothed one.
     pub felt: Option<Arc<Vec<f64>>>,
     pub constants: Constants,
     zeros: Vec<f64>,
@@ -89,18 +89,18 @@ impl View {
         self.points.find(signal)
     }
 
-    /// The signal at the points, zeros where it is absent: an effect whose needs are not met is never asked.
+    /// The signal at the points, or zeros if it is missing: an effect without its signals is never evaluated.
     pub fn get(&self, signal: Signal) -> &[f64] {
         self.points.find(signal).unwrap_or(&self.zeros)
     }
 
-    /// All motion has one direction: what changes sign with it cannot be told there from what does not.
-    pub fn goes_one_way(&self) -> bool {
+    /// All motion has one direction, so that effects with and without a sign change are confounded.
+    pub fn is_one_directional(&self) -> bool {
         let direction = self.get(Signal::Direction);
         direction.first().is_some_and(|first| *first != 0.0 && direction.iter().all(|d| d == first))
     }
 
-    /// The link carries something now and then: a load that is nothing beside the torque of the motor is its sensor's noise.
+    /// Whether the link carries a load: a load that is small relative to the motor torque is sensor noise.
     pub fn bears_load(&self) -> bool {
         const NOTHING: f64 = 0.2;
         const NOW_AND_THEN: f64 = 0.05;
@@ -110,13 +110,13 @@ impl View {
         load.iter().filter(|load| load.abs() > least).count() as f64 > NOW_AND_THEN * load.len() as f64
     }
 
-    /// Turns between the ends of an angle.
+    /// Turns between the extremes of an angle.
     pub fn turns(&self, angle: Signal) -> f64 {
         let ends = self.get(angle).iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
         (ends.1 - ends.0) / TAU
     }
 
-    /// Share of a turn that an angle was at.
+    /// Share of a turn that an angle covered.
     pub fn turned(&self, angle: Signal) -> f64 {
         const PARTS: f64 = 72.0;
         let part = |a: &f64| (a.rem_euclid(TAU) / TAU * PARTS) as usize;
@@ -124,7 +124,7 @@ impl View {
         parts.len() as f64 / PARTS
     }
 
-    /// The link turns as the motor does: there is no gear between their angles.
+    /// Whether motor and link turn alike, without a gear between their angles.
     pub fn is_direct(&self) -> bool {
         (self.turns(Signal::Position) / self.turns(Signal::Link) - 1.0).abs() < 0.01
     }
@@ -134,7 +134,7 @@ impl View {
         self.get(signal).iter().map(|x| f(*x)).collect()
     }
 
-    /// The mean of a curve over a signal: not the curve at its mean, which differs where it bends within a point.
+    /// The mean of a curve over a signal. It differs from the curve at the mean if the curve bends within a point.
     pub fn mean_of(&self, signal: Signal, f: impl Fn(f64) -> f64) -> Vec<f64> {
         match self.samples.find(signal) {
             Some(samples) => self.average(samples.iter().map(|x| f(*x)).collect()),
@@ -152,7 +152,7 @@ impl View {
         self.get(signal).iter().fold(0.0, |m, x| x.abs().max(m))
     }
 
-    /// The samples' column averaged over the points.
+    /// A column of the samples, averaged over the points.
     pub fn average(&self, samples: Vec<f64>) -> Vec<f64> {
         if self.chunks.is_empty() {
             return samples;
@@ -163,7 +163,7 @@ impl View {
     /// Mean of cos(h·angle) and sin(h·angle) over each point.
     ///
     /// At constant speed the mean over a chunk of n samples, each δ further, is the value at the middle times the
-    /// Dirichlet kernel sin(n·h·δ/2)/(n·sin(h·δ/2)): a periodic effect fades at speed as it does in the data.
+    /// Dirichlet kernel sin(n·h·δ/2)/(n·sin(h·δ/2)). A periodic effect is thus attenuated at speed as in the data.
     pub fn harmonic(&self, signal: Signal, order: f64) -> [Vec<f64>; 2] {
         let angle = self.get(signal);
         let mut cos = Vec::with_capacity(angle.len());
@@ -185,7 +185,7 @@ impl View {
         [cos, sin]
     }
 
-    /// Turns for each second, in units of what is followed. `None` where points are means over what passes.
+    /// Turns in a second relative to `followed_hz`. `None` if points are means.
     fn swiftness(&self, angle: Signal) -> Option<Vec<f64>> {
         let followed = self.constants.followed_hz?;
         let values = self.get(angle);

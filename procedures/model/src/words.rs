@@ -1,9 +1,9 @@
-//! Figures as people say them.
+//! Figures and units in texts.
 
 use jointbench_instrument::Kind;
 use jointbench_instrument::units::quantity_of;
 
-/// Factor and prefix of a unit that keep the digits of `size` before the point.
+/// Factor and prefix of a unit for which `size` has one to three digits before the point.
 pub fn prefix(size: f64) -> (f64, &'static str) {
     match size {
         s if s == 0.0 || s >= 1.0 => (1.0, ""),
@@ -13,12 +13,12 @@ pub fn prefix(size: f64) -> (f64, &'static str) {
     }
 }
 
-/// A value with its unit, three digits, and a prefix that keeps them before the point: `6.1 mNm`. A unit of `1` is not said.
+/// A value with its unit, three digits, and a prefix: `6.1 mNm`. The unit `1` is omitted.
 pub fn figure(value: f64, unit: &str) -> String {
     let unit = if unit == "1" { "" } else { unit };
     let size = value.abs();
-    let (factor, prefix) = if is_prefixed(unit) { prefix(size) } else { (1.0, "") };
-    let scaled = value * factor;
+    let (scale, prefix) = if is_prefixed(unit) { prefix(size) } else { (1.0, "") };
+    let scaled = value * scale;
     if scaled != 0.0 && scaled.abs() < 0.01 {
         return format!("{scaled:.2e} {prefix}{unit}").trim_end().to_owned();
     }
@@ -32,21 +32,21 @@ pub fn figure(value: f64, unit: &str) -> String {
 
 /// The prefixed unit of one figure, for others in the same sentence.
 pub struct Scale {
-    factor: f64,
+    scale: f64,
     unit: String,
 }
 
 impl Scale {
     /// The unit in which `value` is written.
     pub fn of(value: f64, unit: &str) -> Self {
-        let (factor, prefix) = if is_prefixed(unit) { prefix(value.abs()) } else { (1.0, "") };
+        let (scale, prefix) = if is_prefixed(unit) { prefix(value.abs()) } else { (1.0, "") };
         let unit = if unit == "1" { "" } else { unit };
-        Self { factor, unit: format!("{prefix}{unit}") }
+        Self { scale, unit: format!("{prefix}{unit}") }
     }
 
     /// Three digits.
     pub fn figure(&self, value: f64) -> String {
-        let scaled = value * self.factor;
+        let scaled = value * self.scale;
         let digits = match scaled.abs() {
             s if s >= 100.0 => 0,
             s if s >= 10.0 => 1,
@@ -79,13 +79,13 @@ pub fn list(items: &[impl AsRef<str>]) -> String {
     }
 }
 
-/// A column's name without its unit, as it is spoken.
+/// A column's name without its unit, for a sentence.
 pub fn spoken(column: &str) -> String {
     let quantity = column.strip_suffix("_rad_s3").or_else(|| quantity_of(column));
     quantity.unwrap_or(column).replace('_', " ")
 }
 
-/// The same for an axis of a run: what turns in a brake run is the current.
+/// The same for an axis of a run; in a brake run the direction is that of the current.
 pub fn spoken_axis(axis: &str, kind: Kind) -> String {
     match (kind, axis) {
         (Kind::Brake, "direction") => "direction of the current".into(),
@@ -94,7 +94,7 @@ pub fn spoken_axis(axis: &str, kind: Kind) -> String {
     }
 }
 
-/// What goes one way or the other: the motion, or the current of a brake.
+/// A direction in words: of the motion, or of the current of a brake.
 pub fn way(kind: Kind, positive: bool) -> &'static str {
     match (kind, positive) {
         (Kind::Brake, true) => "while the current rises",

@@ -1,4 +1,4 @@
-//! A clear verdict or error on whatever a run may hold, never a panic, never a suggestion out of nothing.
+//! Diagnoses of any run content give a clear verdict or error: no panic, and no suggestion without evidence.
 
 mod common;
 
@@ -26,7 +26,7 @@ fn what_cannot_be_identified_is_refused_in_words() {
 }
 
 #[test]
-fn one_direction_at_one_speed_names_what_cannot_be_told_apart() {
+fn one_direction_at_one_speed_names_the_confounded_effects() {
     let run = table(500, |i| 1.0 + 0.01 * scatter(i, 0), |i| i as f64 * 0.1);
     let spec = ModelSpec::baseline(&run).unwrap();
     match diagnose(&run, &spec, &Options::default()) {
@@ -113,7 +113,7 @@ fn numbers_that_nothing_can_be_computed_with_are_refused_by_their_column() {
 }
 
 #[test]
-fn a_load_that_never_changes_is_told_before_all_else() {
+fn a_load_that_never_changes_is_reported_first() {
     let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 1 }.run_at(&[0.0], |m| 0.03 * m.velocity.signum());
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     assert!(found.summary.starts_with("Data problem: link_torque_nm never changes"), "{}", found.summary);
@@ -138,7 +138,7 @@ fn options_out_of_range_are_refused_by_name() {
     }
 }
 
-/// What is said is said in numbers, and nothing is suggested without evidence.
+/// All figures are finite, and nothing is suggested without evidence.
 fn assert_finite(found: &Diagnosis) {
     assert!(found.fit.rms.is_finite() && found.fit.validation_rms.is_finite(), "{}", found.summary);
     assert!(found.suggestions.is_empty() || found.verdict == Verdict::MissingEffect, "{}", found.summary);
@@ -150,20 +150,20 @@ fn assert_finite(found: &Diagnosis) {
     assert!(!found.summary.contains("NaN") && !found.summary.contains("inf"), "{}", found.summary);
 }
 
-/// Every effect that is not in the model is told of once: suggested, silent, not visible or left out.
-fn assert_each_told_once(found: &Diagnosis, spec: &ModelSpec) {
+/// Every effect that is not in the model is reported once: suggested, silent, not visible or rejected.
+fn assert_each_reported_once(found: &Diagnosis, spec: &ModelSpec) {
     for effect in spec.known().map(|effect| effect.info().id).filter(|id| !spec.contains(id)) {
-        let told = [
+        let reported = [
             found.suggestions.iter().filter(|s| s.effect == effect).count(),
             found.silent.iter().filter(|s| s.effect == effect && s.minimum_detectable_rms.is_finite()).count(),
             found.not_visible.iter().filter(|s| s.effect == effect && s.why.len() > 10).count(),
             found.left_out.iter().filter(|s| s.effect == effect && s.why.len() > 10).count(),
         ];
-        assert_eq!(told.iter().sum::<usize>(), 1, "{} {effect}: {told:?}", spec.kind);
+        assert_eq!(reported.iter().sum::<usize>(), 1, "{} {effect}: {reported:?}", spec.kind);
     }
 }
 
-/// Five speeds in both directions, from one to the next in 0.4 s.
+/// Five speeds in both directions, with ramps of 0.4 s.
 fn with_ramps() -> RunTable {
     let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];
     let mut trace = Trace::new(names.map(Channel::new).into());
@@ -187,10 +187,11 @@ fn no_effect_is_forgotten() {
     let run = with_ramps();
     let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous").unwrap();
     let found = diagnose(&run, &spec, &Options::default()).unwrap();
-    assert_each_told_once(&found, &spec);
+    assert_each_reported_once(&found, &spec);
     assert!(found.silent.iter().any(|s| s.effect == "presliding" && s.minimum_detectable_rms > 0.0), "{found:?}");
-    let told = |id: &str| found.not_visible.iter().find(|n| n.effect == id).map(|n| n.why.as_str()).unwrap_or_default();
-    assert!(told("signal_delay").contains("Ramps"), "{}", told("signal_delay"));
+    let reported =
+        |id: &str| found.not_visible.iter().find(|n| n.effect == id).map(|n| n.why.as_str()).unwrap_or_default();
+    assert!(reported("signal_delay").contains("Ramps"), "{}", reported("signal_delay"));
 
     let one_way = |name: &str, i: usize, v: f64| match name {
         "reference_position_rad" => 0.01 * i as f64,
@@ -200,14 +201,14 @@ fn no_effect_is_forgotten() {
     let run = try_table(Kind::Encoder, &Shape { segment: 250, repeats: 3, ..Shape::default() }, one_way).unwrap();
     let spec = ModelSpec::baseline(&run).unwrap();
     let found = diagnose(&run, &spec, &Options::default()).unwrap();
-    assert_each_told_once(&found, &spec);
-    let told = found.not_visible.iter().find(|n| n.effect == "direction_hysteresis");
-    assert!(told.is_some_and(|n| n.why.contains("has the shape of effects of the model")), "{told:?}");
+    assert_each_reported_once(&found, &spec);
+    let reported = found.not_visible.iter().find(|n| n.effect == "direction_hysteresis");
+    assert!(reported.is_some_and(|n| n.why.contains("has the shape of effects of the model")), "{reported:?}");
 
     for kind in Kind::ALL {
         let run = common::tables::table(kind, &Shape { segment: 300, repeats: 3, ..Shape::default() });
         let spec = ModelSpec::baseline(&run).unwrap();
-        assert_each_told_once(&diagnose(&run, &spec, &Options::default()).unwrap(), &spec);
+        assert_each_reported_once(&diagnose(&run, &spec, &Options::default()).unwrap(), &spec);
     }
 }
 
@@ -228,13 +229,13 @@ proptest! {
         let shape = Shape { rows, turn, size, noise, mix, segment, repeats };
         let run = common::tables::table(kind, &shape);
         let given = ModelSpec::baseline(&run).unwrap();
-        // Models that hold more than the baseline bend in other ways.
+        // Models with more than the baseline may fail differently.
         let more = given.known().map(|effect| effect.info().id).filter(|id| !given.contains(id));
         let every = mix as usize % 5 + 1;
         let spec = ModelSpec::new(kind, given.effects.iter().map(String::as_str).chain(more.skip(every).step_by(every))).unwrap();
         if let Ok(found) = diagnose(&run, if mix % 2 == 0 { &given } else { &spec }, &Options::default()) {
             assert_finite(&found);
-            assert_each_told_once(&found, if mix % 2 == 0 { &given } else { &spec });
+            assert_each_reported_once(&found, if mix % 2 == 0 { &given } else { &spec });
             let drawn = maps(&run, &found.fit, &Options::default()).unwrap();
             prop_assert!(drawn.axes.iter().flat_map(|a| &a.bins).all(|b| b.mean.is_finite() && b.rows > 0));
         }

@@ -1,4 +1,4 @@
-//! What repeats with time at one speed is no wave over the angle, though it looks like one there.
+//! A signal that repeats with time at one speed is no wave over the angle, although it looks like one there.
 
 mod common;
 
@@ -13,8 +13,8 @@ const SPEEDS_RAD_S: [f64; 6] = [2.2, 3.3, 4.9, 7.3, 11.0, 16.4];
 const REPEATS: usize = 10;
 const NOISE_NM: f64 = 0.8e-3;
 
-/// Friction in steps both ways, twice, with a torque of its own: of the motor's angle [rad], the speed [rad/s] and the time
-/// since the step began [s].
+/// Friction in steps in both directions, twice, with an additional torque as a function of the motor angle [rad], the
+/// speed [rad/s] and the time since the start of the step [s].
 fn named(torque_nm: impl Fn(f64, f64, f64) -> f64) -> Vec<String> {
     let run = friction_in_steps(&SPEEDS_RAD_S, REPEATS, ROWS, |now| {
         let friction = 0.08 * now.velocity.signum() + 4e-4 * now.velocity;
@@ -27,7 +27,7 @@ fn named(torque_nm: impl Fn(f64, f64, f64) -> f64) -> Vec<String> {
 
 #[test]
 fn counts_that_beat_with_the_samples_are_no_wave() {
-    // 62.5 Hz at the slowest speed: means over 40 ms go up and down as those of 36 waves a turn do, both ways.
+    // 62.5 Hz at the slowest speed: means over 40 ms look like those of 36 waves in a turn, in both directions.
     let beat = |_: f64, velocity: f64, t_s: f64| {
         if velocity.abs() < 3.0 { 4e-3 * velocity.signum() * (TAU * 62.5 * t_s).cos() } else { 0.0 }
     };
@@ -49,7 +49,7 @@ fn waves_over_the_angle_are_found_where_means_hardly_follow() {
     }
 }
 
-/// An encoder bench at the same speeds, with an error of its own of the angle [rad].
+/// An encoder bench at the same speeds, with an additional error as a function of the angle [rad].
 fn named_of_encoder(error_rad: impl Fn(f64) -> f64) -> Vec<String> {
     let names = ["time_s", "reference_position_rad", "test_position_rad", "velocity_rad_s", "segment", "repeat"];
     let mut trace = Trace::new(names.map(Channel::new).into());
@@ -74,7 +74,7 @@ fn named_of_encoder(error_rad: impl Fn(f64) -> f64) -> Vec<String> {
 
 #[test]
 fn a_harmonic_sought_among_a_hundred_takes_more_than_chance_would() {
-    // 3 and 7 % of the squared error: of so many waves chance makes one of 2 %.
+    // 3 and 7 % of the squared error: of so many candidate orders, chance explains 2 %.
     assert_eq!(named_of_encoder(|angle| 3.8e-6 * (7.0 * angle).cos()), [""; 0]);
     assert_eq!(named_of_encoder(|angle| 6.0e-6 * (7.0 * angle).cos()), ["harmonic_n"]);
 }

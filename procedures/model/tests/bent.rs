@@ -1,4 +1,4 @@
-//! A Stribeck effect whose exponent is free bends into the place of a square of speed, at the cost of Coulomb friction.
+//! A Stribeck effect with a free exponent imitates a quadratic speed term, at the cost of Coulomb friction.
 
 mod common;
 
@@ -9,7 +9,7 @@ use jointbench_model::{Discovery, ModelSpec, Options, Verdict, discover};
 const SPEEDS_RAD_S: [f64; 11] = [2.4, 3.5, 5.1, 7.6, 11.5, 16.6, 24.1, 35.0, 50.3, 105.0, 152.0];
 const NOISE_NM: f64 = 3e-3;
 
-/// Friction in steps both ways, with a Stribeck effect and so much of the square of speed [Nm·s²/rad²].
+/// Friction in steps in both directions, with a Stribeck effect and this quadratic coefficient [Nm·s²/rad²].
 fn found(square: f64) -> Discovery {
     let run = friction_in_steps(&SPEEDS_RAD_S, 5, 250, |now| {
         let speed = now.velocity.abs();

@@ -1,4 +1,4 @@
-//! Several dry contacts in one joint: found as they are, not as the nearest relative.
+//! Several dry contacts in one joint are found as such, not as the most similar other effect.
 
 mod common;
 
@@ -8,12 +8,12 @@ use jointbench_model::{ModelSpec, Options, discover};
 
 const STEP_S: f64 = 0.01;
 const GEAR: f64 = 50.0;
-/// Torque at which each contact slips [Nm], and the twist that it carries then [rad].
+/// Torque at which each contact slips [Nm], and its twist at that torque [rad].
 const CONTACTS: [(f64, f64); 2] = [(1.0, 2e-4), (5.0, 4e-4)];
 const COMPLIANCE: f64 = 4e-4;
 const NOISE_RAD: f64 = 2e-5;
 
-/// A joint that turns to and fro under a torque that follows its direction, level by level.
+/// A joint that turns back and forth under a torque that follows its direction, level by level.
 fn run() -> RunTable {
     let mut trace = stiffness();
     let (mut link, mut torque, mut bent) = (0.0, 0.0f64, [0.0f64; 2]);

@@ -1,4 +1,4 @@
-//! What leaves the program, used as its reader uses it, gives what the model gives.
+//! Exports, used as their readers use them, give the values of the model.
 
 mod common;
 
@@ -12,7 +12,7 @@ use jointbench_model::{Fit, ModelSpec, Options, fit, residuals};
 const STEP_S: f64 = 0.01;
 const NOISE_NM: f64 = 0.018;
 
-/// A joint whose contact slips at 0.3 Nm, to and fro under a torque that creeps up to each level.
+/// A joint whose contact slips at 0.3 Nm, back and forth under a torque that creeps to each level.
 fn slipping_joint() -> RunTable {
     let mut trace = stiffness();
     let (mut link, mut torque, mut bent) = (0.0, 0.0f64, 0.0f64);
@@ -25,7 +25,7 @@ fn slipping_joint() -> RunTable {
             torque += (side * f64::from(leg % 12 + 3) - torque) * (STEP_S / 0.27);
             bent = (bent + torque - before).clamp(-0.3, 0.3);
             let twist = 2e-4 * torque + 4e-4 * bent / 0.3 + 2.5e-5 * scatter(i, 1);
-            // Sums of four are nearly normal.
+            // Sums of four uniform variables are nearly normal.
             let noise = NOISE_NM * 1.732 * (2..6).map(|mix| scatter(i, mix)).sum::<f64>();
             let row = [i as f64 * STEP_S, 50.0 * (link + twist), link, side * 0.3, torque + noise];
             trace.push_row(&[&row[..], &[f64::from(leg), f64::from(leg / 12)]].concat());
@@ -34,8 +34,8 @@ fn slipping_joint() -> RunTable {
     RunTable::new(meta(Kind::Stiffness), trace).unwrap()
 }
 
-/// The figure behind some words of an export.
-fn told(text: &str, words: &str) -> f64 {
+/// The figure after some words of an export.
+fn reported(text: &str, words: &str) -> f64 {
     let rest = text.split(words).nth(1).unwrap_or_else(|| panic!("{words} in {text}"));
     rest.split_whitespace().next().unwrap().parse().unwrap()
 }
@@ -49,7 +49,7 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
-/// The fit sees a smooth torque, a controller one with noise on whose peaks a memory would hang.
+/// The fit uses a smoothed torque, while a controller measures noise, whose peaks would move a hysteresis state.
 #[test]
 fn c_remembers_a_torque_with_noise_as_the_model_does_a_smooth_one() {
     let run = slipping_joint();
@@ -66,11 +66,11 @@ fn c_remembers_a_torque_with_noise_as_the_model_does_a_smooth_one() {
     assert!(apart < fit.rms, "C and model are {apart} apart, and the model errs by {}", fit.rms);
     let error = rms(c.iter().zip(&of_fit.measured).map(|(c, measured)| c - measured));
     let header = export(&fit, Format::C).unwrap();
-    let said = told(&header, "Error with the measured load of that run, sample by sample: ");
+    let said = reported(&header, "Error with the measured load of that run, sample by sample: ");
     assert!((said / error - 1.0).abs() < 0.02, "the header says {said}, and it is {error}");
     assert!(header.contains("torsional_hysteresis_dead_band"), "{header}");
 
-    // A file that does not know the noise has no dead band, hangs on peaks and says so.
+    // A file without the noise has no dead band, follows the peaks, and states the resulting error.
     let mut blind = fit.clone();
     blind.scope.iter_mut().flat_map(|scope| &mut scope.signals).for_each(|signal| signal.noise = None);
     assert!(export(&blind, Format::C).unwrap().contains("feed it without noise and without lag"));
@@ -80,9 +80,9 @@ fn c_remembers_a_torque_with_noise_as_the_model_does_a_smooth_one() {
     assert!(apart > 2.0 * fit.rms, "{apart} without a dead band");
 }
 
-/// A figure is not to leave without what is known to be wrong with it.
+/// An exported figure includes the known problems of the fit.
 #[test]
-fn an_inertia_that_is_not_the_set_ups_says_so_wherever_it_goes() {
+fn an_inertia_that_is_not_the_set_ups_says_so_in_every_export() {
     let mut stairs = Staircase { noise_nm: 0.002, scatter_nm: 0.0, seed: 1 }.run(|at| 0.02 * at.velocity.signum());
     let (mut meta, trace) = stairs.into_parts();
     meta.rotor_inertia_kg_m2 = Some(1.0);
@@ -102,7 +102,7 @@ fn an_inertia_that_is_not_the_set_ups_says_so_wherever_it_goes() {
     assert!(before.ends_with("<!-- armature, motor side: not determined by this run -->"), "{mujoco}");
 }
 
-/// Between the points of a table in straight lines, at the axes named; the last axis runs fastest.
+/// Linear interpolation between the points of a table, at the named axes; the last axis is the fastest.
 struct Lut {
     points: Vec<Vec<f64>>,
     values: Vec<f64>,
@@ -139,7 +139,7 @@ impl Lut {
     }
 }
 
-/// Up to 2 A in steps and down again, to less and less; what holds depends on the way.
+/// Up to 2 A in steps and down again, to smaller and smaller currents; the torque depends on the history.
 fn brake() -> RunTable {
     let names = ["time_s", "brake_current_a", "brake_torque_nm", "segment", "repeat"];
     let mut trace = Trace::new(names.map(Channel::new).to_vec());
@@ -160,16 +160,16 @@ fn brake() -> RunTable {
     RunTable::new(meta(Kind::Brake), trace).unwrap()
 }
 
-/// What a brake holds on average over its branches is in the table, and how far off that is, in its header.
+/// The table contains the mean torque of a brake over its branches, and its header the deviation from it.
 #[test]
-fn a_table_holds_the_mean_of_what_remembers_and_tells_its_own_error() {
+fn a_table_contains_the_mean_of_hysteresis_and_states_its_error() {
     let run = brake();
     let fit = fitted(&run, "drag,torque_per_current,saturation,hysteresis");
     let text = export(&fit, Format::Table).unwrap();
     let lut = Lut::read(&text);
     let (current, torque) = (run.column("brake_current_a").unwrap(), run.column("brake_torque_nm").unwrap());
     let error = rms(current.iter().zip(torque).map(|(i, torque)| lut.at(&[*i]) - torque));
-    // The best curve with a value of its own for each of 80 stretches.
+    // The best curve with an independent value for each of 80 sections.
     let stretch = |i: &f64| (i * 40.0 + 0.5) as usize;
     let mut means = vec![(0.0, 0.0); 100];
     for (i, torque) in current.iter().zip(torque) {
@@ -178,13 +178,13 @@ fn a_table_holds_the_mean_of_what_remembers_and_tells_its_own_error() {
     }
     let best = rms(current.iter().zip(torque).map(|(i, t)| means[stretch(i)].0 / means[stretch(i)].1 - t));
     assert!(best > 0.1 && error < 1.02 * best, "the table errs by {error}, the best single curve by {best}\n{text}");
-    let said = told(&text, "# Error: of this table ");
+    let said = reported(&text, "# Error: of this table ");
     assert!((said / error - 1.0).abs() < 0.05, "the header says {said}, and it is {error}");
     assert!(text.contains("# hysteresis remembers: the table holds its mean over current"), "{text}");
     assert!(!text.contains("NOT CARRIED OVER"), "{text}");
 }
 
-/// Thirty-six waves in a turn on ninety angles are no waves any more.
+/// Ninety angles do not resolve thirty-six waves in a turn.
 #[test]
 fn a_table_has_points_enough_for_its_fastest_wave() {
     let torque = |at: Moment| {
@@ -194,7 +194,7 @@ fn a_table_has_points_enough_for_its_fastest_wave() {
     let run = Staircase { noise_nm: 0.001, scatter_nm: 0.0, seed: 3 }.run(torque);
     let fit = fitted(&run, "load_transmission,coulomb,viscous,cogging");
     let mut flat = fit.clone();
-    // Over velocity and angle alone.
+    // Over velocity and angle only.
     flat.effects.retain(|id| id != "load_transmission");
     let text = export(&flat, Format::Table).unwrap();
     let lut = Lut::read(&text);
@@ -205,6 +205,6 @@ fn a_table_has_points_enough_for_its_fastest_wave() {
     let model = predict(&flat, &moments, 0.004).unwrap();
     let off = rms(asked.iter().zip(&model).map(|(at, model)| lut.at(at) - model));
     assert!(off < 0.02 * 0.006, "{off}");
-    let said = told(&text, "it is off what it is a table of by ");
+    let said = reported(&text, "it is off what it is a table of by ");
     assert!(off < 1.5 * said && said < 0.02 * 0.006, "the header says {said}, and it is {off}");
 }

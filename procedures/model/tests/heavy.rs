@@ -1,4 +1,4 @@
-//! An arm whose weight the torque sensor does not feel: the teeth bear it beside the load all the same.
+//! An arm whose weight the torque sensor does not measure: the gear teeth transmit it in addition to the load.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::bench::{Moment, Staircase};
 use jointbench_instrument::RunTable;
 use jointbench_model::{Discovery, ModelSpec, Options, Verdict, diagnose, discover};
 
-/// Torque on the motor side of an arm that hangs down where the link's angle is `down` [rad].
+/// Gravity torque on the motor side of an arm that hangs down at the link angle `down` [rad].
 fn weight(moment: Moment, down: f64) -> f64 {
     0.05 * (moment.link - down).sin()
 }
@@ -22,7 +22,7 @@ fn end(run: &RunTable) -> Discovery {
     discover(run, &ModelSpec::baseline(run).unwrap(), &Options::default(), 4, |_| {}).unwrap()
 }
 
-/// Effects that were added, in the order of their names.
+/// Added effects, sorted by name.
 fn added(found: &Discovery) -> Vec<&str> {
     let mut added: Vec<&str> = found.model[3..].iter().map(String::as_str).collect();
     added.sort_unstable();
@@ -51,7 +51,7 @@ fn teeth_that_bear_load_and_weight_rub_by_both() {
 }
 
 #[test]
-fn friction_that_grows_with_the_square_of_both_is_told_as_that() {
+fn friction_that_grows_with_the_square_of_both_is_named() {
     let run = run(6, 0.3, |borne| 0.5 * borne * borne);
     let missing = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     let why = |effect: &str| missing.suggestions.iter().find(|s| s.effect == effect).unwrap().why.clone();
@@ -63,7 +63,7 @@ fn friction_that_grows_with_the_square_of_both_is_told_as_that() {
     assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
 }
 
-/// Where the sensor feels the weight, the load holds it and there is no other.
+/// If the sensor measures the weight, the load contains it and there is no other.
 #[test]
 fn a_weight_that_the_sensor_feels_is_load() {
     let bench = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 7 };

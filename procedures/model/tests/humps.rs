@@ -1,4 +1,4 @@
-//! A hump over the speed, where friction has none, is outside the library, whatever two effects that cancel make of it.
+//! A local maximum of friction over speed is outside the library, even if two cancelling effects imitate it.
 
 mod common;
 
@@ -9,7 +9,7 @@ use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover};
 
 const SPEEDS_RAD_S: [f64; 13] = [0.8, 1.2, 1.8, 2.7, 4.1, 6.1, 9.1, 13.7, 20.5, 30.8, 46.1, 69.2, 103.8];
 
-/// Friction with `height_nm` more about one speed, `wide` in its logarithm.
+/// Friction with an additional torque of `height_nm` around one speed, with a width of `wide` in its logarithm.
 fn run(speed_rad_s: f64, wide: f64, height_nm: f64, seed: u64) -> RunTable {
     let (mut meta, trace) = friction_in_steps(&SPEEDS_RAD_S, 3, 220, |now| {
         let speed = now.velocity.abs();
@@ -29,7 +29,8 @@ fn a_hump_over_the_speed_is_structure() {
         let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous").unwrap();
         let found = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
         assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{speed} rad/s: {}", found.summary);
-        // Once viscous_sublinear and viscous_quadratic were named, with Coulomb friction below zero between them.
+        // Earlier versions named viscous_sublinear and viscous_quadratic, with negative Coulomb friction between
+        // them.
         assert_eq!(found.model, ["coulomb", "viscous"], "{speed} rad/s, {seed}");
     }
 }
@@ -37,7 +38,7 @@ fn a_hump_over_the_speed_is_structure() {
 #[test]
 fn a_hump_that_few_speeds_show_is_structure_too() {
     for seed in 1..4 {
-        // Of ten speeds one lies on it: held out with all its repeats, no other speed would tell of it.
+        // One of ten speeds is on it: if that speed is left out with all its repeats, the others do not show it.
         let bench = Staircase { noise_nm: 2e-3, scatter_nm: 2e-4, seed };
         let run = bench.run_at(&[0.0], |m: Moment| {
             let hump = 4e-3 * (-0.5 * ((m.velocity.abs() - 20.3) / 4.0).powi(2)).exp();
@@ -50,9 +51,9 @@ fn a_hump_that_few_speeds_show_is_structure_too() {
     }
 }
 
-/// Each speed came twice: no part of the axis has a band, and the angles at which slow steps begin would be blamed.
+/// Each speed occurs twice: no part of the axis has a band, and the start angles of slow steps would be reported.
 #[test]
-fn where_a_model_fails_over_speeds_that_came_twice_is_told_by_the_speed() {
+fn a_residual_over_speeds_with_one_repeat_is_reported_over_speed() {
     let (mut meta, trace) = friction_in_steps(&SPEEDS_RAD_S[..10], 2, 220, |now| {
         let speed = now.velocity.abs();
         now.velocity.signum() * (0.02 + 0.012 * (-speed / 4.0).exp() + 1e-4 * speed) + 1e-3 * scatter(now.row, 3)

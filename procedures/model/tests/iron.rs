@@ -1,4 +1,5 @@
-//! A torque constant that falls with the current, as iron does and not as a cube of the torque: nothing beside it is missing.
+//! A torque constant that falls with the current like iron, not with a cube of the torque: no other effect is
+//! missing.
 
 mod common;
 
@@ -15,7 +16,7 @@ const LOADS_NM: [f64; 4] = [0.0, 5.0, 10.0, 20.0];
 const GEAR: f64 = 50.0;
 const INERTIA_KG_M2: f64 = 2e-4;
 
-/// Torque constant times current, of which this share is lost at 0.65 Nm.
+/// Torque constant times current, with this relative loss at 0.65 Nm.
 fn drawn_nm(torque_nm: f64, lost: f64) -> f64 {
     (0..60).fold(torque_nm, |drawn, _| torque_nm / (1.0 - lost * (drawn / 0.65).powi(2)))
 }
@@ -50,7 +51,7 @@ fn run(lost: f64, seed: u64) -> RunTable {
 }
 
 #[test]
-fn only_the_iron_is_named_whatever_its_curve() {
+fn only_the_iron_is_named_for_any_curve() {
     for (lost, seed) in [(0.05, 1), (0.1, 2)] {
         let spec = ModelSpec::parse(Kind::Friction, "inertia,load_transmission,coulomb,viscous").unwrap();
         let found = diagnose(&run(lost, seed), &spec, &Options::default()).unwrap();

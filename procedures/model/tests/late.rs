@@ -1,4 +1,4 @@
-//! A torque that is recorded later than its motion, in a run in steps: only its ramps can show it.
+//! A torque delay in a run in steps: only its ramps can show it.
 
 mod common;
 
@@ -14,7 +14,7 @@ const SPEEDS_RAD_S: [f64; 8] = [2.0, 4.0, 7.0, 12.0, 20.0, 35.0, 60.0, 90.0];
 const INERTIA_KG_M2: f64 = 3e-5;
 const NOISE_NM: f64 = 4e-3;
 
-/// Speed at every sample: up to each of the speeds and down again, one way and the other.
+/// Speed at every sample: up to each of the speeds and down again, in both directions.
 fn velocities() -> Vec<f64> {
     let mut out = Vec::new();
     for leg in 0..2 * REPEATS * SPEEDS_RAD_S.len() {
@@ -26,8 +26,8 @@ fn velocities() -> Vec<f64> {
     out
 }
 
-/// The torque is read so many samples later than the angle, the speed as many as its filter takes.
-fn run(torque_late: usize, speed_late: usize) -> RunTable {
+/// The torque is read with a delay of this many samples against the angle, the speed with that of its filter.
+fn run(torque_delay: usize, speed_delay: usize) -> RunTable {
     let velocity = velocities();
     let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];
     let mut trace = Trace::new(names.map(Channel::new).into());
@@ -39,9 +39,9 @@ fn run(torque_late: usize, speed_late: usize) -> RunTable {
     for (i, v) in velocity.iter().enumerate() {
         angle += v * STEP_S;
         let leg = i / (2 * RAMP + PLATEAU);
-        let (felt, told) = (torque(i.saturating_sub(torque_late)), velocity[i.saturating_sub(speed_late)]);
+        let (felt, reported) = (torque(i.saturating_sub(torque_delay)), velocity[i.saturating_sub(speed_delay)]);
         let (segment, repeat) = (leg as f64, (leg / (2 * SPEEDS_RAD_S.len())) as f64);
-        trace.push_row(&[i as f64 * STEP_S, angle, told, felt + NOISE_NM * scatter(i, 1), segment, repeat]);
+        trace.push_row(&[i as f64 * STEP_S, angle, reported, felt + NOISE_NM * scatter(i, 1), segment, repeat]);
     }
     let mut meta = meta(Kind::Friction);
     meta.torque_constant_nm_per_a = Some(1.0);
@@ -54,7 +54,7 @@ fn diagnosed(run: &RunTable) -> Diagnosis {
 }
 
 #[test]
-fn a_late_torque_is_named_with_its_delay() {
+fn a_delayed_torque_is_named_with_its_delay() {
     let run = run(3, 0);
     let found = diagnosed(&run);
     let named: Vec<&str> = found.suggestions.iter().map(|s| s.effect.as_str()).collect();
@@ -69,9 +69,9 @@ fn a_late_torque_is_named_with_its_delay() {
 
 #[test]
 fn a_torque_in_time_and_a_speed_that_is_filtered_are_no_delay() {
-    for speed_late in [0, 1, 3] {
-        let found = diagnosed(&run(0, speed_late));
-        assert!(found.suggestions.is_empty(), "{speed_late}: {}", found.summary);
+    for speed_delay in [0, 1, 3] {
+        let found = diagnosed(&run(0, speed_delay));
+        assert!(found.suggestions.is_empty(), "{speed_delay}: {}", found.summary);
         let silent = found.silent.iter().find(|s| s.effect == "signal_delay");
         assert!(silent.is_some_and(|s| s.minimum_detectable_rms > 0.0), "{:?}", found.not_visible);
     }

@@ -1,4 +1,4 @@
-//! Legs that lie apart by chance: a step in time is more than that.
+//! Legs that differ by chance: a step in time has to exceed that.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_model::{Diagnosis, Discovery, ModelSpec, Options, Verdict, diagnose, discover};
@@ -6,8 +6,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// Four legs of an encoder, two speeds both ways. Each lies elsewhere by some 5 µrad, a sixth of what a reading scatters by; from
-/// the third on all lie elsewhere by `slip_rad`.
+/// Four legs of an encoder, two speeds in both directions. Each leg has an offset of about 5 µrad, a sixth of the
+/// scatter of a reading. From the third leg on all are shifted by `slip_rad`.
 fn diagnosed(seed: u64, slip_rad: f64) -> Diagnosis {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut normal = move || -> f64 { StandardNormal.sample(&mut random) };
@@ -29,7 +29,7 @@ fn diagnosed(seed: u64, slip_rad: f64) -> Diagnosis {
 
 #[test]
 fn four_legs_that_scatter_a_little_have_not_slipped() {
-    // Stretches of legs were turned over one by one, and eight of fourteen such runs had a slip of some 10 µrad.
+    // With sign flips of parts of legs, eight of fourteen such runs had a slip of about 10 µrad.
     let named: Vec<String> = (0..14)
         .filter_map(|seed| diagnosed(seed, 0.0).suggestions.into_iter().next())
         .map(|suggestion| suggestion.effect)
@@ -39,8 +39,8 @@ fn four_legs_that_scatter_a_little_have_not_slipped() {
     assert_eq!(slipped.suggestions.first().map(|s| s.effect.as_str()), Some("slip"), "{}", slipped.summary);
 }
 
-/// Three times up and down through the current of a brake that warms up, at two speeds. Each leg lies elsewhere by as much as a
-/// row scatters, and what is read remembers a second of its noise.
+/// Three times up and down through the current of a brake that warms up, at two speeds. Each leg has an offset as
+/// large as the scatter of a row, and the reading noise is correlated over a second.
 fn braked(seed: u64) -> Discovery {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut normal = move || -> f64 { StandardNormal.sample(&mut random) };
@@ -77,8 +77,8 @@ fn what_whole_legs_scatter_by_is_neither_an_effect_nor_structure() {
     assert!(found.iter().any(|found| found.summary.contains("the zero drifts by")));
 }
 
-/// Friction at eight speeds both ways, six times. The zero of each leg differs from that before it by `step_nm` at random, all of
-/// it moves by `drift_nm_s`, and half-way it leaps by `leap_nm`.
+/// Friction at eight speeds in both directions, six times. The offset of each leg differs from the previous one by
+/// `step_nm` at random. All offsets drift by `drift_nm_s`, and half-way they jump by `leap_nm`.
 fn wandered(seed: u64, step_nm: f64, drift_nm_s: f64, leap_nm: f64) -> (Vec<String>, Verdict) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut normal = move || -> f64 { StandardNormal.sample(&mut random) };
@@ -105,12 +105,12 @@ fn wandered(seed: u64, step_nm: f64, drift_nm_s: f64, leap_nm: f64) -> (Vec<Stri
 
 #[test]
 fn a_zero_that_wanders_is_no_effect_and_one_that_drifts_is() {
-    // What neighbouring legs have in common counted as so many legs of evidence, and a drift or an offset was named for it.
+    // Correlated neighbouring legs counted as independent evidence, so that a drift or an offset was named.
     let found: Vec<(Vec<String>, Verdict)> = (0..12).map(|seed| wandered(seed, 0.0005, 0.0, 0.0)).collect();
     let named = found.iter().filter(|(named, _)| !named.is_empty()).count();
     let structure = found.iter().filter(|(_, verdict)| *verdict == Verdict::UnexplainedStructure).count();
     assert!(named <= 3, "{found:?}");
-    // Nine where any part of an axis that stands out is structure; the rest have some of it in common by chance.
+    // Nine runs if any significant part of an axis counts as structure; in the others some of it is common by chance.
     assert!(structure <= 5, "{found:?}");
     for seed in 0..3 {
         assert_eq!(wandered(seed, 0.0, 4e-5, 0.0).0, ["drift"]);

@@ -1,4 +1,4 @@
-//! The library against the contract: every id is there, whole, and at peace with data that lacks its signals.
+//! Consistency of the library: every id exists, is complete, and tolerates data without its signals.
 
 mod common;
 
@@ -9,7 +9,7 @@ use jointbench_model::signal::{Signal, Signals};
 use jointbench_model::view::View;
 use jointbench_model::{ModelSpec, Options, effects, fit};
 
-/// Section 2 of the contract.
+/// The ids of the library.
 fn ids(kind: Kind) -> &'static [&'static str] {
     match kind {
         Kind::Friction => &[
@@ -91,7 +91,7 @@ fn every_effect_of_the_contract_is_there_and_whole() {
     }
 }
 
-/// All signals on a swinging joint.
+/// All signals of a swinging joint.
 fn everything() -> View {
     let n = 4000;
     let at = |f: &dyn Fn(f64) -> f64| (0..n).map(|i| f(0.004 * i as f64)).collect::<Vec<f64>>();

@@ -1,4 +1,4 @@
-//! Long runs: as many rows as a diagnosis needs, and repeats that still meet.
+//! Long runs: the number of rows stays limited, and repeats are still paired.
 
 mod common;
 

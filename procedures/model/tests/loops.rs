@@ -1,4 +1,5 @@
-//! A brake through loops of different size: at one current each holds a torque of its own, and none repeats another.
+//! A brake in loops of different size: the torque at one current differs between them, so that they do not repeat
+//! each other.
 
 mod common;
 
@@ -12,10 +13,10 @@ const STEP_A: f64 = 0.1;
 /// Largest scatter of a sample to either side [Nm].
 const SCATTER_NM: f64 = 0.01;
 
-/// What bearings hold [Nm].
+/// Drag of the bearings [Nm].
 const DRAG_NM: f64 = 0.5;
 
-/// Up and down in steps, to 1 A first and then to less, three times. `hold_nm` is what each contact holds at most.
+/// Up and down in steps, to 1 A first and then to less, three times. `hold_nm` is the largest torque of each contact.
 fn run(hold_nm: f64, bends: bool) -> RunTable {
     recorded(hold_nm, bends, 0)
 }
@@ -84,7 +85,7 @@ fn the_floor_of_a_brake_holds_no_hysteresis() {
     }
 }
 
-/// Its temperature hardly changes: times the torque, it would be curve and loops.
+/// Its temperature hardly changes: multiplied by the torque, it would imitate curve and loops.
 #[test]
 fn a_warm_brake_has_its_loops_still() {
     let run = run(0.03, true);
@@ -104,9 +105,10 @@ fn drag(run: &RunTable) -> Parameter {
     found.parameters.into_iter().find(|p| p.effect == "drag").unwrap()
 }
 
-/// After a fall to no current the iron holds as well, and nothing but a moment before any current tells how much of it is drag.
+/// After a fall to zero current the iron has remanence, and only the time before any current separates it from the
+/// drag.
 #[test]
-fn drag_beside_hysteresis_is_told_with_the_remanence_that_it_holds() {
+fn drag_with_hysteresis_is_reported_with_its_remanence() {
     for (from, word) in [(0, "before any current"), (20, "trades off with hysteresis")] {
         let found = drag(&recorded(0.0125, false, from));
         let [low, high] = found.ci95;

@@ -1,4 +1,4 @@
-//! A model file that somebody changed is refused in words or taken for what it says, never a panic.
+//! A modified model file is refused with a message or used as it is, without a panic.
 
 mod common;
 
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use std::sync::LazyLock;
 
-/// A run of each kind with a model of its baseline and an effect with shape parameters or several columns.
+/// A run of each kind with a model of its baseline and an effect with nonlinear parameters or several columns.
 static FITTED: LazyLock<Vec<(RunTable, Value)>> = LazyLock::new(|| {
     let fitted = |kind| {
         let run = table(kind, &Shape { segment: 300, repeats: 3, noise: 0.1, ..Shape::default() });
@@ -31,7 +31,7 @@ static FITTED: LazyLock<Vec<(RunTable, Value)>> = LazyLock::new(|| {
     Kind::ALL.map(fitted).into()
 });
 
-/// Everything that a file is used for.
+/// All uses of a file.
 fn use_it(fit: &Fit, run: &RunTable) {
     let _ = evaluate(fit, run);
     for format in Format::ALL {
@@ -56,31 +56,31 @@ fn a_term_that_its_effect_does_not_have_is_refused_with_what_is_expected() {
     let (_, good) = FITTED.iter().find(|(run, _)| run.kind() == Kind::Friction).unwrap();
     let place = |id: &str| good["fit"]["terms"].as_array().unwrap().iter().position(|t| t["effect"] == id).unwrap();
     let stribeck = place("stribeck");
-    let told = |change: &dyn Fn(&mut Value)| {
+    let reported = |change: &dyn Fn(&mut Value)| {
         let mut file = good.clone();
         change(&mut file["fit"]["terms"]);
         read(&file).unwrap_err()
     };
-    let error = told(&|terms| {
+    let error = reported(&|terms| {
         terms[stribeck]["shape"] = json!([]);
         terms[stribeck]["names"] = json!(["tau_s"]);
     });
     assert!(error.contains("stribeck has 1 factors, 0 shape values"), "{error}");
     assert!(error.contains("expected are 1 and 2, tau_s, omega_s and delta"), "{error}");
-    let error = told(&|terms| *terms = json!([]));
+    let error = reported(&|terms| *terms = json!([]));
     assert!(error.contains("coulomb has no term, but the run that was fitted shows it"), "{error}");
-    let error = told(&|terms| terms[stribeck]["form"] = json!("linear"));
+    let error = reported(&|terms| terms[stribeck]["form"] = json!("linear"));
     assert!(error.contains("stribeck has the form linear: expected is exponential"), "{error}");
-    let error = told(&|terms| terms[stribeck]["shape"][1] = json!(7.0));
+    let error = reported(&|terms| terms[stribeck]["shape"][1] = json!(7.0));
     assert!(error.contains("stribeck has delta = 7: expected is 0.5 to 3"), "{error}");
-    let error = told(&|terms| terms[stribeck]["shape"][0] = json!(0.0));
+    let error = reported(&|terms| terms[stribeck]["shape"][0] = json!(0.0));
     assert!(error.contains("stribeck has omega_s = 0: expected is"), "{error}");
-    let error = told(&|terms| {
+    let error = reported(&|terms| {
         let again = terms[stribeck].clone();
         terms.as_array_mut().unwrap().push(again);
     });
     assert!(error.contains("stribeck has 2 terms: one is expected"), "{error}");
-    let error = told(&|terms| terms[place("rub")]["shape"] = json!([1.0, 2.0]));
+    let error = reported(&|terms| terms[place("rub")]["shape"] = json!([1.0, 2.0]));
     assert!(error.contains("rub has 1 factors, 2 shape values"), "{error}");
 }
 
@@ -94,7 +94,7 @@ fn places(value: &Value, at: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Another value in place of one, or one more or less of it.
+/// Replaces a value, or adds or removes one.
 fn change(value: &mut Value, how: usize) {
     let others = [
         json!(null),

@@ -1,4 +1,4 @@
-//! What to measure next, and what the next run then decides.
+//! The recommended next run, and the questions that it then answers.
 
 mod common;
 
@@ -46,7 +46,7 @@ fn diagnosed(run: &RunTable) -> Diagnosis {
     diagnose(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap()
 }
 
-/// Out and back at each of some speeds under one load, the whole twice.
+/// Out and back at each of some speeds under one load, all twice.
 fn strokes(name: &str, speeds: &[f64], load_nm: f64, duration_s: f64) -> Choice {
     let mut stretches = Vec::new();
     for speed in speeds.iter().chain(speeds) {
@@ -64,7 +64,7 @@ fn strokes(name: &str, speeds: &[f64], load_nm: f64, duration_s: f64) -> Choice 
 const SPEEDS: [f64; 4] = [8.0, 20.0, 50.0, 100.0];
 
 #[test]
-fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
+fn a_third_load_distinguishes_a_line_from_a_square_and_the_same_load_does_not() {
     let first = bench(1).run_at(&[0.0, 8.0], with_square_of_load);
     let before = diagnosed(&first);
     let open = Open::from(&before);
@@ -97,12 +97,13 @@ fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
     assert_eq!(next.procedure, "other", "{}", next.why);
     assert!(next.expected_z.unwrap() > 4.0 && next.separates.iter().any(|e| e == "load_quadratic"), "{}", next.why);
 
-    // What the user wrote is the named effect once more: it hides no rival that a run tells.
+    // The user effect equals the named effect: it does not hide a candidate that a run can distinguish.
     let formula = if open.ties[0].0 == "load_linear" { "abs(load)" } else { "load^2" };
-    let twin = OwnEffect::inline(Kind::Friction, &format!("twin: tau = mu * {formula} * sign(velocity); mu")).unwrap();
-    let mut with_twin = Open { own: vec![twin], ..open.clone() };
-    with_twin.ties[0].1.push("twin".into());
-    let spared = next_run(&first, &with_twin, &menu, &Options::default()).unwrap().experiment.unwrap();
+    let is_replicate =
+        OwnEffect::inline(Kind::Friction, &format!("twin: tau = mu * {formula} * sign(velocity); mu")).unwrap();
+    let mut with_copy = Open { own: vec![is_replicate], ..open.clone() };
+    with_copy.ties[0].1.push("twin".into());
+    let spared = next_run(&first, &with_copy, &menu, &Options::default()).unwrap().experiment.unwrap();
     assert_eq!((&spared.procedure, spared.expected_z), (&next.procedure, next.expected_z), "{}", spared.why);
     assert!(spared.why.ends_with(&format!("distinguish {} from twin", open.ties[0].0)), "{}", spared.why);
 
@@ -147,7 +148,7 @@ fn runs_together_fit_as_one_and_repeat_each_other() {
     assert!(found.noise_floor_rms.is_some());
 }
 
-/// Legs of a second each, 100 samples a second, at the speeds and currents given, the whole four times.
+/// Legs of one second with 100 samples each, at the given speeds and currents, all four times.
 fn legs(kind: Kind, names: [&str; 4], legs: &[(f64, f64)], row: impl Fn(f64, f64, f64, f64) -> [f64; 3]) -> RunTable {
     let mut trace =
         Trace::new(["time_s", "segment", "repeat"].iter().chain(&names).copied().map(Channel::new).collect());
@@ -170,7 +171,7 @@ fn diagnosed_with(run: &RunTable, model: &[&str]) -> Diagnosis {
 }
 
 #[test]
-fn another_speed_tells_play_in_a_coupling_from_a_delay() {
+fn another_speed_distinguishes_backlash_in_a_coupling_from_a_delay() {
     let names = ["velocity_rad_s", "reference_position_rad", "test_position_rad", "temperature_c"];
     let turned = |speeds: &[(f64, f64)]| {
         legs(Kind::Encoder, names, speeds, |angle, speed, _, noise| {
@@ -194,10 +195,10 @@ fn another_speed_tells_play_in_a_coupling_from_a_delay() {
 }
 
 #[test]
-fn more_power_ups_tell_a_zero_that_each_of_them_moves_from_a_slip() {
+fn more_power_ups_distinguish_a_start_up_offset_from_a_slip() {
     let names = ["velocity_rad_s", "reference_position_rad", "test_position_rad", "temperature_c"];
     let out_and_back = [(20.0, 0.0), (-20.0, 0.0)];
-    // The second half of the time lies 0.5 mrad elsewhere: a slip, or the second of two power-ups.
+    // The second half has an offset of 0.5 mrad: a slip, or the second of two power-ups.
     let run = {
         let whole = legs(Kind::Encoder, names, &out_and_back, |angle, _, _, noise| [angle, angle + 2e-5 * noise, 25.0]);
         let mut columns = whole.trace().columns().to_vec();
@@ -243,8 +244,8 @@ fn a_brake_that_turned_at_one_speed_is_asked_for_others() {
     );
 }
 
-/// The Electro-Mechanical Positioning System: |v| against v² (a form of the quadratic effect) ties on its recording. A
-/// prototype found for one stroke out and back z ≈ 24 at 0.25 m/s, which is faster than everything recorded, 6 at 0.01 m/s
+/// The Electro-Mechanical Positioning System: |v| and v² (a form of the quadratic effect) tie on its recording. A
+/// prototype found for one stroke out and back z ≈ 24 at 0.25 m/s, which is faster than the recording, 6 at 0.01 m/s
 /// and 3 at 0.08 m/s.
 #[test]
 fn a_new_speed_decides_between_two_shapes_of_asymmetry() {

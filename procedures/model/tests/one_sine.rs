@@ -1,4 +1,4 @@
-//! One sine: its jerk is its velocity and its snap its acceleration, turned over.
+//! On one sine the jerk is proportional to the velocity, and the snap to the acceleration, with opposite signs.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, diagnose, fit};

@@ -1,4 +1,5 @@
-//! A run that goes one way only: Coulomb friction and an offset are one and the same there, cogging and friction ripple too.
+//! A run in one direction: Coulomb friction and an offset are identical there, and so are cogging and friction
+//! ripple.
 
 mod common;
 
@@ -22,7 +23,7 @@ fn creeping(baseline: &[&str]) -> RunTable {
 }
 
 #[test]
-fn what_goes_one_way_is_called_by_one_name() {
+fn a_run_in_one_direction_has_one_name_for_confounded_effects() {
     for baseline in [&["viscous"][..], &["coulomb", "viscous"]] {
         let run = creeping(baseline);
         let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4, |_| {}).unwrap();

@@ -1,4 +1,4 @@
-//! A table of conditions without a time: speed, load and current of steady operating points.
+//! A table of operating points without a time: speed, load and current at steady state.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover};
@@ -26,7 +26,7 @@ fn table(load_share: f64) -> RunTable {
             }
         }
     }
-    // At rest the joint holds itself.
+    // Operating points at rest.
     for held in [0.3, -0.2, 0.1, 0.0, 0.4] {
         velocity.push(0.0);
         load.push(5.0);

@@ -1,4 +1,4 @@
-//! The nonlinear fit against a well-kept Levenberg–Marquardt on the same points.
+//! The nonlinear fit compared with an established Levenberg–Marquardt implementation on the same points.
 
 mod common;
 

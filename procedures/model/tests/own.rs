@@ -1,4 +1,4 @@
-//! Effects that users write, on made-up runs: fitted, suggested, discovered, refused.
+//! User effects on simulated runs: fitted, suggested, discovered, refused.
 
 mod common;
 
@@ -45,7 +45,7 @@ fn a_formula_is_fitted_with_its_shape() {
 }
 
 #[test]
-fn a_size_beyond_its_range_is_told_with_the_range() {
+fn a_size_beyond_its_range_is_reported_with_the_range() {
     let run = measured(1);
     let found = fit(&run, &spec(&run, &["rub"], &RUB.replace("0..1;", "0..0.01;")), &Options::default()).unwrap();
     let note = found.parameters.iter().find(|p| p.name == "a").unwrap().note.as_ref().unwrap();
@@ -91,15 +91,19 @@ fn a_formula_that_is_not_needed_stays_silent() {
 }
 
 #[test]
-fn a_formula_that_the_library_has_is_told_as_its_twin() {
+fn a_formula_that_the_library_has_is_reported_as_its_copy() {
     let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 7 }
         .run(|m| (0.03 + 0.06 * m.load.abs() / 50.0) * m.velocity.signum() + 1.5e-4 * m.velocity);
-    let twin = "twin: tau = a * abs(load) * sign(velocity); a [1] 0..1";
-    let found = diagnose(&run, &spec(&run, &[], twin), &Options::default()).unwrap();
+    let is_replicate = "twin: tau = a * abs(load) * sign(velocity); a [1] 0..1";
+    let found = diagnose(&run, &spec(&run, &[], is_replicate), &Options::default()).unwrap();
     let first = &found.suggestions[0];
     assert_eq!((first.effect.as_str(), first.confounded_with.contains(&"twin".into())), ("load_linear", true));
-    let told = found.not_visible.iter().find(|n| n.effect == "twin").unwrap();
-    assert!(told.why.starts_with("load_linear is in the model, and this run cannot distinguish them"), "{}", told.why);
+    let reported = found.not_visible.iter().find(|n| n.effect == "twin").unwrap();
+    assert!(
+        reported.why.starts_with("load_linear is in the model, and this run cannot distinguish them"),
+        "{}",
+        reported.why
+    );
 }
 
 #[test]

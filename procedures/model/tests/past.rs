@@ -1,4 +1,4 @@
-//! A run that begins where an earlier one has left its memory: what is remembered is no structure.
+//! A run that starts with a loading history of an earlier one, which is no structure.
 
 mod common;
 
@@ -6,10 +6,10 @@ use common::tables::{meta, scatter, stiffness};
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, Verdict, discover, fit};
 
-/// Currents at which dry contacts slip, many enough for a smooth curve [A].
+/// Currents at which dry contacts slip, enough for a smooth curve [A].
 const SLIPS: [f64; 12] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6];
 
-/// States of dry contacts after a way from rest to `past` and back to zero.
+/// States of dry contacts after a path from rest to `past` and back to zero.
 fn after(past: f64, slips: f64) -> f64 {
     (past.clamp(-slips, slips) - past).clamp(-slips, slips)
 }
@@ -54,26 +54,26 @@ fn joint(past: f64) -> RunTable {
     RunTable::new(meta(Kind::Stiffness), trace).unwrap()
 }
 
-fn check(run: &RunTable, effect: &str, is_told: bool) {
+fn check(run: &RunTable, effect: &str, is_reported: bool) {
     let spec = ModelSpec::baseline(run).unwrap();
     let whole = discover(run, &spec, &Options::default(), 4, |_| {}).unwrap();
     let added: Vec<_> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
     assert_eq!(added, [effect], "{}", whole.summary);
     assert_eq!(whole.verdict, Verdict::Adequate, "{}", whole.summary);
     let notes = fit(run, &spec, &Options::default()).unwrap().notes;
-    assert_eq!(notes.iter().any(|note| note.contains("remembered")), is_told, "{notes:?}");
+    assert_eq!(notes.iter().any(|note| note.contains("remembered")), is_reported, "{notes:?}");
 }
 
 #[test]
 fn a_brake_that_was_loaded_before_shows_its_hysteresis_alone() {
-    for (past, is_told) in [(0.0, false), (0.45, true), (1.0, true)] {
-        check(&brake(past), "hysteresis", is_told);
+    for (past, is_reported) in [(0.0, false), (0.45, true), (1.0, true)] {
+        check(&brake(past), "hysteresis", is_reported);
     }
 }
 
 #[test]
 fn a_joint_that_was_loaded_before_shows_its_hysteresis_alone() {
-    for (past, is_told) in [(0.0, false), (-30.0, true), (30.0, true)] {
-        check(&joint(past), "torsional_hysteresis", is_told);
+    for (past, is_reported) in [(0.0, false), (-30.0, true), (30.0, true)] {
+        check(&joint(past), "torsional_hysteresis", is_reported);
     }
 }

@@ -1,4 +1,4 @@
-//! An encoder on a stage: where it stands is an axis, and runs at two poses are no repeats of each other.
+//! An encoder on a stage: its pose is an axis, and runs at two poses are no repeats of each other.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, diagnose, fit, maps};
@@ -6,10 +6,11 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// Rows scatter by this much.
+/// Scatter of the rows [rad].
 const NOISE_RAD: f64 = 3e-5;
 
-/// Four poses, two turns each way at each, twice: one wave a turn grows with the radial shift. The stage never tilts.
+/// Four poses, two turns in each direction at each, twice: one wave in a turn grows with the radial shift. The stage
+/// never tilts.
 fn placed() -> RunTable {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let mut normal = move || -> f64 { StandardNormal.sample(&mut random) };
@@ -39,7 +40,7 @@ fn placed() -> RunTable {
 }
 
 #[test]
-fn where_the_stage_stands_is_an_axis_and_no_noise() {
+fn the_pose_of_the_stage_is_an_axis_and_no_noise() {
     let (run, options) = (placed(), Options::default());
     let spec = ModelSpec::new(Kind::Encoder, ["offset", "delay"]).unwrap();
     let found = diagnose(&run, &spec, &options).unwrap();

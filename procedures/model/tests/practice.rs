@@ -1,4 +1,4 @@
-//! Measurements with a hidden effect from a simulator that shares nothing with the library.
+//! Measurements with a hidden effect from a simulator that is independent of the library.
 
 mod common;
 
@@ -35,7 +35,7 @@ fn check_family(family: &str) {
                 assert_eq!(first.verdict, Verdict::UnexplainedStructure, "{name}: {}", first.summary);
                 assert_eq!(whole.verdict, Verdict::UnexplainedStructure, "{name}: {}", whole.summary);
                 assert!(first.suggestions.is_empty() && added.is_empty(), "{name}: {added:?}");
-                // What one direction hides from the other is shown by direction.
+                // Structure that cancels between the directions is shown by direction.
                 let map = first.structure.unwrap();
                 assert!(answer["notes"].get(&map.x).is_some() && map.y == "direction", "{name}: {}", first.summary);
             }
@@ -50,7 +50,7 @@ fn check_family(family: &str) {
     }
 }
 
-/// What is taken out of a complete model is what is named, where the error clearly misses it.
+/// The effect that was removed from a complete model is named, if its absence clearly increases the error.
 fn check_removed(name: &str, run: &RunTable, complete: &Fit) {
     for removed in &complete.effects {
         let rest = complete.effects.iter().filter(|e| *e != removed);
@@ -85,7 +85,7 @@ fn brake() {
     check_family("brake");
 }
 
-/// As few numbers as the loops need: bands up to the largest current were mostly undecided.
+/// As few bands as the loops need: bands up to the largest current were mostly not identified.
 #[test]
 fn a_brake_decides_the_bands_of_its_hysteresis() {
     let Some(folder) = shared("hidden-effects") else { return };
@@ -101,13 +101,13 @@ fn a_brake_decides_the_bands_of_its_hysteresis() {
 fn an_inertia_that_settled_motion_hardly_shows_is_held_against_the_set_up() {
     let Some(folder) = shared("hidden-effects") else { return };
     let run = read(&folder.join("friction-load_linear"));
-    let told = |run: &RunTable| fit(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap();
-    let found = told(&run);
+    let reported = |run: &RunTable| fit(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap();
+    let found = reported(&run);
     let note = found.notes.iter().find(|note| note.contains("the set-up states")).unwrap();
     assert!(note.starts_with("the run does not determine the inertia") && note.contains("4.48e-5 kg·m²"), "{note}");
     let inertia = found.parameters.iter().find(|p| p.effect == "inertia").unwrap();
     assert!(inertia.state == ParameterState::Unidentified && inertia.ci95[1] >= 4.48e-5, "{inertia:?}");
     let meta = jointbench_instrument::Meta { rotor_inertia_kg_m2: Some(inertia.value), ..run.meta().clone() };
-    let agreed = told(&RunTable::new(meta, run.trace().clone()).unwrap());
+    let agreed = reported(&RunTable::new(meta, run.trace().clone()).unwrap());
     assert_eq!(agreed.notes.iter().find(|note| note.contains("the set-up states")), None);
 }

@@ -1,4 +1,5 @@
-//! What was put in comes out: parameters within budgets, hidden effects by name, nothing where nothing is.
+//! Recovery of the simulated truth: parameters within tolerances, hidden effects by name, and no effect if there is
+//! none.
 
 mod common;
 
@@ -53,7 +54,7 @@ fn check_found(name: &str, seed: u64, friction: impl Fn(Moment) -> f64) {
     let whole = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
     let added: Vec<_> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
     assert_eq!(added, [name], "{}", whole.summary);
-    // One answer: what is suggested is what the search ends with, and what a fit of the same effects gives in any order.
+    // Consistency: the suggestions equal the final model of the search, and a fit of the same effects in any order.
     let mut effects = whole.model.clone();
     effects.reverse();
     let same = fit(&run, &ModelSpec::new(spec.kind, effects).unwrap(), &Options::default()).unwrap();
@@ -75,7 +76,7 @@ fn a_hidden_effect_is_named() {
     check_found("drift", 7, |m| dry(m) + 8e-3 * (1.0 - (-m.time / 25.0).exp()));
 }
 
-/// A Stribeck peak bends into the place of Coulomb or viscous friction where it stands in the model without one of them.
+/// A given Stribeck peak imitates a missing Coulomb or viscous friction.
 #[test]
 fn what_is_taken_out_of_a_complete_model_is_what_is_named() {
     let peak = |m: Moment| 0.012 * m.velocity.signum() / (1.0 + (m.velocity / 6.0).powi(2)).powi(2);
@@ -90,13 +91,13 @@ fn what_is_taken_out_of_a_complete_model_is_what_is_named() {
     }
 }
 
-/// Chunks of one sample make so many rows that neighbours are averaged.
+/// Chunks of one sample give so many rows that neighbours are averaged.
 #[test]
 fn a_run_of_many_chunks_says_the_same_in_fewer_rows() {
     let run = bench(8).run(|m| dry(m) + 0.004 * m.link.cos());
     let spec = ModelSpec::baseline(&run).unwrap();
-    let told = |chunk_s| diagnose(&run, &spec, &Options { chunk_s, ..Options::default() }).unwrap();
-    let (few, many) = (told(None), told(Some(0.004)));
+    let reported = |chunk_s| diagnose(&run, &spec, &Options { chunk_s, ..Options::default() }).unwrap();
+    let (few, many) = (reported(None), reported(Some(0.004)));
     let settled = run.len() * 3 / 4;
     assert!((2_000..12_000).contains(&many.fit.preparation.rows) && settled > 12_000, "{:?}", many.fit.preparation);
     for found in [&few, &many] {
@@ -132,8 +133,8 @@ fn what_the_library_does_not_know_is_called_structure_and_shown() {
 }
 
 #[test]
-fn where_a_model_fails_is_told_by_what_it_leaves() {
-    // A Stribeck effect at the end of its range stands for the viscous friction as well as it can.
+fn regions_follow_from_the_residual() {
+    // A Stribeck effect at the end of its range imitates the viscous friction.
     let run = bench(9).run(dry);
     let spec = ModelSpec::new(run.kind(), ["load_transmission", "coulomb", "stribeck"]).unwrap();
     let found = diagnose(&run, &spec, &Options::default()).unwrap();

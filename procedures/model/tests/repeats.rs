@@ -1,4 +1,4 @@
-//! What is called a repeat, and what is one.
+//! Validation of repeats.
 
 mod common;
 
@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 
-/// Three repeats of swings whose phases differ by `shift` from one repeat to the next, each from where it began.
+/// Three repeats of swings with a phase difference of `shift` between repeats, each starting at its own position.
 fn swings(shift: f64) -> Diagnosis {
     const STEP_S: f64 = 0.01;
     let names = "time_s motor_position_rad motor_current_a repeat";
@@ -30,14 +30,14 @@ fn swings(shift: f64) -> Diagnosis {
 }
 
 #[test]
-fn repeats_of_one_motion_tell_the_noise() {
+fn repeats_of_one_motion_determine_the_noise() {
     let found = swings(0.0);
     assert!(found.noise_floor_rms.is_some_and(|rms| rms < 1e-3), "{:?}", found.noise_floor);
     assert_eq!((found.verdict, &found.undecided), (Verdict::Adequate, &None), "{}", found.summary);
 }
 
 #[test]
-fn repeats_of_different_motions_tell_nothing() {
+fn repeats_of_different_motions_determine_no_noise() {
     let found = swings(1.3);
     assert_eq!(found.noise_floor_rms, None);
     assert!(found.noise_floor.source.contains("different motions; their"), "{}", found.noise_floor.source);
@@ -45,7 +45,7 @@ fn repeats_of_different_motions_tell_nothing() {
     assert!(found.experiment.is_some(), "the run that would tell");
 }
 
-/// Nothing loads the joint: what the sensor of its torque reads in each leg is noise, and no two legs have the same.
+/// Without a load, the torque sensor reads only noise in each leg, and no two legs have the same.
 #[test]
 fn noise_of_a_torque_sensor_makes_no_other_condition() {
     const STEP_S: f64 = 0.004;
@@ -75,7 +75,7 @@ fn noise_of_a_torque_sensor_makes_no_other_condition() {
     assert_eq!((found.verdict, &found.undecided), (Verdict::Adequate, &None), "{}", found.summary);
 }
 
-/// Every leg begins where the link chances to be, and a tooth is bad.
+/// Every leg begins at a random link position, and one tooth is damaged.
 #[test]
 fn repeats_that_begin_at_other_angles_meet_where_they_pass_the_same() {
     const STEP_S: f64 = 0.004;
@@ -104,7 +104,7 @@ fn repeats_that_begin_at_other_angles_meet_where_they_pass_the_same() {
     assert!(found.noise_floor.repeatable_share.is_some_and(|share| share > 0.5), "{:?}", found.noise_floor);
 }
 
-/// An industrial robot whose three repeats are three motions.
+/// An industrial robot whose three repeats are three different motions.
 #[test]
 fn kr300_repeats_are_different_motions() {
     let Some(data) = common::shared("data") else { return };
@@ -116,9 +116,9 @@ fn kr300_repeats_are_different_motions() {
     }
 }
 
-/// Slow legs that come again, and quick ones with half more noise that do not.
+/// Slow legs with repeats, and fast legs with 50 % more noise without repeats.
 #[test]
-fn an_error_above_what_repeats_show_is_told() {
+fn an_error_above_the_noise_floor_is_reported() {
     const STEP_S: f64 = 0.004;
     let names = "time_s motor_position_rad motor_velocity_rad_s motor_current_a segment repeat";
     let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());

@@ -1,4 +1,4 @@
-//! A joint that needs a way to change its flanks: reversals are no sign of creep.
+//! A joint that changes its gear flanks over a distance: its reversals are no sign of creep.
 
 mod common;
 
@@ -10,14 +10,14 @@ const STEP_S: f64 = 0.004;
 const GEAR: f64 = 50.0;
 const COMPLIANCE: f64 = 2e-4;
 const OFFSET_RAD: f64 = 6e-4;
-/// Speed at the link that a leg reaches after its ramp [rad/s], and samples of ramp and leg.
+/// Link speed of a leg after its ramp [rad/s], and samples of ramp and leg.
 const SPEED: f64 = 0.5;
 const RAMP: usize = 50;
 const LEG: usize = 400;
-/// Way of the link after which the flank has changed to 1/e [rad].
+/// Link displacement after which the flank change has decayed to 1/e [rad].
 const WAY_RAD: f64 = 5e-3;
 
-/// To and fro at four loads with ramps in speed; torque and flank follow the way since the reversal.
+/// Back and forth at four loads with ramps in speed; torque and flank follow the displacement since the reversal.
 fn run() -> RunTable {
     let mut trace = stiffness();
     let (mut link, mut flank) = (0.0, -1.0f64);

@@ -1,4 +1,5 @@
-//! A column with the wrong sign fits as well as the right one. What the model then has to be is impossible, and that is told first.
+//! A column with the wrong sign fits as well as the right one. The resulting parameters are impossible, which is
+//! reported first.
 
 mod common;
 
@@ -23,7 +24,7 @@ fn brake(sign: f64) -> Diagnosis {
 }
 
 #[test]
-fn an_impossible_size_is_told_before_the_effect_that_is_named() {
+fn an_impossible_size_is_reported_before_the_named_effect() {
     let right = brake(1.0);
     assert_eq!(right.suggestions.first().map(|s| s.effect.as_str()), Some("saturation"), "{}", right.summary);
     assert_eq!(right.undecided, None);
@@ -39,8 +40,8 @@ fn nothing_is_named_of_columns_that_cannot_be_right() {
     let named = |sign: f64| {
         let channels = run.trace().channels().to_vec();
         let columns = channels.iter().map(|c| {
-            let factor = if c.name == "motor_current_a" { sign } else { 1.0 };
-            run.column(&c.name).unwrap().iter().map(|v| factor * v).collect()
+            let scale = if c.name == "motor_current_a" { sign } else { 1.0 };
+            run.column(&c.name).unwrap().iter().map(|v| scale * v).collect()
         });
         let trace = Trace::from_columns(channels.clone(), columns.collect());
         let run = RunTable::new(run.meta().clone(), trace).unwrap();

@@ -1,4 +1,4 @@
-//! A brake whose current goes in steps: while it changes, its reading is late, and so is the torque.
+//! A brake whose current changes in steps: during a change, its reading and the torque are delayed.
 
 mod common;
 
@@ -9,8 +9,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 
-/// Sweeps of 20 steps up and 20 down, one way and then the other. The torque follows the current, which follows its
-/// command; both are read, the current every tenth sample. All sweeps are numbered alike.
+/// Sweeps of 20 steps up and 20 down, in alternating direction. The torque follows the current, which follows its
+/// command. Both are read, the current at every tenth sample. All sweeps have the same segment numbers.
 fn staircase() -> RunTable {
     const STEP_S: f64 = 0.01;
     let names = "time_s brake_current_a brake_torque_nm velocity_rad_s segment repeat";

@@ -1,4 +1,4 @@
-//! A trajectory whose joint sticks at its reversals: there friction is no sign of the speed.
+//! A trajectory whose joint sticks at its reversals: the friction there is no function of the sign of the speed.
 
 mod common;
 
@@ -8,42 +8,42 @@ use jointbench_model::{Diagnosis, ModelSpec, Options, diagnose};
 use std::f64::consts::TAU;
 
 const STEP_S: f64 = 5e-4;
-/// Steps of the simulation for each row.
+/// Simulation steps for each row.
 const EVERY: usize = 8;
 /// Inertia [kg·m²], dry friction [Nm] and viscous friction [Nm·s/rad].
 const INERTIA: f64 = 1e-4;
 const DRY: f64 = 0.02;
 const VISCOUS: f64 = 5e-5;
-/// What disturbs the joint [Nm].
+/// Disturbance torque of the joint [Nm].
 const DISTURBANCE: f64 = 2.5e-3;
-/// A drive's estimate of the speed comes later than the position [s].
+/// Delay of the drive's speed estimate against the position [s].
 const ESTIMATE_S: f64 = 2e-3;
 
-/// A period of the motion in steps of the simulation: 16 s.
+/// A period of the motion in simulation steps: 16 s.
 const PERIOD: usize = 32_000;
 
-/// Speed that the controller is asked for [rad/s].
+/// Speed set-point of the controller [rad/s].
 fn wanted(step: usize) -> f64 {
     let t = (step % PERIOD) as f64 / PERIOD as f64;
     let wave = |times: f64, phase: f64| (TAU * times * t + phase).sin();
     40.0 * (wave(2.0, 0.4) + 0.7 * wave(5.0, 1.9) + 0.6 * wave(11.0, 4.0) + 0.5 * wave(17.0, 2.5))
 }
 
-/// Four times the same motion under a speed controller. The current is read `late` steps after it flowed, and friction bends
-/// over `reach` [rad] before it slips.
-fn moving(late: usize, reach: f64) -> RunTable {
+/// Four repeats of one motion under a speed controller. The current is read with a delay of `delayed` steps, and the
+/// presliding displacement is `reach` [rad].
+fn moving(delayed: usize, reach: f64) -> RunTable {
     let names = "time_s motor_position_rad motor_velocity_rad_s motor_current_a repeat";
     let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());
     let gain = INERTIA * TAU * 18.0;
     let (mut speed, mut estimate) = (wanted(0), wanted(0));
     let (mut position, mut sum, mut bent) = (0.0, 0.0, 1.0f64);
-    let mut torques = vec![0.0; late + 1];
+    let mut torques = vec![0.0; delayed + 1];
     for i in 0..4 * PERIOD {
         let wanted = wanted(i);
         let error = wanted - estimate;
         sum += error * STEP_S;
         let torque = gain * (error + TAU * 3.0 * sum) + DISTURBANCE * scatter(i / 40, 2);
-        // Bristles that bend, or dry friction that holds up to its size.
+        // Presliding contacts, or dry friction that holds up to its limit.
         let friction = match reach > 0.0 {
             true => DRY * bent,
             false => ((torque - VISCOUS * speed) + INERTIA * speed / STEP_S).clamp(-DRY, DRY),
@@ -54,7 +54,7 @@ fn moving(late: usize, reach: f64) -> RunTable {
         estimate += (speed - estimate) * STEP_S / ESTIMATE_S;
         torques.push(torque);
         if i % EVERY == 0 {
-            let read = torques[torques.len() - 1 - late] + 1e-3 * scatter(i, 5);
+            let read = torques[torques.len() - 1 - delayed] + 1e-3 * scatter(i, 5);
             let velocity = estimate + 0.05 * scatter(i, 7);
             trace.push_row(&[STEP_S * i as f64, position, velocity, read / 0.08, (i / PERIOD) as f64]);
         }
@@ -63,8 +63,8 @@ fn moving(late: usize, reach: f64) -> RunTable {
     RunTable::new(Meta { gear_ratio: Some(1.0), baseline, ..meta(Kind::Friction) }, trace).unwrap()
 }
 
-fn diagnosed(late: usize, reach: f64) -> (Vec<String>, Diagnosis) {
-    let run = moving(late, reach);
+fn diagnosed(delayed: usize, reach: f64) -> (Vec<String>, Diagnosis) {
+    let run = moving(delayed, reach);
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     (found.suggestions.iter().map(|s| s.effect.clone()).collect(), found)
 }
@@ -73,25 +73,25 @@ fn diagnosed(late: usize, reach: f64) -> (Vec<String>, Diagnosis) {
 fn a_joint_that_sticks_hides_nothing() {
     let (named, found) = diagnosed(0, 0.0);
     assert!(named.is_empty(), "{}", found.summary);
-    // 2.0 mNm where the reversals count. What is left beside them is still more than the noise.
+    // 2.0 mNm if the reversals count. The residual with nuisance columns still exceeds the noise.
     assert!(found.fit.validation_rms < 5e-4, "{}", found.summary);
     for (name, truth) in [("j", INERTIA), ("tau_c", DRY), ("c_v", VISCOUS)] {
         let value = found.fit.parameters.iter().find(|p| p.name == name).unwrap().value;
         assert!((value / truth - 1.0).abs() < 0.02, "{name}: {value} instead of {truth}");
     }
-    // Nothing is cut out: where formulas err stands beside the effects, and is told.
+    // No row is removed: the form error has nuisance terms, which are reported.
     assert!(found.fit.notes.iter().any(|note| note.contains("nuisance terms explain")), "{:?}", found.fit.notes);
 }
 
 #[test]
-fn a_late_current_is_named_alone() {
+fn a_delayed_current_is_named_alone() {
     let (named, found) = diagnosed(16, 0.0);
     assert_eq!(named, ["signal_delay"], "{}", found.summary);
 }
 
-/// Nobody knows of which of its two moments a row's torque is.
+/// Which of two possible moments the torque of a row belongs to is unknown.
 #[test]
-fn a_current_between_position_and_velocity_is_not_late() {
+fn a_current_between_position_and_velocity_has_no_delay() {
     let (named, found) = diagnosed(2, 0.0);
     assert!(named.is_empty(), "{}", found.summary);
 }

@@ -1,4 +1,5 @@
-//! A stiffness run over an eighth of a turn: what lies over the link's angle there is not known over the rest of the turn.
+//! A stiffness run over an eighth of a turn: structure over the link angle there does not determine the rest of the
+//! turn.
 
 mod common;
 
@@ -10,12 +11,12 @@ const STEP_S: f64 = 0.01;
 const GEAR: f64 = 50.0;
 const SPEED: f64 = 0.5;
 
-/// Strokes to and fro under a torque that rises from leg to leg; `error` is the twist that the teeth add.
+/// Strokes back and forth under a torque that rises from leg to leg; `error` is the additional twist of the teeth.
 fn run(error: impl Fn(f64) -> f64) -> RunTable {
     noisy(7e-5, 1, error)
 }
 
-/// The same with so much scatter of the twist.
+/// The same with scatter of the twist.
 fn noisy(scatter_rad: f64, mix: u64, error: impl Fn(f64) -> f64) -> RunTable {
     let mut trace = stiffness();
     let mut link = 0.2;
@@ -45,7 +46,8 @@ fn a_bump_is_no_wave_over_the_turn() {
     }
 }
 
-/// Two to three times the noise of a sample (60 µrad): a wave of one period leaves less beside such a bump than structure is.
+/// Two to three times the noise of a sample (60 µrad): with a fitted wave of one period, the remaining bump is below
+/// the threshold of structure.
 #[test]
 fn a_weak_bump_is_no_wave_either() {
     for (mix, (middle, width, size)) in
@@ -56,16 +58,16 @@ fn a_weak_bump_is_no_wave_either() {
         assert_eq!(found.model, ["offset", "compliance"], "{middle}: {}", found.summary);
         assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
     }
-    // A wave of one period and a half that is as weak is one.
+    // An equally weak wave of one period and a half is one.
     for mix in 20..24 {
         let found = end(&noisy(2.1e-4, mix, |link| 1e-4 * (12.0 * link + 0.3).sin()));
         assert_eq!(found.model.last().map(String::as_str), Some("transmission_error"), "{}", found.summary);
     }
 }
 
-/// A quarter of a period that a slower and a faster wave follow as well, and one and a half that none does.
+/// A quarter of a period, which a slower and a faster wave fit as well, and one and a half periods, which none does.
 #[test]
-fn a_number_of_waves_that_the_run_does_not_tell_stays_open() {
+fn a_number_of_waves_that_the_run_does_not_determine_stays_open() {
     for (waves, size, is_open) in [(2.0, 3e-4, true), (12.0, 3e-4, false)] {
         let found = end(&run(|link: f64| size * (waves * link + 0.3).sin()));
         assert_eq!(found.model.last().map(String::as_str), Some("transmission_error"), "{}", found.summary);
@@ -74,8 +76,8 @@ fn a_number_of_waves_that_the_run_does_not_tell_stays_open() {
         assert_eq!(number.state != ParameterState::Ok, is_open, "{number:?}");
         assert_eq!(number.note.as_ref().is_some_and(|n| n.contains("over more of the turn")), is_open, "{number:?}");
         let of_truth = |name: &str, value: f64| {
-            let factor = found.fit.parameters.iter().find(|p| p.effect == "transmission_error" && p.name == name);
-            let [low, high] = factor.unwrap().ci95;
+            let coefficient = found.fit.parameters.iter().find(|p| p.effect == "transmission_error" && p.name == name);
+            let [low, high] = coefficient.unwrap().ci95;
             assert!(low <= value && value <= high, "{name}: {low} to {high} around {value}");
         };
         of_truth("a", size * 0.3f64.sin());

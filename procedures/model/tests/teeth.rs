@@ -1,4 +1,4 @@
-//! Slow steps over the teeth of a motor: their speed wavers, and they alone show them.
+//! Slow steps over the teeth of a motor: their speed oscillates, and only they show the teeth.
 
 mod common;
 
@@ -7,12 +7,12 @@ use jointbench_instrument::{Channel, Kind, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, Verdict, discover};
 
 const STEP_S: f64 = 0.004;
-/// Speeds of one repeat [rad/s]: teeth pass within a chunk of settled motion at all but the first two.
+/// Speeds of one repeat [rad/s]: teeth pass within a chunk at all but the first two.
 const SPEEDS: [f64; 8] = [3.5, 5.0, 26.0, 52.0, 78.0, 104.0, 131.0, 157.0];
 const TEETH: f64 = 12.0;
 const INERTIA_KG_M2: f64 = 5e-5;
 
-/// Steps both ways, five times. At the slowest two the speed wavers by a third.
+/// Steps in both directions, five times. The speed of the slowest two oscillates by a third.
 fn run() -> RunTable {
     let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];
     let mut trace = Trace::new(names.map(Channel::new).into());

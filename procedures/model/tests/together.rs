@@ -1,4 +1,4 @@
-//! What moves together in a run: a change with temperature may be one with time, or with a column that no effect knows.
+//! Confounding with temperature: a temperature effect may be one of time, or of an unknown column.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::bench::Staircase;
 use jointbench_instrument::{Channel, RunTable, Trace};
 use jointbench_model::{Choice, Diagnosis, ModelSpec, Next, Open, Options, Stretch, diagnose, discover, next_run};
 
-/// The staircase lasts about 72 s.
+/// The staircase takes about 72 s.
 fn waving_c(time_s: f64) -> f64 {
     25.0 + 6.0 * (0.5 * time_s).sin()
 }
@@ -15,7 +15,7 @@ fn warming_c(time_s: f64) -> f64 {
     22.0 + 0.15 * time_s
 }
 
-/// Coulomb friction that falls with the temperature, which a column tells, and pressures beside it.
+/// Coulomb friction that falls with the temperature, which a column contains, and additional pressure columns.
 fn run(temperature_c: fn(f64) -> f64, pressures: &[(&str, &dyn Fn(f64) -> f64)]) -> RunTable {
     let steps = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 3 }.run(|m| {
         let tau_c = 0.03 - 8e-4 * (temperature_c(m.time) - 25.0);
@@ -40,7 +40,7 @@ fn diagnosed(run: &RunTable) -> Diagnosis {
 }
 
 #[test]
-fn a_column_that_moves_with_the_temperature_is_told_beside_it() {
+fn a_column_that_moves_with_the_temperature_is_reported_with_it() {
     let oil = |time_s: f64| 1e5 - 2e3 * (waving_c(time_s) - 25.0) + 2e3 * (3.0 * time_s).sin();
     let air = |time_s: f64| 1e5 + 2e3 * (0.31 * time_s).sin();
     let run = run(waving_c, &[("oil_pressure_pa", &oil), ("air_pressure_pa", &air)]);
@@ -48,11 +48,11 @@ fn a_column_that_moves_with_the_temperature_is_told_beside_it() {
     assert!(why.contains("oil_pressure_pa moves with temperature_c in this data (r = -0.9"), "{why}");
     assert!(!why.contains("air_pressure_pa") && !why.contains("drift over time"), "{why}");
     let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4, |_| {}).unwrap();
-    let told = found.fit.notes.iter().filter(|note| note.starts_with("oil_pressure_pa moves with")).count();
-    assert_eq!(told, 1, "{:?}", found.fit.notes);
+    let reported = found.fit.notes.iter().filter(|note| note.starts_with("oil_pressure_pa moves with")).count();
+    assert_eq!(reported, 1, "{:?}", found.fit.notes);
 }
 
-/// Speeds up and down, the joint as warm as it was.
+/// Speeds up and down, at the temperature of the end of the run.
 fn strokes(duration_s: f64) -> Choice {
     let stretch = |i: u32| Stretch {
         start_s: f64::from(i) * duration_s,
@@ -66,7 +66,7 @@ fn strokes(duration_s: f64) -> Choice {
 }
 
 #[test]
-fn a_temperature_that_only_rose_with_time_is_no_drift_until_a_run_tells() {
+fn a_temperature_that_only_rose_with_time_is_no_drift_until_a_run_decides() {
     let run = run(warming_c, &[]);
     let found = diagnosed(&run);
     let why = &found.suggestions[0].why;

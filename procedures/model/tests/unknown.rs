@@ -1,4 +1,4 @@
-//! A column that no effect knows is an axis: what depends on it is told over it.
+//! An unknown column is an axis: structure that depends on it is reported over it.
 
 mod common;
 
@@ -17,12 +17,12 @@ fn pressure_pa(time_s: f64) -> f64 {
     1e5 + 2e4 * (step.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 61) as f64
 }
 
-/// A staircase with a column beside it, and `nm` more torque in the middle of what that tells.
+/// A staircase with an additional column, and `nm` more torque in the middle of its range.
 fn run(column: &str, nm: f64) -> RunTable {
     run_with(column, |_| nm)
 }
 
-/// The same with a torque that the sign of the motion may turn.
+/// The same with a torque that may depend on the direction.
 fn run_with(column: &str, nm: impl Fn(f64) -> f64) -> RunTable {
     let steps = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 3 }.run(|m| {
         let middle = (1.5e5..1.9e5).contains(&pressure_pa(m.time));
@@ -43,7 +43,7 @@ fn diagnosed(run: &RunTable) -> Diagnosis {
 }
 
 #[test]
-fn structure_over_an_unknown_column_is_told_over_it() {
+fn structure_over_an_unknown_column_is_reported_over_it() {
     let run = run(COLUMN, 3e-3);
     let found = diagnosed(&run);
     assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
@@ -60,8 +60,9 @@ fn structure_over_an_unknown_column_is_told_over_it() {
 }
 
 #[test]
-fn friction_that_grows_with_an_unknown_column_is_told_too() {
-    // Over the column alone both directions cancel, and as no two repeats have the same pressure it would count as noise.
+fn friction_that_grows_with_an_unknown_column_is_reported_too() {
+    // Over the column alone both directions cancel, and as no two repeats have the same pressure it would count as
+    // noise.
     let found = diagnosed(&run_with(COLUMN, |sign| 6e-3 * sign));
     assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
     assert!(found.summary.contains("oil pressure and direction"), "{}", found.summary);
@@ -74,7 +75,7 @@ fn a_column_that_moves_nothing_is_no_cause() {
 }
 
 #[test]
-fn what_the_drive_tells_of_its_own_effort_is_no_axis() {
+fn the_effort_of_the_drive_is_no_axis() {
     for column in ["bus_current_a", "other_torque_nm", "output_position_rad", "torque_skew_s", "state"] {
         let run = run(column, 0.0);
         let fitted = fit(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
@@ -83,7 +84,7 @@ fn what_the_drive_tells_of_its_own_effort_is_no_axis() {
     }
 }
 
-/// Torque in the middle of the pressures only, in the words of a user.
+/// Torque in the middle of the pressures only, as a user formula.
 const MIDDLE: &str = "middle: tau = a * direction * max(0, sign(2e4 - abs(column(oil_pressure_pa) - 1.7e5))); a [Nm]";
 
 #[test]
@@ -109,7 +110,7 @@ fn a_formula_over_the_column_takes_it_off() {
     let table = export(&fitted, Format::Table).unwrap();
     assert!(table.contains("oil_pressure_pa = 170000 Pa"), "{table}");
 
-    // Beside a run that is on, the column is read as it comes; without it the model says nothing.
+    // During a run the column is read row by row; without it there is no prediction.
     let (kt, gear) = (run.meta().torque_constant_nm_per_a.unwrap(), run.meta().gear_ratio.unwrap());
     let live = || Alongside::new(fitted.clone(), kt, gear).unwrap();
     let [measured, model] = live().tell(run.trace()).unwrap();

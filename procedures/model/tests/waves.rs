@@ -1,4 +1,4 @@
-//! An encoder's errors of very different size in one run: the smallest is no remainder of the largest.
+//! Encoder errors of very different size in one run: the smallest is no form error of the largest.
 
 mod common;
 
@@ -7,12 +7,12 @@ use jointbench_instrument::{Channel, Kind, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, Verdict, discover};
 
 const STEP_S: f64 = 0.001;
-/// Speeds of the four legs of one repeat [rad/s], and how long each takes.
+/// Speeds of the four legs of one repeat [rad/s], and their numbers of samples.
 const LEGS: [(f64, usize); 4] = [(5.0, 4000), (-5.0, 4000), (50.0, 1000), (-50.0, 1000)];
 /// One count of a reference of 14 bit.
 const COUNT_RAD: f64 = std::f64::consts::TAU / 16384.0;
 
-/// Eccentricity of 4.5 mrad over 64 periods of 0.28 mrad and a difference of directions of 0.14 mrad.
+/// Eccentricity of 4.5 mrad, 64 periods of 0.28 mrad, and a direction hysteresis of 0.14 mrad.
 fn run() -> RunTable {
     let names = ["time_s", "reference_position_rad", "test_position_rad", "velocity_rad_s", "segment", "repeat"]
         .map(Channel::new);
@@ -34,7 +34,7 @@ fn run() -> RunTable {
 }
 
 #[test]
-fn what_is_small_beside_eccentricity_is_found_all_the_same() {
+fn small_waves_are_found_next_to_a_large_eccentricity() {
     let run = run();
     let spec = ModelSpec::parse(Kind::Encoder, "offset,delay").unwrap();
     let found = discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap();
@@ -42,7 +42,7 @@ fn what_is_small_beside_eccentricity_is_found_all_the_same() {
     effects.sort();
     assert_eq!(effects, ["delay", "direction_hysteresis", "harmonic_1", "offset", "pole_period"]);
     assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
-    // No threshold without what it was sought within.
+    // Every detection limit states its search range.
     let sought = |effect: &str| found.silent.iter().find(|s| s.effect == effect).unwrap().sought.clone();
     assert_eq!((sought("harmonic_n").as_deref(), sought("harmonic_2")), (Some("3 to 15 waves a turn"), None));
 }

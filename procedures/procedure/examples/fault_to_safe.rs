@@ -1,5 +1,5 @@
-//! How soon a silent instrument is given up, and when the first commands towards safety are on the wires after that: a loaded,
-//! turning joint of the mock bench in real time, its traffic recorded. Prints rows of docs/benchmarks.md.
+//! Time until a silent instrument is given up, and until the first safety commands are sent after that: a loaded,
+//! turning joint of the mock bench in real time, with recorded traffic. Prints rows of docs/benchmarks.md.
 //!
 //! `cargo run --release -p jointbench-procedure --example fault_to_safe`
 
@@ -13,10 +13,10 @@ use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
 const DEADLINE_MS: u64 = 50;
-/// The shaft turns against the brake then.
+/// Time at which the shaft turns against the brake.
 const STRIKES_S: f64 = 8.5;
 
-/// Notices when securing begins.
+/// Records when securing begins.
 struct Watch(Option<Instant>);
 
 impl Recorder for Watch {
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// From the first lost reply to the end of patience, and from there to the first commands.
+/// From the first lost reply to the timeout, and from there to the first commands.
 fn strike(instrument: MockInstrument) -> Result<[f64; 3], Box<dyn Error>> {
     let settings = MockSettings {
         transport: Transport::Terminal,
@@ -64,7 +64,7 @@ fn strike(instrument: MockInstrument) -> Result<[f64; 3], Box<dyn Error>> {
     let plan = procedure("stiffness").ok_or("no such procedure")?.plan(&parameters, &BenchFacts::of(&bench))?;
 
     bench.record(Some(&folder))?;
-    // The records count from a moment before: what is told below is a little too long, never too short.
+    // The records start a moment earlier: the reported times are a little too long, never too short.
     let opened = Instant::now();
     let (_held, controls) = channel();
     let mut watch = Watch(None);
@@ -89,7 +89,7 @@ fn strike(instrument: MockInstrument) -> Result<[f64; 3], Box<dyn Error>> {
     };
     let drive_s = first_less(&sent("joint")?, given_up_s, "v 0 ", "requested_state 1")?;
     let brake_s = first_less(&sent("brake_a")?, given_up_s, "CURR ", ",OFF")?;
-    // A stream is lost at once, an instrument that is asked with the first question after that.
+    // A stream is lost at once, a polled instrument with the first request after that.
     let name = if instrument == MockInstrument::Brake { "brake_a" } else { "joint" };
     let asked = sent(name)?.into_iter().map(|(at_s, _)| at_s).find(|at_s| *at_s >= struck_s);
     let lost_s =
@@ -98,7 +98,7 @@ fn strike(instrument: MockInstrument) -> Result<[f64; 3], Box<dyn Error>> {
     Ok([given_up_s - lost_s, drive_s - given_up_s, brake_s - given_up_s])
 }
 
-/// When, after `from_s`, something less than before is commanded, or nothing at all.
+/// Time after `from_s` of the first smaller command, or of the command `off`.
 fn first_less(sent: &[(f64, String)], from_s: f64, command: &str, off: &str) -> Result<f64, Box<dyn Error>> {
     let asked = |text: &str| {
         let (_, value) = text.split_once(command)?;

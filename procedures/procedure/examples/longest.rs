@@ -46,8 +46,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The plan's set-points as a joint with τ_c 30 mNm, c_v 0.15 mNm·s/rad and a Stribeck rise of 9 mNm would follow them,
-/// its steps over and over until the time is up.
+/// The plan's set-points, followed by a joint with τ_c 30 mNm, c_v 0.15 mNm·s/rad and a Stribeck rise of 9 mNm. The
+/// steps are repeated until the time limit.
 fn measured(plan: Plan) -> Result<RunTable, Box<dyn std::error::Error>> {
     let mut trace = Trace::new(CHANNELS.map(Channel::new).to_vec());
     let mut rng = ChaCha8Rng::seed_from_u64(1);

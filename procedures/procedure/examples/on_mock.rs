@@ -1,4 +1,4 @@
-//! Runs a procedure on a mock bench and prints what it identifies beside what the bench is.
+//! Runs a procedure on a mock bench and prints its result next to the true values.
 //!
 //! ```text
 //! cargo run -p jointbench-procedure --example on_mock -- a 1 stribeck friction '{"repeats": 2}'

@@ -1,4 +1,4 @@
-//! The columns of a run table: which ones a bench fills, and one row of them.
+//! The columns of a run table: those that a bench can fill, and one row of them.
 
 use crate::encoder_columns::{self, Encoders};
 use crate::plan::Plan;
@@ -7,92 +7,93 @@ use jointbench_instrument::roles::{DriveHealth, JointReading, Pose};
 use jointbench_instrument::skew::{BRAKE_SKEW, TORQUE_SKEW, WARMTH_SKEW};
 use jointbench_instrument::{Bench, Channel, Kind, Trace};
 
-/// Time is kept in whole microseconds: finer than any serial instrument can tell, and exact to store.
+/// Resolution of time in the table: finer than any serial instrument, and exact to store.
 const TIME_STEP_S: f64 = 1e-6;
-/// Velocity set-points are sent, and kept, in these steps.
+/// Resolution of commanded and stored velocity set-points.
 pub(crate) const VELOCITY_STEP_RAD_S: f64 = 1e-4;
 
-/// Only of a plan that commands motor current; what is left of one may command none.
+/// Only for a plan that commands motor current; the rest of such a plan may have none.
 pub(crate) const MOTOR_CURRENT_SETPOINT: &str = "motor_current_setpoint_a";
 
-/// The torque as the sensor's other range tells it.
+/// The torque in the sensor's other range.
 pub(crate) const OTHER_RANGE: &str = "other_range_torque_nm";
 
-/// The torque in one tick.
+/// The torque of one tick.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TorqueMoment {
     pub nm: f64,
-    /// The largest either way, where more than one sample stands behind it.
+    /// Largest absolute value, if it is a mean of several samples.
     pub peak_nm: f64,
-    /// In the sensor's other range, where the plan asks for it.
+    /// In the sensor's other range, if the plan requires it.
     pub other_nm: Option<f64>,
-    /// By how much later than the joint it was felt.
+    /// Delay of the reading against that of the joint.
     pub skew_s: f64,
 }
 
-/// The brake's current in one tick.
+/// The brake's current of one tick.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BrakeMoment {
     pub measured_a: f64,
-    /// By how much later than the joint it was measured: earlier, where it is held.
+    /// Delay of the reading against that of the joint; negative if it is held.
     pub skew_s: f64,
     pub commanded_a: f64,
 }
 
-/// What one tick knows, measured and commanded. Slow quantities hold their last reading.
+/// Measured and commanded values of one tick. Slow quantities hold their last reading.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Moment {
     pub time_s: f64,
     pub joint: JointReading,
     pub torque: Option<TorqueMoment>,
     pub temperature_c: Option<f64>,
-    /// By how much later than the row the thermometer was read: earlier, where it is held.
+    /// Delay of the thermometer reading against the row; negative if it is held.
     pub warmth_skew_s: f64,
     pub brake: Option<BrakeMoment>,
     pub velocity_setpoint_rad_s: f64,
-    /// In a run of encoders.
+    /// For a run of encoders.
     pub encoders: Option<Encoders>,
-    /// Where the stage holds the sensor.
+    /// Pose of the sensor on the stage.
     pub pose: Option<Pose>,
-    /// Commanded as such, or fed forward.
+    /// Commanded motor current, alone or as feedforward.
     pub motor_current_setpoint_a: f64,
 }
 
-/// The columns that this bench can fill. An instrument that is not there has no column.
+/// The columns that this bench can fill. A missing instrument has no column.
 ///
-/// Thirteen where all are there: time_s, motor_position_rad, motor_velocity_rad_s, motor_current_a, link_position_rad,
-/// link_torque_nm, torque_skew_s (it was felt so much later than its row), temperature_c, brake_current_a,
+/// At most thirteen: time_s, motor_position_rad, motor_velocity_rad_s, motor_current_a, link_position_rad,
+/// link_torque_nm, torque_skew_s (delay of its reading against the row), temperature_c, brake_current_a,
 /// brake_torque_command_nm, velocity_setpoint_rad_s, segment, repeat.
 ///
-/// A thermometer adds thermometer_1_c, thermometer_2_c, … in the order in which the bench description names its channels, and
-/// thermometer_skew_s. Of a joint that tells no temperature the first of them is temperature_c instead.
+/// A thermometer adds thermometer_1_c, thermometer_2_c, … in the channel order of the bench description, and
+/// thermometer_skew_s. For a joint without a temperature reading, the first of them is temperature_c instead.
 ///
-/// Where the torque sensor sends by itself, a row has the mean of the samples since the row before, and the middle of their
-/// moments.
+/// If the torque sensor streams, a row has the mean of the samples since the previous row, and the mean of their
+/// times.
 ///
-/// A run that checks the torque sensor has other_range_torque_nm behind torque_skew_s: the same torque in its other range.
+/// A run that checks the torque sensor has other_range_torque_nm after torque_skew_s: the same torque in its other
+/// range.
 ///
-/// A run of a brake names what it feels after the brake: brake_torque_nm is the sensor's reading against the commanded
-/// way (positive while the brake brakes), position_rad and velocity_rad_s are those of its shaft, the link's,
-/// brake_current_skew_s tells when its current was measured, and brake_current_command_a stands in for the torque that
-/// nobody has asked for.
+/// A brake run names its columns after the brake: brake_torque_nm is the sensor reading against the commanded
+/// direction (positive while the brake brakes). position_rad and velocity_rad_s are those of the brake shaft, which
+/// is the link. brake_current_skew_s is the delay of the current reading. brake_current_command_a replaces the torque
+/// command, which does not exist there.
 #[derive(Debug, Clone)]
 pub(crate) struct Columns {
     channels: Vec<Channel>,
     brake_nm_per_a: f64,
-    /// Set for a run of a brake: the way in which the shaft was last told to turn.
+    /// Set for a brake run: the last commanded direction of the shaft.
     braked_way: Option<f64>,
-    /// Turns of the motor for each of the shaft whose velocity is told, too.
-    told_gear_ratio: Option<f64>,
-    /// The plan commands motor current: motor_current_setpoint_a tells it.
+    /// Motor turns for each turn of the shaft whose velocity is also recorded.
+    velocity_gear_ratio: Option<f64>,
+    /// The plan commands motor current, which is recorded in motor_current_setpoint_a.
     commands_current: bool,
-    /// Channels of the thermometer that stand for the joint's temperature: 0 or 1.
+    /// Thermometer channels that replace the joint's temperature: 0 or 1.
     standing_in: usize,
     row: Vec<f64>,
 }
 
 impl Columns {
-    /// `placed`: the plan moves the stage. `streams`: the torque sensor sends by itself. `felt`: channels of the thermometer.
+    /// `placed`: the plan moves the stage. `streams`: the torque sensor streams. `felt`: channels of the thermometer.
     pub fn of(
         plan: &Plan,
         placed: bool,
@@ -117,7 +118,7 @@ impl Columns {
         }
         if let Some(sensor) = &bench.torque_sensor {
             let name = if is_brake { "brake_torque_nm" } else { "link_torque_nm" };
-            // A mean of counts is no count.
+            // A mean of counts has no count resolution.
             channels.push(channel(name, sensor.resolution().map(|step| step.0).filter(|_| !streams)));
             channels.push(channel(TORQUE_SKEW, Some(TIME_STEP_S)));
             if plan.both_ranges && sensor.has_two_ranges() {
@@ -146,13 +147,13 @@ impl Columns {
         if commands_current {
             channels.push(channel(MOTOR_CURRENT_SETPOINT, None));
         }
-        let told = match plan.kind {
+        let velocity_name = match plan.kind {
             Kind::Brake => Some("velocity_rad_s"),
             Kind::Stiffness => Some("link_velocity_rad_s"),
             Kind::Encoder => Some("velocity_rad_s"),
             Kind::Friction => None,
         };
-        channels.extend(told.map(|name| channel(name, None)));
+        channels.extend(velocity_name.map(|name| channel(name, None)));
         if plan.kind == Kind::Encoder {
             channels.extend(encoder_columns::channels(bench, placed));
         }
@@ -163,8 +164,9 @@ impl Columns {
             channels,
             brake_nm_per_a,
             braked_way: is_brake.then_some(1.0),
-            // An encoder bench's encoders sit on the motor's shaft.
-            told_gear_ratio: told.map(|_| if plan.kind == Kind::Encoder { 1.0 } else { bench.constants.gear_ratio }),
+            // The encoders of an encoder bench are on the motor's shaft.
+            velocity_gear_ratio: velocity_name
+                .map(|_| if plan.kind == Kind::Encoder { 1.0 } else { bench.constants.gear_ratio }),
             commands_current,
             standing_in,
         }
@@ -174,7 +176,7 @@ impl Columns {
         Trace::new(self.channels.clone())
     }
 
-    /// The row of a moment, in the order of the channels. `felt_c`: the thermometer's.
+    /// The row of a tick, in the order of the channels. `felt_c`: the thermometer's values.
     pub fn row(&mut self, moment: &Moment, felt_c: &[f64], segment: u32, repeat: u32) -> &[f64] {
         if let Some(way) = &mut self.braked_way
             && moment.velocity_setpoint_rad_s != 0.0
@@ -201,7 +203,7 @@ impl Columns {
         }
         row.push(moment.velocity_setpoint_rad_s);
         row.extend(self.commands_current.then_some(moment.motor_current_setpoint_a));
-        row.extend(self.told_gear_ratio.map(|gear_ratio| moment.joint.motor_velocity.0 / gear_ratio));
+        row.extend(self.velocity_gear_ratio.map(|gear_ratio| moment.joint.motor_velocity.0 / gear_ratio));
         if let Some(encoders) = &moment.encoders {
             encoder_columns::row(encoders, moment.pose, row);
         }
@@ -210,12 +212,12 @@ impl Columns {
     }
 }
 
-/// Whole microseconds.
+/// Rounds to whole microseconds.
 pub(crate) fn to_time_step(t_s: f64) -> f64 {
     (t_s / TIME_STEP_S).round() * TIME_STEP_S
 }
 
-/// The data sheet's proportionality of torque and current: what a commanded current stands for, not what it gives.
+/// Nominal torque per current from the data sheet: it converts a commanded current, but is not the actual torque.
 fn nominal_brake_nm_per_a(constants: &JointConstants) -> f64 {
     constants.brake_rated_torque_nm / constants.brake_rated_current_a
 }

@@ -1,4 +1,4 @@
-//! One run kept in memory: plan, carry out, identify. For campaigns and trials; the server keeps its runs in a store.
+//! Performs one run in memory: plan, run, identify. For campaigns and tests; the server stores its runs.
 
 use crate::catalogue::Procedure;
 use crate::identification::Identification;
@@ -11,11 +11,11 @@ use jointbench_instrument::{Bench, RunTable, TableFault, Trace};
 use serde_json::{Map, Value};
 use std::sync::mpsc::channel;
 
-/// What a run has brought.
+/// Result of a run.
 #[derive(Debug)]
 pub struct Conducted {
     pub table: RunTable,
-    /// `None` where the procedure is asked for samples only.
+    /// `None` if the procedure only records samples.
     pub identification: Option<Identification>,
     pub duration_s: f64,
 }
@@ -32,7 +32,7 @@ pub enum ConductFault {
     Table(#[from] TableFault),
 }
 
-/// Plans a procedure, carries it out to its end and identifies what it shows.
+/// Plans a procedure, runs it to its end and identifies the result.
 pub fn conduct(
     bench: &mut Bench,
     procedure: &dyn Procedure,
@@ -42,7 +42,7 @@ pub fn conduct(
     conduct_knowing(bench, &facts, procedure, parameters)
 }
 
-/// The same, where more is known of the bench than it tells of itself.
+/// The same with additional facts about the bench.
 pub fn conduct_knowing(
     bench: &mut Bench,
     facts: &BenchFacts,
@@ -55,7 +55,7 @@ pub fn conduct_knowing(
         return Err(ConductFault::NotAllowed { procedure: procedure.id(), why: broken.detail.clone() });
     }
     let mut kept = Kept::default();
-    // Held until the end: a dropped sender stops a run.
+    // Kept until the end, because a dropped sender stops a run.
     let (_held, controls) = channel();
     let end = run(bench, &plan, 0, &controls, &mut kept);
     if end.state != RunState::Completed {

@@ -1,4 +1,4 @@
-//! Runs that go on where an earlier one ended too soon: which steps that had done, and both as one measurement.
+//! Continuation of an incomplete run: the finished steps, and both runs as one measurement.
 
 use crate::columns::MOTOR_CURRENT_SETPOINT;
 use crate::findings::keep_rows;
@@ -8,26 +8,26 @@ use jointbench_instrument::{Meta, RunTable, TableFault, Trace};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// Where [`Continues`] stands among the facts of a run.
+/// Name of the fact that contains [`Continues`].
 const FACT: &str = "continues";
-/// What lies at least between two parts of a measurement.
+/// Least time between two parts of a measurement.
 const PAUSE_S: f64 = 1.0;
 
-/// What a run goes on with.
+/// The continued run, and where this run continues it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Continues {
-    /// The run before it.
+    /// The previous run.
     pub run: RunId,
-    /// The first step of the whole plan that is done in this run.
+    /// The first step of the whole plan in this run.
     pub from_step: usize,
-    /// Steps in front that only restore the history.
+    /// Steps at the start that only restore the history.
     pub restored: usize,
     /// Number of the first segment of these.
     pub restored_from: u32,
 }
 
 impl Continues {
-    /// `None`: the run stands for itself.
+    /// `None`: the run is no continuation.
     pub fn of(meta: &Meta) -> Option<Self> {
         serde_json::from_value(meta.other.get(FACT)?.clone()).ok()
     }
@@ -42,19 +42,19 @@ impl Continues {
     }
 }
 
-/// What a run has done of its procedure's whole plan.
+/// Finished part of the whole plan of a procedure.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Done {
-    /// Steps up to the last one that was finished.
+    /// Steps up to the last finished one.
     pub steps: usize,
-    /// Segments that were measured to their end; what only restored a history is not among them.
+    /// Completely measured segments, without those that only restored a history.
     pub segments: BTreeSet<u32>,
-    /// The first number that no segment has yet.
+    /// The first unused segment number.
     pub next_segment: u32,
 }
 
 impl Done {
-    /// Takes one step of the journal's in: its number in the run's own plan, its segment, and whether it was finished.
+    /// Adds one step of the journal: its number in the run's own plan, its segment, and whether it was finished.
     pub fn take(&mut self, continues: Option<Continues>, step: usize, segment: u32, finished: bool) {
         self.next_segment = self.next_segment.max(segment + 1);
         let (from, restored) = continues.map_or((0, 0), |continues| (continues.from_step, continues.restored));
@@ -65,13 +65,13 @@ impl Done {
     }
 }
 
-/// Two runs as one measurement: of the first what was finished, of the second all but what restored the history.
-/// `later_s`: from the start of the first to the start of the second.
+/// Two runs as one measurement: the finished part of the first, and the second without the restored history.
+/// `later_s`: time from the start of the first to the start of the second.
 pub fn joined(first: &RunTable, done: &Done, second: &RunTable, later_s: f64) -> Result<RunTable, TableFault> {
     let continues = Continues::of(second.meta());
     let finished = part(first, |segment| done.segments.contains(&segment))?;
     let rest = match part(second, |segment| continues.is_none_or(|continues| !continues.restores(segment))) {
-        // It is still restoring.
+        // The second run is still restoring the history.
         Err(TableFault::Empty) => return Ok(finished),
         rest => rest?,
     };
@@ -80,10 +80,10 @@ pub fn joined(first: &RunTable, done: &Done, second: &RunTable, later_s: f64) ->
     let ended_s = whole.column("time_s").and_then(|time_s| time_s.last()).copied().unwrap_or(0.0);
     let begins_s = rest.column("time_s").and_then(|time_s| time_s.first()).copied().unwrap_or(0.0);
     let shift_s = later_s.max(ended_s + PAUSE_S - begins_s);
-    // In the order of the first, which decides what there is.
+    // In the column order of the first run, which defines the columns.
     let column = |name: &str| match rest.column(name) {
         Some(values) => Some(values.to_vec()),
-        // Nothing that is left commands one.
+        // The remaining steps command no motor current.
         None => (name == MOTOR_CURRENT_SETPOINT).then(|| vec![0.0; rest.len()]),
     };
     let found: Option<Vec<Vec<f64>>> = whole.channels().iter().map(|channel| column(&channel.name)).collect();
@@ -98,7 +98,7 @@ pub fn joined(first: &RunTable, done: &Done, second: &RunTable, later_s: f64) ->
     RunTable::new(meta, whole)
 }
 
-/// What a [`Lesson`] learns from in an earlier measurement: its segments, and those of steps that were made again, whose
+/// Rows of an earlier measurement that a [`Lesson`] depends on: its segments, and those of repeated steps, whose
 /// numbers are above all others.
 pub fn learnt_from(table: &RunTable, lesson: &Lesson) -> Result<RunTable, TableFault> {
     part(table, |segment| lesson.from.contains(&segment) || segment >= lesson.to.end)
@@ -147,14 +147,14 @@ mod tests {
         let whole = joined(&first, &done, &second, 100.0).unwrap();
         assert_eq!(whole.column("motor_current_a").unwrap(), [0.1, 0.2, 0.5, 0.6]);
         assert_eq!(whole.column("time_s").unwrap(), [0.0, 1.0, 101.0, 102.0]);
-        // As long as the second only restores, the measurement is what the first has finished.
+        // While the second run only restores, the measurement is the finished part of the first.
         let restoring = table(Some(continues), &[[0.0, 1.0, 0.4, 9.0]]);
         let whole = joined(&first, &done, &restoring, 100.0).unwrap();
         assert_eq!(whole.column("motor_current_a").unwrap(), [0.1, 0.2]);
         done.take(Some(continues), 0, 9, true);
         done.take(Some(continues), 1, 2, true);
         assert_eq!((done.steps, done.segments.contains(&9)), (3, false));
-        // A mock bench is ahead of the clock on the wall.
+        // A mock bench is ahead of the wall clock.
         let whole = joined(&first, &done, &second, 0.1).unwrap();
         assert_eq!(whole.column("time_s").unwrap(), [0.0, 1.0, 2.0, 3.0, 4.0]);
     }

@@ -1,10 +1,10 @@
-//! The columns of a run of two encoders, with the pose of the stage where there is one.
+//! The columns of a run of two encoders, with the pose of a stage if there is one.
 
 use jointbench_instrument::roles::{CounterReading, Pose};
 use jointbench_instrument::units::Radians;
 use jointbench_instrument::{Bench, Channel};
 
-/// Both encoders, read one after the other, with what the one under test says of itself.
+/// Both encoders, read one after the other, with the status of the encoder under test.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Encoders {
     pub reference: CounterReading,
@@ -16,8 +16,8 @@ pub(crate) struct Encoders {
 pub(crate) const POSE: [&str; 6] =
     ["stage_radial_m", "stage_vertical_m", "stage_axial_m", "stage_tilt_rad", "stage_nod_rad", "stage_rotation_rad"];
 
-/// reference_position_rad, test_position_rad, encoder_skew_s (the test encoder was read so much later), encoder_consistent,
-/// and the pose where the plan moves the stage.
+/// reference_position_rad, test_position_rad, encoder_skew_s (delay of the test encoder's reading),
+/// encoder_consistent, and the pose if the plan moves the stage.
 pub(crate) fn channels(bench: &Bench, placed: bool) -> Vec<Channel> {
     let step = |radians: Radians| Some(radians.0);
     let resolution = |encoder: &Option<Box<dyn jointbench_instrument::roles::PositionCounter>>| {
@@ -36,7 +36,7 @@ pub(crate) fn channels(bench: &Bench, placed: bool) -> Vec<Channel> {
     channels
 }
 
-/// In the order of the channels. An encoder that says nothing of itself counts as consistent.
+/// In the order of the channels. An encoder without a status counts as consistent.
 pub(crate) fn row(encoders: &Encoders, pose: Option<Pose>, row: &mut Vec<f64>) {
     row.extend([encoders.reference.position.0, encoders.test.position.0]);
     row.push(((encoders.test.at_s - encoders.reference.at_s) * 1e6).round() * 1e-6);

@@ -1,4 +1,4 @@
-//! The journal of a run: what happened, in order, beside the rows that it tells of.
+//! The journal of a run: its events in order, with references to rows.
 
 use crate::state::RunState;
 use jointbench_instrument::roles::Identity;
@@ -6,41 +6,41 @@ use jointbench_instrument::{Breach, Fault};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What securing has reached.
+/// Result of securing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Safe {
-    /// Commanded and read back: drive disarmed, shaft at rest, no brake current.
+    /// Commanded and verified: drive disarmed, shaft at rest, no brake current.
     SafeVerified,
-    /// Every command was accepted, but not all of it could be read back.
+    /// Every command was accepted, but not all of it could be verified.
     SafeCommanded,
-    /// An instrument took no command or contradicts it. A person has to look before the next run.
+    /// An instrument did not accept a command, or contradicts it. A person has to check before the next run.
     UnsafeUnknown,
 }
 
-/// What a run can be asked for, by a person all but the last two.
+/// Controls of a run; all but the last two come from a person.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {
-    /// Ramp to rest and hold.
+    /// Ramps to rest and holds.
     Pause,
-    /// Repeat the interrupted step and go on.
+    /// Repeats the interrupted step and continues.
     Resume,
-    /// Orderly end: the brake is ramped down while the shaft turns, then the shaft comes to rest.
+    /// Orderly end: the brake is ramped down during rotation, then the shaft stops.
     Stop,
-    /// End at once: the shaft ramps down as fast as the plan allows, and the brake's current is taken away behind it, which leaves
-    /// poles in the brake.
+    /// Immediate end: the shaft ramps down as fast as the plan permits, and the brake current is removed after that,
+    /// which leaves poles in the brake.
     Abort,
-    /// Drive torque off before anything else.
+    /// Drive torque off first.
     #[serde(rename = "estop")]
     EStop,
-    /// The program that holds the run is told to end: as `Abort`.
+    /// The process that owns the run is terminated: as `Abort`.
     Quit,
-    /// The part of the program that stores the run has died: as `Abort`, and the run counts as interrupted.
+    /// The process that stores the run has died: as `Abort`, and the run counts as interrupted.
     StorageLost,
 }
 
-/// What a run is asked for, and by whom, where that is known.
+/// A control, with the person who requested it if known.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Demand {
     pub control: Control,
@@ -56,7 +56,7 @@ impl From<Control> for Demand {
 /// One entry of the journal. The store adds the sequence number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// Since the start of the run, on the bench's clock; the same zero as `time_s` of the rows.
+    /// Time since the start of the run, on the bench's clock; the same zero as `time_s` of the rows.
     pub at_s: f64,
     #[serde(flatten)]
     pub kind: EventKind,
@@ -65,7 +65,7 @@ pub struct Event {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum EventKind {
-    /// `reason`: why the run ended, where it was not completed.
+    /// `reason`: why the run was not completed.
     State {
         state: RunState,
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -83,7 +83,7 @@ pub enum EventKind {
         repeat: u32,
         label: String,
     },
-    /// `late_ticks`: set-points that came more than one period after their time.
+    /// `late_ticks`: set-points that were sent more than one period after their time.
     StepFinished {
         step: usize,
         segment: u32,
@@ -105,7 +105,7 @@ pub enum EventKind {
     Note {
         text: String,
     },
-    /// The run found a precondition of its result broken: an identified result carries this as a warning.
+    /// A violated precondition of the result, which an identified result shows as a warning.
     Warning {
         text: String,
     },

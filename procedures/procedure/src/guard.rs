@@ -1,4 +1,4 @@
-//! The last word: no command and no sample passes the engine without it.
+//! The guard: it checks every command and every sample of the engine.
 
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::limits::Limited;
@@ -6,16 +6,16 @@ use jointbench_instrument::{Breach, Limits};
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
-/// A measured current or speed may exceed its set limit by this before it trips, so that noise at the set limit does
-/// not: 0.62 A over 0.60 A (bench-physics, section 5).
+/// Ratio of trip to set limit for a measured current or speed, so that noise at the set limit does not trip: 0.62 A
+/// over 0.60 A (bench-physics, section 5).
 const TRIP_OVER_SET: f64 = 0.62 / 0.60;
-/// The brake may take more than its continuous power for a moment: 1200 W over 350 W (HB-1750M, bench-physics, section 1).
+/// Ratio of peak to continuous power of the brake: 1200 W over 350 W (HB-1750M, bench-physics, section 1).
 const PEAK_OVER_CONTINUOUS: f64 = 1200.0 / 350.0;
-/// The continuous power is judged on this average (bench-physics, section 5).
+/// Averaging time of the continuous power (bench-physics, section 5).
 const POWER_WINDOW_S: f64 = 10.0;
-/// Below this link speed a falling brake current freezes poles into the rotor: 1 rpm (bench-physics, section 3).
+/// Below this link speed a falling brake current leaves poles in the rotor: 1 rpm (bench-physics, section 3).
 pub const STANDSTILL_LINK_RAD_S: f64 = TAU / 60.0;
-/// The largest share by which the brake current may fall at standstill.
+/// Largest share by which the brake current may fall at standstill.
 const STANDSTILL_DECREASE: f64 = 0.2;
 
 /// Why the guard ends a run.
@@ -35,7 +35,7 @@ pub enum Refusal {
     BeyondRange { position_rad: f64, range_rad: f64 },
 }
 
-/// What is checked of one tick. Quantities that nobody measures are `None`.
+/// Checked quantities of one tick. Unmeasured quantities are `None`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// On the bench's clock.
@@ -48,7 +48,7 @@ pub struct Sample {
     pub brake_current_a: Option<f64>,
 }
 
-/// Watches one run.
+/// Checks one run.
 #[derive(Debug, Clone)]
 pub struct Guard {
     limits: Limits,
@@ -56,7 +56,7 @@ pub struct Guard {
     power: Power,
     link_speed_rad_s: f64,
     brake_a: f64,
-    /// The strongest brake current since the link last turned: what its poles remember.
+    /// Largest brake current since the link last turned, which determines the magnetisation of its poles.
     magnetised_a: f64,
 }
 
@@ -66,17 +66,17 @@ impl Guard {
         Self { limits, constants, power, link_speed_rad_s: 0.0, brake_a: 0.0, magnetised_a: 0.0 }
     }
 
-    /// Asked before a velocity set-point is sent.
+    /// Called before a velocity set-point is sent.
     pub fn check_velocity(&self, motor_velocity_rad_s: f64) -> Result<(), Refusal> {
         Ok(self.limits.check(Limited::MotorVelocity, motor_velocity_rad_s)?)
     }
 
-    /// Asked before a motor current is sent, alone or fed forward.
+    /// Called before a motor current is sent, alone or as feedforward.
     pub fn check_motor_current(&self, current_a: f64) -> Result<(), Refusal> {
         Ok(self.limits.check(Limited::MotorCurrent, current_a)?)
     }
 
-    /// Asked before a brake current is sent.
+    /// Called before a brake current is sent.
     pub fn check_brake(&mut self, to_a: f64) -> Result<(), Refusal> {
         self.limits.check(Limited::BrakeCurrent, to_a)?;
         if !self.is_turning() && to_a < (1.0 - STANDSTILL_DECREASE) * self.magnetised_a {
@@ -87,7 +87,7 @@ impl Guard {
         Ok(())
     }
 
-    /// Asked with every sample.
+    /// Called with every sample.
     pub fn check_sample(&mut self, sample: &Sample) -> Result<(), Refusal> {
         self.check_trip(Limited::MotorVelocity, sample.motor_velocity_rad_s, TRIP_OVER_SET)?;
         self.check_trip(Limited::MotorCurrent, sample.motor_current_a, 1.0)?;
@@ -102,7 +102,7 @@ impl Guard {
         }
         if let Some(range_rad) = self.constants.link_range_rad {
             let position_rad = sample.link_position_rad;
-            // A position that is not a number breaks the range, too.
+            // A position of NaN violates the range, too.
             let inside = position_rad.abs() <= range_rad;
             if !inside {
                 return Err(Refusal::BeyondRange { position_rad, range_rad });
@@ -131,10 +131,10 @@ impl Guard {
     }
 }
 
-/// The mean power of the last ten seconds; before they are full, as if nothing had been before.
+/// The mean power of the last ten seconds; the time before the start counts as zero.
 #[derive(Debug, Clone)]
 struct Power {
-    /// When, and how much energy since the sample before.
+    /// Time, and energy since the previous sample.
     samples: VecDeque<(f64, f64)>,
     energy_j: f64,
     last_s: Option<f64>,

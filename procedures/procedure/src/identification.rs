@@ -1,19 +1,19 @@
-//! What a procedure makes of its run: a verdict in words, quantities with their intervals, figures. A pure function of the
-//! stored run, so that it can be repeated later with newer code.
+//! The result of a procedure from its run: a verdict in words, quantities with their intervals, figures. It is a pure
+//! function of the stored run, so that newer code can repeat it.
 
 use crate::recorder::RunId;
 use crate::state::RunState;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// Whether the run has shown what it was made for.
+/// Whether the run has reached its purpose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     Identified,
-    /// The run says too little; [`Identification::advice`] tells what to measure.
+    /// The run is not sufficient; [`Identification::advice`] states what to measure.
     Inconclusive,
-    /// The run cannot be used; [`Identification::summary`] tells why.
+    /// The run cannot be used; [`Identification::summary`] states why.
     #[default]
     Failed,
 }
@@ -21,13 +21,14 @@ pub enum Verdict {
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Identification {
     pub verdict: Verdict,
-    /// One plain sentence, or a line for each part of a campaign. A `RUN` in its commands stands for the number of the run, which [`Self::of_run`] writes.
+    /// One plain sentence, or a line for each part of a campaign. `RUN` in its commands is a placeholder for the
+    /// number of the run, which [`Self::of_run`] inserts.
     pub summary: String,
-    /// What to measure or mend next, with commands alike.
+    /// What to measure or correct next, with commands in the same form.
     pub advice: Option<String>,
     pub quantities: Vec<Quantity>,
     pub figures: Vec<Figure>,
-    /// Held against a data sheet: whether it passes.
+    /// Whether it passes the limits of a data sheet.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub passes: Option<bool>,
     /// Parts of a campaign, in their order. The summary ends with a line for each.
@@ -46,13 +47,13 @@ pub struct Part {
 }
 
 impl Identification {
-    /// The run cannot be used: why, and what to do about it.
+    /// The run cannot be used, with the reason and advice.
     pub fn failed(why: impl Into<String>, advice: impl Into<String>) -> Self {
         Self { verdict: Verdict::Failed, summary: why.into(), advice: Some(advice.into()), ..Self::default() }
     }
 
-    /// The same, made of this run, which is in this state: a run that did not come to its end has not shown what it was made
-    /// for, whatever its part says. `goes_on`: what is left of it may be made later. `step`: where it ended, such as `step 3 of 41`.
+    /// The result for a run and its state: an incomplete run has not reached its purpose, independent of its partial
+    /// results. `goes_on`: the rest of the run may be measured later. `step`: where it ended, such as `step 3 of 41`.
     pub fn of_run(mut self, run: RunId, state: RunState, goes_on: bool, step: Option<&str>) -> Self {
         if state != RunState::Completed {
             let next = match (state.is_final(), goes_on) {
@@ -66,7 +67,7 @@ impl Identification {
             let gap = if self.summary.contains('\n') { '\n' } else { ' ' };
             let said = &self.summary;
             self.summary = match (self.verdict, state.is_final()) {
-                // Nothing has failed while samples still come.
+                // A run that still records has not failed.
                 (Verdict::Failed, false) => format!("No result yet. {said}"),
                 (Verdict::Failed, true) => {
                     format!(
@@ -76,13 +77,13 @@ impl Identification {
                 (_, false) => format!("The run is still in progress ({state}{at}). Result so far:{gap}{said}"),
                 (_, true) => format!("The run did not complete ({state}{at}). From the recorded part:{gap}{said}"),
             };
-            // What a part lacks is no fault of how the run was planned.
+            // Advice about the planning does not apply to an incomplete run.
             self.advice = Some(next.to_owned());
             if self.verdict == Verdict::Identified {
                 self.verdict = Verdict::Inconclusive;
             }
         }
-        // Commands are there to be typed as they stand.
+        // Commands are left unchanged, because users copy them.
         let numbered = |text: String| signed(&text.replace("RUN", &run.to_string()));
         self.parts.iter_mut().for_each(|part| part.summary = numbered(std::mem::take(&mut part.summary)));
         Self { summary: numbered(self.summary), advice: self.advice.map(numbered), ..self }
@@ -94,7 +95,7 @@ impl Identification {
     }
 }
 
-/// With a minus as long as a plus before each number that stands alone; a command has none of those.
+/// Replaces the hyphen before each separate number by a minus sign; commands contain no such numbers.
 fn signed(text: &str) -> String {
     let mut said = String::with_capacity(text.len());
     let mut before = ' ';
@@ -107,19 +108,19 @@ fn signed(text: &str) -> String {
     said
 }
 
-/// A run for which this one has found the parameters.
+/// A run whose parameters were determined by this one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FollowUp {
     pub procedure: &'static str,
     pub parameters: Map<String, Value>,
-    /// What it is good for, in a few words.
+    /// Its purpose, in a few words.
     pub why: &'static str,
 }
 
 /// One figure of a result, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Quantity {
-    /// Stable and unique in its identification: `tau_c_positive`. Scripts and limits hold on to it.
+    /// Stable and unique in its identification: `tau_c_positive`. Scripts and limits depend on it.
     pub name: String,
     /// As in the source document: `τ_c⁺`.
     pub symbol: String,
@@ -128,7 +129,7 @@ pub struct Quantity {
     /// SI symbol; empty for a share or a count.
     pub unit: String,
     pub value: f64,
-    /// 95 % interval, where one can be had from the run.
+    /// 95 % interval, if the run determines one.
     pub ci95: Option<[f64; 2]>,
 }
 
@@ -157,7 +158,7 @@ pub struct Axis {
     pub label: String,
     /// SI symbol; empty for a share or a count.
     pub unit: String,
-    /// Where the axis counts things that have names, instead of a quantity: 0 is the first.
+    /// Names of the items if the axis counts items instead of a quantity: 0 is the first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub names: Vec<String>,
 }
@@ -186,14 +187,14 @@ pub struct Series {
     pub mark: Mark,
     pub x: Vec<f64>,
     pub y: Vec<f64>,
-    /// Lower and upper end of the 95 % band at each point; empty where there is none.
+    /// Lower and upper end of the 95 % band at each point; empty without a band.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub band: Vec<[f64; 2]>,
 }
 
 impl Series {
     /// # Panics
-    /// Where x and y differ in length.
+    /// If x and y differ in length.
     pub fn new(label: &str, mark: Mark, x: Vec<f64>, y: Vec<f64>) -> Self {
         assert_eq!(x.len(), y.len(), "series {label}");
         Self { label: label.to_owned(), mark, x, y, band: Vec::new() }

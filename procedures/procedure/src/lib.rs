@@ -1,8 +1,8 @@
-//! Procedures decide, the engine acts, the guard has the last word.
+//! Procedures plan, the engine acts, and the guard checks every command.
 //!
-//! A [`Procedure`](catalogue::Procedure) turns checked parameters into a [`Plan`]: steps with set-points over time, pure
-//! data that can be previewed. [`engine::run`] carries a plan out on a bench, one thread, one ordinary loop, and hands
-//! rows and events to a [`Recorder`]. Every exit of a run, a panic too, passes the safe state.
+//! A [`Procedure`](catalogue::Procedure) converts checked parameters to a [`Plan`]: steps with set-points over time,
+//! pure data that can be previewed. [`engine::run`] runs a plan on a bench, on one thread with one loop, and hands
+//! rows and events to a [`Recorder`]. Every exit of a run, including a panic, leads to the safe state.
 
 pub mod catalogue;
 mod columns;

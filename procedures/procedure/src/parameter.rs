@@ -1,10 +1,10 @@
-//! What a user may choose about a procedure: the form of the dashboard, the check of a request.
+//! Parameters of a procedure: the form of the dashboard, and the check of a request.
 
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// One choice of a procedure, in SI units.
+/// One parameter of a procedure, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Parameter {
     pub name: &'static str,
@@ -37,7 +37,7 @@ impl Parameter {
         Self { name, title, unit, default, min, max, kind: ParameterKind::Number }
     }
 
-    /// A whole number within `[min, max]`.
+    /// An integer within `[min, max]`.
     pub const fn count(name: &'static str, title: &'static str, default: u32, [min, max]: [u32; 2]) -> Self {
         let kind = ParameterKind::Integer;
         Self { name, title, unit: "", default: default as f64, min: min as f64, max: max as f64, kind }
@@ -59,7 +59,7 @@ impl Parameter {
     }
 }
 
-/// Why a choice is refused.
+/// Why a parameter is rejected.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ParameterFault {
     #[error("parameter {name} = {given}: expected {kind} from {range}")]
@@ -68,12 +68,12 @@ pub enum ParameterFault {
     Unknown { name: String, known: Vec<&'static str> },
 }
 
-/// Checked values: every parameter of the schema is there and within its range.
+/// Checked values: every parameter of the schema is present and within its range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Values(BTreeMap<&'static str, f64>);
 
 impl Values {
-    /// Fills in the defaults and checks what was given.
+    /// Adds the defaults and checks the given values.
     pub fn parse(schema: &[Parameter], given: &Map<String, Value>) -> Result<Self, ParameterFault> {
         if let Some(name) = given.keys().find(|name| schema.iter().all(|p| p.name != *name)) {
             let known = schema.iter().map(|p| p.name).collect();
@@ -84,18 +84,18 @@ impl Values {
     }
 
     /// # Panics
-    /// Where the schema has no such parameter: a programming error of the procedure.
+    /// If the schema has no such parameter: a programming error of the procedure.
     pub fn number(&self, name: &str) -> f64 {
         self.0[name]
     }
 
     /// # Panics
-    /// Where the schema has no such parameter: a programming error of the procedure.
+    /// If the schema has no such parameter: a programming error of the procedure.
     pub fn count(&self, name: &str) -> u32 {
         self.0[name] as u32
     }
 
-    /// For the run's provenance: what was used, defaults included.
+    /// For the run's provenance: the values used, including defaults.
     pub fn to_json(&self) -> Map<String, Value> {
         self.0.iter().map(|(name, value)| ((*name).to_owned(), Value::from(*value))).collect()
     }

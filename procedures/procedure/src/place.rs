@@ -1,36 +1,36 @@
-//! Where a stage holds the sensor of the encoder under test during a step, and the hunt for where it no longer counts.
+//! Pose of the stage with the encoder under test during a step, and the search for the edge of its range.
 
 use jointbench_instrument::roles::Pose;
 use serde::{Deserialize, Serialize};
 
-/// Where the stage is during a step.
+/// Pose of the stage during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Place {
-    /// Where it was left.
+    /// The last pose.
     #[default]
     AsLeft,
-    /// Taken at rest, before the step.
+    /// Moved to at rest, before the step.
     At(Pose),
-    /// Looked for while the shaft turns.
+    /// Searched for while the shaft turns.
     Edge(Edge),
 }
 
-/// A way out of a pose at which the periods are consistent, to be followed until they are not: in equal strides first, then
-/// by halving the last one. Every try is approached from the consistent side.
+/// A direction from a pose with consistent periods, followed until they are inconsistent: in equal strides first,
+/// then by bisection of the last one. Every try is approached from the consistent side.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Edge {
     pub from: Pose,
     pub to: Pose,
-    /// Strides from one end to the other.
+    /// Strides from end to end.
     pub strides: u32,
-    /// Each halves what is left between consistent and not.
+    /// Bisections of the interval between consistent and inconsistent.
     pub halvings: u32,
-    /// Each try is watched for so long, which should be more than a turn.
+    /// Duration of each try, which should exceed a turn.
     pub dwell_s: f64,
 }
 
 impl Edge {
-    /// Tries of the longest hunt: all strides, then all halvings.
+    /// Tries of the longest search: all strides, then all bisections.
     pub fn tries(&self) -> u32 {
         1 + self.strides + self.halvings
     }
@@ -39,7 +39,7 @@ impl Edge {
         self.strides << self.halvings
     }
 
-    /// A part of the way.
+    /// A pose at a part of the direction.
     pub(crate) fn pose(&self, part: u32) -> Pose {
         let share = f64::from(part) / f64::from(self.parts());
         let between = |from: [f64; 3], to: [f64; 3]| std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
@@ -50,23 +50,24 @@ impl Edge {
     }
 }
 
-/// What is known on the way, in parts of it.
+/// Progress of the search, in parts of the direction.
 #[derive(Debug, Clone)]
-pub(crate) struct Hunt {
+pub(crate) struct EdgeSearch {
     edge: Edge,
     at: u32,
-    /// The furthest that was consistent.
+    /// The farthest consistent part.
     pub good: u32,
-    /// The nearest that was not.
+    /// The nearest inconsistent part.
     bad: Option<u32>,
 }
 
-impl Hunt {
+impl EdgeSearch {
     pub fn new(edge: Edge) -> Self {
         Self { edge, at: 0, good: 0, bad: None }
     }
 
-    /// Where to try next, after what was seen where the stage is. `None`: the edge is found, or the way is at its end.
+    /// The next part to try, after the result at the present one. `None`: the edge is found, or the end of the
+    /// direction is reached.
     pub fn next(&mut self, consistent: bool) -> Option<u32> {
         if consistent {
             self.good = self.at;
@@ -100,20 +101,20 @@ mod tests {
         dwell_s: 0.1,
     };
 
-    /// Tries and the last consistent place [m].
-    fn hunt(consistent: impl Fn(f64) -> bool) -> (u32, f64, Option<u32>) {
-        let mut hunt = Hunt::new(WAY);
+    /// Number of tries and the last consistent position [m].
+    fn search(consistent: impl Fn(f64) -> bool) -> (u32, f64, Option<u32>) {
+        let mut search = EdgeSearch::new(WAY);
         let (mut tries, mut at) = (1, 0);
-        while let Some(next) = hunt.next(consistent(WAY.pose(at).shift_m[0])) {
+        while let Some(next) = search.next(consistent(WAY.pose(at).shift_m[0])) {
             (tries, at) = (tries + 1, next);
         }
-        (tries, WAY.pose(hunt.good).shift_m[0], hunt.bad)
+        (tries, WAY.pose(search.good).shift_m[0], search.bad)
     }
 
     #[test]
     fn an_edge_is_found_within_one_part_and_in_the_tries_that_were_planned() {
         for edge_mm in [-0.005, -0.08, -0.25, -0.2501, -0.399] {
-            let (tries, good_m, bad) = hunt(|at_m| at_m >= 1e-3 * edge_mm);
+            let (tries, good_m, bad) = search(|at_m| at_m >= 1e-3 * edge_mm);
             assert!(tries <= WAY.tries(), "{tries} tries");
             assert!((0.0..0.0101).contains(&(1e3 * good_m - edge_mm)), "{good_m} m for {edge_mm} mm");
             assert!(bad.is_some());
@@ -122,7 +123,7 @@ mod tests {
 
     #[test]
     fn no_edge_is_none_and_a_bad_start_ends_at_once() {
-        assert_eq!(hunt(|_| true), (6, -0.4e-3, None));
-        assert_eq!(hunt(|_| false), (1, 0.0, Some(0)));
+        assert_eq!(search(|_| true), (6, -0.4e-3, None));
+        assert_eq!(search(|_| false), (1, 0.0, Some(0)));
     }
 }

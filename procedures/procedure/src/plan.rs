@@ -1,4 +1,4 @@
-//! What a procedure decides: a list of steps with their set-points over time. Pure data; the engine acts on it.
+//! A plan of a procedure: a list of steps with their set-points over time. Pure data; the engine performs it.
 
 use crate::catalogue::{BrakeModel, procedure};
 use crate::continuing::Done;
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What a procedure may know about a bench before anything moves.
+/// Facts about a bench that a procedure may use before anything moves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchFacts {
     pub name: String,
@@ -21,18 +21,18 @@ pub struct BenchFacts {
     pub limits: Limits,
     pub constants: JointConstants,
     pub has_torque_sensor: bool,
-    /// The torque sensor tells every moment in two ranges.
+    /// The torque sensor reports every sample in two ranges.
     pub has_two_ranges: bool,
     pub has_brake: bool,
-    /// Reference and test: counts of a turn. `None` where one of them is missing.
+    /// Reference and test encoder: counts in a turn. `None` if one of them is missing.
     pub encoder_counts: Option<[f64; 2]>,
     pub has_stage: bool,
-    /// Motor current for each volt, where the joint's servo reads it as the voltage at a shunt.
+    /// Motor current for each volt, if the joint's servo measures it as the voltage at a shunt.
     pub amperes_per_volt: Option<f64>,
-    /// What an earlier run has found of the brake, where a procedure asks for it ([`crate::Procedure::brake_model`]).
+    /// The brake model of an earlier run, if a procedure needs it ([`crate::Procedure::brake_model`]).
     #[serde(skip)]
     pub brake_model: Option<BrakeModel>,
-    /// Whether the joint's drive takes a motor current beside a velocity.
+    /// Whether the joint's drive accepts a motor current in addition to a velocity.
     pub feeds_forward: bool,
 }
 
@@ -61,7 +61,7 @@ fn counts(encoder: &Option<Box<dyn PositionCounter>>) -> Option<f64> {
     encoder.as_ref().map(|encoder| TAU / encoder.resolution().0)
 }
 
-/// Which part of a plan a step belongs to.
+/// The part of a plan that a step belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
     /// Skipped as soon as the joint is steady ([`Plan::steady`]).
@@ -69,50 +69,51 @@ pub enum Phase {
     Measure,
 }
 
-/// The history that a step begins with. A pause takes it away; resuming restores it.
+/// The history that a step requires. A pause destroys it, and resuming restores it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Before {
-    /// The brake as the step before has left it: a pause keeps its current, and more is approached from below.
+    /// The brake in the state after the previous step: a pause keeps its current, and a larger one is approached from
+    /// below.
     #[default]
     AsLeft,
-    /// The brake demagnetised while turning, its current 0.
+    /// The brake demagnetised during rotation, its current 0.
     Demagnetised,
-    /// The encoder under test switched off and on again, counting from its index: each attempt is another power-up.
+    /// The encoder under test after a power cycle, counting from its index: each attempt is another power-up.
     PoweredAnew,
 }
 
-/// What the drive holds beside or instead of the velocity of a step.
+/// Command of the drive in a step, in addition to or instead of the velocity.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum Drive {
-    /// The velocity, by its own loop.
+    /// The velocity by the drive's own loop.
     #[default]
     Velocity,
-    /// The velocity, with motor current fed forward.
+    /// The velocity, with a feedforward of motor current.
     Fed(Feed),
-    /// The velocity up to `from_s`, then motor current alone until its profile ends or `until` comes true.
+    /// The velocity up to `from_s`, then motor current alone until its profile ends or `until` is reached.
     Current { from_s: f64, current_a: Profile, until: Until },
 }
 
-/// Where a current that is fed forward comes from.
+/// Source of a feedforward current.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Feed {
     /// Over the time of the step [A].
     Planned(Profile),
-    /// A share of the friction that is felt, motor torque less link torque, low-passed; with the sign of the velocity
-    /// set-point, and linear in it below `ramp_rad_s` (motor).
+    /// A share of the measured friction: motor torque less link torque, low-pass filtered. It has the sign of the
+    /// velocity set-point and is linear in it below `ramp_rad_s` (motor).
     Observed { share: f64, corner_hz: f64, ramp_rad_s: f64 },
 }
 
-/// Ends a stretch of current alone: a joint that has broken away is caught by the velocity loop.
+/// End of a section with current alone: the velocity loop takes over after a breakaway.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Until {
-    /// Samples in a row in which the motor has moved on in the current's direction.
+    /// Consecutive samples in which the motor moved in the direction of the current.
     pub increases: u32,
-    /// Motor-side speed that is never waited beyond.
+    /// Motor-side speed that ends the section in any case.
     pub speed_rad_s: f64,
 }
 
-/// One step: a checkpoint at its end, repeated from its beginning after a pause.
+/// One step: a checkpoint at its end, and a repetition from its beginning after a pause.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     pub label: String,
@@ -141,12 +142,12 @@ impl Step {
         self.velocity.duration_s().max(self.brake.duration_s()).max(drive_s)
     }
 
-    /// Whether its duration is the longest possible: it ends when the joint breaks away, or when the edge is found.
+    /// Whether its duration is an upper bound: it ends with the breakaway of the joint, or when the edge is found.
     pub fn may_end_early(&self) -> bool {
         matches!(self.drive, Drive::Current { .. }) || matches!(self.place, Place::Edge(_))
     }
 
-    /// The largest motor current that is commanded as such [A].
+    /// The largest commanded motor current [A].
     pub fn top_motor_current_a(&self) -> f64 {
         match &self.drive {
             Drive::Fed(Feed::Planned(current_a)) | Drive::Current { current_a, .. } => current_a.largest(),
@@ -155,26 +156,26 @@ impl Step {
     }
 }
 
-/// When a joint counts as warm: judged over whole cycles of warm-up steps.
+/// Criterion of a warm joint, evaluated over whole cycles of warm-up steps.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Steady {
-    /// Steps that make one cycle; every cycle has the same speeds.
+    /// Steps of one cycle; every cycle has the same speeds.
     pub cycle_steps: usize,
     /// Largest drift of the temperature.
     pub temperature_c_per_min: f64,
-    /// Largest drift of the mean |motor current| as a share of itself.
+    /// Largest relative drift of the mean |motor current|.
     pub current_share_per_min: f64,
 }
 
-/// Steps that wait for what the run itself finds ([`crate::Procedure::learn`]). Until then they stand as on a joint as
-/// expected: how long they take and how far they move is known before anything does.
+/// Steps that depend on a result of the run itself ([`crate::Procedure::learn`]). Until then they are planned for an
+/// expected joint, so that duration and travel are known before any motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Lesson {
-    /// Segments that are learnt from.
+    /// Segments that the planning uses.
     pub from: Range<u32>,
-    /// Segments of the steps that wait.
+    /// Segments of the dependent steps.
     pub to: Range<u32>,
-    /// What an earlier run has measured of the same plan, and what it had finished.
+    /// The earlier measurement of the same plan, and its finished part.
     pub earlier: Option<Arc<(RunTable, Done)>>,
 }
 
@@ -187,29 +188,30 @@ pub struct Plan {
     /// Id of the procedure.
     #[serde(deserialize_with = "known_procedure")]
     pub procedure: ProcedureId,
-    /// What was chosen, defaults included.
+    /// The parameters, including defaults.
     pub parameters: Map<String, Value>,
     pub kind: Kind,
-    /// Facts for the run table, the baseline model among them.
+    /// Facts for the run table, including the baseline model.
     pub meta: Meta,
-    /// Control rate: one row of the run table per tick.
+    /// Control rate: one row of the run table for each tick.
     pub rate_hz: f64,
     /// Motor-side acceleration of the ramps that the engine adds (pause, resume, securing) [rad/s²].
     pub acceleration_rad_s2: f64,
     pub steps: Vec<Step>,
     /// Ends the warm-up early. `None`: every step is run.
     pub steady: Option<Steady>,
-    /// Keeps what the torque sensor's other range says, too.
+    /// Also records the torque sensor's other range.
     pub both_ranges: bool,
-    /// How often a torque sensor that can send by itself is to do so. `None`, and one that cannot: read once for each row.
+    /// Streaming period of the torque sensor. `None`, or a sensor without streaming: one reading for each row.
     pub torque_period_s: Option<f64>,
     /// `None`: every step is known before the first one.
     pub lesson: Option<Lesson>,
-    /// Where it begins from where the whole plan began (motor) [rad]: a run that goes on begins where the one before it ended.
+    /// Start position relative to that of the whole plan (motor) [rad]: a continuation begins where the previous run
+    /// ended.
     pub begins_rad: f64,
 }
 
-/// A plan that comes from another process names a procedure of this one.
+/// A plan from another process must name a procedure of this one.
 fn known_procedure<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ProcedureId, D::Error> {
     let id = String::deserialize(deserializer)?;
     let known = procedure(&id).map(|known| known.id());
@@ -240,7 +242,7 @@ impl Plan {
         self.steps.iter().map(|step| step.brake.largest()).fold(0.0, f64::max)
     }
 
-    /// How far the motor goes from where it started: lowest and highest position [rad].
+    /// Travel of the motor relative to its start: lowest and highest position [rad].
     pub fn travel_rad(&self) -> (f64, f64) {
         let (mut at, mut lowest, mut highest) = (0.0, 0.0_f64, 0.0_f64);
         for step in &self.steps {
@@ -270,7 +272,7 @@ pub enum PlanFault {
 pub(crate) mod testing {
     use super::*;
 
-    /// A plan of plateaus at 20 rad/s, alternating, each of the given length.
+    /// A plan of legs at 20 rad/s, alternating, each of the given length.
     pub fn plan_of(durations_s: &[f64]) -> Plan {
         let step = |(index, duration_s): (usize, &f64)| Step {
             label: format!("step {index}"),

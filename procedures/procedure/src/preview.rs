@@ -1,10 +1,10 @@
-//! The dry run: what a plan would do to a bench, before anything moves.
+//! The dry run: effect of a plan on a bench, before anything moves.
 
 use crate::plan::{BenchFacts, Drive, Plan};
 use jointbench_instrument::limits::Limited;
 use serde::Serialize;
 
-/// What a person sees before a run is started.
+/// Preview of a run before its start.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Preview {
     /// Longest duration, without pauses.
@@ -34,12 +34,12 @@ pub struct Extreme {
     pub quantity: &'static str,
     pub unit: &'static str,
     pub value: f64,
-    /// `None`: the bench sets none.
+    /// `None`: the bench has no such limit.
     pub limit: Option<f64>,
     pub ok: bool,
 }
 
-/// The set-points as lines between points, exact.
+/// The set-points as piecewise linear functions, exact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Setpoints {
     pub time_s: Vec<f64>,
@@ -62,7 +62,7 @@ pub struct Check {
     pub name: &'static str,
     pub ok: bool,
     pub detail: String,
-    /// What to do where it is not met.
+    /// Advice if the condition is not met.
     pub cure: Option<String>,
 }
 
@@ -81,8 +81,8 @@ impl Plan {
         }
     }
 
-    /// Speed, brake current and travel as commanded; link torque, brake power and motor current as estimated: the brake's
-    /// bound, and the current that load and inertia take before friction.
+    /// Speed, brake current and travel as commanded. Link torque, brake power and motor current as estimates: the
+    /// upper bound of the brake torque, and the current for load and inertia without friction.
     pub fn extremes(&self, facts: &BenchFacts) -> Vec<Extreme> {
         let constants = &facts.constants;
         let limited = |quantity: Limited, value: f64| Extreme {
@@ -124,7 +124,7 @@ impl Plan {
             limit: constants.link_range_rad,
             ok: constants.link_range_rad.is_none_or(|range_rad| travel_rad <= range_rad),
         });
-        // A bench without a brake is asked for nothing of it.
+        // For a bench without a brake, the brake quantities are omitted.
         extremes.retain(|extreme| extreme.value != 0.0 || extreme.limit != Some(0.0));
         extremes
     }
@@ -201,8 +201,8 @@ impl Plan {
 
 /// An upper bound of the braking torque at a current [Nm].
 ///
-/// The torque curve of a hysteresis brake lies up to 4.4 % above the straight line to its rating (at 0.9 of the rated
-/// current), its descending branch up to 8 % higher (bench-physics, section 2); 1.15 covers both.
+/// The torque curve of a hysteresis brake is up to 4.4 % above the straight line to its rating, at 0.9 of the rated
+/// current. Its descending branch is up to 8 % higher (bench-physics, section 2). The factor 1.15 covers both.
 fn brake_torque_bound_nm(current_a: f64, facts: &BenchFacts) -> f64 {
     let constants = &facts.constants;
     if current_a == 0.0 {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Piecewise linear in time: the first knot is at 0 s, times never fall, the last value holds for ever.
+/// Piecewise linear in time: the first knot is at 0 s, times never decrease, and the last value holds for ever.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
     knots: Vec<(f64, f64)>,
@@ -13,37 +13,37 @@ impl Profile {
         Self { knots: vec![(0.0, value)] }
     }
 
-    /// Starts at a value; [`Profile::to`] and [`Profile::hold`] go on from there.
+    /// Starts at a value; [`Profile::to`] and [`Profile::hold`] continue from there.
     pub fn from(value: f64) -> Self {
         Self::constant(value)
     }
 
-    /// Goes on to a value in `seconds`.
+    /// Continues to a value in `seconds`.
     pub fn to(mut self, value: f64, seconds: f64) -> Self {
         self.knots.push((self.duration_s() + seconds.max(0.0), value));
         self
     }
 
-    /// Stays where it is for `seconds`.
+    /// Holds the last value for `seconds`.
     pub fn hold(self, seconds: f64) -> Self {
         let value = self.end();
         self.to(value, seconds)
     }
 
-    /// Goes on as another profile does.
+    /// Appends another profile.
     pub fn then(mut self, next: &Profile) -> Self {
         let from_s = self.duration_s();
         self.knots.extend(next.knots.iter().map(|(t_s, value)| (from_s + t_s, *value)));
         self
     }
 
-    /// From rest to a speed, there for `dwell_s`, and back to rest.
+    /// From rest to a speed, a dwell of `dwell_s`, and back to rest.
     pub fn plateau(speed_rad_s: f64, acceleration_rad_s2: f64, dwell_s: f64) -> Self {
         let ramp_s = speed_rad_s.abs() / acceleration_rad_s2;
         Self::from(0.0).to(speed_rad_s, ramp_s).hold(dwell_s).to(0.0, ramp_s)
     }
 
-    /// The same to the other side.
+    /// The same in the opposite direction.
     pub fn turned(self) -> Self {
         Self { knots: self.knots.into_iter().map(|(t_s, value)| (t_s, -value)).collect() }
     }
@@ -74,7 +74,7 @@ impl Profile {
         self.knots.iter().map(|(_, value)| value.abs()).fold(0.0, f64::max)
     }
 
-    /// The steepest line, per second.
+    /// The steepest slope, per second.
     pub fn steepest(&self) -> f64 {
         let slope = |pair: &[(f64, f64)]| ((pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)).abs();
         self.knots.windows(2).filter(|pair| pair[1].0 > pair[0].0).map(slope).fold(0.0, f64::max)
@@ -83,10 +83,10 @@ impl Profile {
     /// The integral from the start to each knot.
     pub fn integral(&self) -> Vec<f64> {
         let mut sum = 0.0;
-        let pieces = self.knots.windows(2).map(|pair| (pair[1].0 - pair[0].0) * 0.5 * (pair[0].1 + pair[1].1));
+        let areas = self.knots.windows(2).map(|pair| (pair[1].0 - pair[0].0) * 0.5 * (pair[0].1 + pair[1].1));
         std::iter::once(0.0)
-            .chain(pieces.map(|piece| {
-                sum += piece;
+            .chain(areas.map(|area| {
+                sum += area;
                 sum
             }))
             .collect()
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_plateau_rises_holds_and_falls() {
+    fn a_leg_rises_holds_and_falls() {
         let profile = Profile::plateau(-10.0, 20.0, 2.0);
         assert_eq!(profile.duration_s(), 3.0);
         for (t_s, value) in

@@ -1,4 +1,4 @@
-//! What the engine hands over: rows and events to keep, the newest rows to look at.
+//! Interface to the recorder of a run: rows and events to store, and the latest rows for display.
 
 use crate::event::Event;
 use crate::state::RunState;
@@ -11,13 +11,13 @@ pub type RunId = i64;
 pub struct Commit<'a> {
     pub run: RunId,
     pub state: RunState,
-    /// In the order of their happening.
+    /// In chronological order.
     pub events: &'a [Event],
     /// May be empty. Every commit with rows has the same channels in the same order; before arming there are none.
     pub rows: Trace,
 }
 
-/// Best effort: nothing of this has to arrive.
+/// Best effort: live data may be lost.
 pub struct Live<'a> {
     pub run: RunId,
     pub state: RunState,
@@ -26,37 +26,37 @@ pub struct Live<'a> {
     pub progress: &'a Progress,
 }
 
-/// Takes what a run brings, and sees to it that it becomes durable. Called on the thread that owns the bench, between two
-/// commands to a drive that turns: nothing here may wait for a disk or for another process.
+/// Accepts the data of a run and makes it durable. It is called on the thread that owns the bench, between two
+/// commands to a turning drive. It must not wait for a disk or another process.
 pub trait Recorder {
-    /// Why the bench must not move until a person has acknowledged it. Asked once, before anything is commanded.
+    /// Why the bench must not move until a person has acknowledged it. Called once, before any command.
     fn blocked(&mut self) -> Result<Option<String>, RecorderFault>;
 
-    /// Takes state, events and rows over: they become durable together, in one transaction, or not at all, behind all that
-    /// was taken before. A fault ends the run; it says what is not kept.
+    /// Accepts state, events and rows. They become durable together, in one transaction, or not at all, after all
+    /// earlier commits. A fault ends the run and states what is not stored.
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault>;
 
     fn live(&mut self, live: Live<'_>);
 }
 
-/// What is handed over cannot be kept.
+/// Data that cannot be stored.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the run cannot be recorded: {0}")]
 pub struct RecorderFault(pub String);
 
-/// Where a run is.
+/// Progress of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Progress {
-    /// Steps done.
+    /// Finished steps.
     pub step: usize,
     pub steps: usize,
-    /// What is done now.
+    /// The present step.
     pub label: String,
-    /// On the bench's clock, pauses included.
+    /// On the bench's clock, including pauses.
     pub elapsed_s: f64,
-    /// From the plan, corrected by how long the steps so far really took.
+    /// From the plan, corrected by the actual durations of the finished steps.
     pub remaining_s: f64,
-    /// The run warms the joint up until it is steady, and takes no longer than this.
+    /// The run warms the joint up until it is steady, in at most this time.
     #[serde(default)]
     pub at_most: bool,
 }

@@ -1,6 +1,6 @@
-//! The documents' campaigns made again on a bench, each table beside the document's.
+//! Reproduces the campaigns of the documents on a bench, with each table next to the document's.
 //!
-//! What a bench really is, where somebody knows it, is handed in by the caller and only compared with at the end.
+//! The caller provides the true values of the bench if they are known; they are only compared at the end.
 
 use crate::catalogue::{brake_model, procedure};
 use crate::conduct::{ConductFault, Conducted, conduct_knowing};
@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::f64::consts::TAU;
 
-/// Which of the documents' subjects is on the bench.
+/// The subject of the documents that is on the bench.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Subject {
     JointA,
@@ -20,7 +20,7 @@ pub enum Subject {
     GearAndBrakeB,
     /// The encoder bench.
     Encoder,
-    /// The same with the filter of the encoder under test switched on, when its delay without it is known.
+    /// The same with the filter of the encoder under test enabled, when its delay without the filter is known.
     FilteredEncoder {
         delay_without_s: f64,
     },
@@ -28,10 +28,10 @@ pub enum Subject {
     Puma,
 }
 
-/// What is asked of a figure.
+/// Requirement on a figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Demand {
-    /// Its interval reaches no further to either side, in the unit of the quantity.
+    /// Largest half width of its interval, in the unit of the quantity.
     Within(f64),
     /// The same, as a share of the value.
     WithinShare(f64),
@@ -39,33 +39,33 @@ pub enum Demand {
     AtMost(f64),
 }
 
-/// One figure of a table: the document's, what the run found, what the bench was given.
+/// One figure of a table: the value of the document, of the run, and of the bench.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     pub table: &'static str,
     pub found: Quantity,
-    /// `None`: it has none.
+    /// `None`: the document has no value.
     pub document: Option<f64>,
-    /// `None`: nobody knows, or the bench was not given such a figure.
+    /// `None`: unknown, or the bench has no such figure.
     pub given: Option<f64>,
     pub demand: Option<Demand>,
 }
 
 impl Comparison {
-    /// Whether the interval holds what the bench was given. `None` where there is nothing to compare.
+    /// Whether the interval contains the true value of the bench. `None` without one.
     pub fn is_inside(&self) -> Option<bool> {
         let ([low, high], given) = (self.found.ci95?, self.given?);
         Some((low..=high).contains(&given))
     }
 
-    /// The same where `of` intervals are to hold together in 95 of 100 campaigns ([`wider_for`]).
+    /// The same if `of` intervals have to hold simultaneously in 95 of 100 campaigns ([`wider_for`]).
     pub fn is_inside_with(&self, of: u64) -> Option<bool> {
         let ([low, high], given, value) = (self.found.ci95?, self.given?, self.found.value);
         let wider = wider_for(of);
         Some((value + wider * (low - value)..=value + wider * (high - value)).contains(&given))
     }
 
-    /// Whether the figure is as it is asked for. `None` where nothing is asked.
+    /// Whether the figure meets its requirement. `None` without one.
     pub fn is_as_asked(&self) -> Option<bool> {
         let value = self.found.value;
         let reaches = |widest: f64| self.found.ci95.map(|[low, high]| 0.5 * (high - low) <= widest);
@@ -78,8 +78,8 @@ impl Comparison {
     }
 }
 
-/// How many times as wide `of` 95 % intervals have to be to hold all together in 95 of 100 campaigns (Šidák 1967), each as
-/// that of a normal deviate.
+/// Factor by which `of` 95 % intervals have to be wider to hold simultaneously in 95 of 100 campaigns (Šidák 1967),
+/// for normal deviates.
 pub fn wider_for(of: u64) -> f64 {
     let normal = Normal::standard();
     let reach = |confidence: f64| normal.inverse_cdf(0.5 + 0.5 * confidence);
@@ -98,10 +98,10 @@ pub struct Chapter {
     pub duration_s: f64,
 }
 
-/// A figure to compare: table, quantity, what the document says, what is asked of it.
+/// A figure to compare: table, quantity, value of the document, requirement.
 type Figure = (&'static str, &'static str, Option<f64>, Option<Demand>);
 
-/// One procedure with its choices, and the figures that the document has of it.
+/// One procedure with its parameters, and the figures of the document.
 type Part = (&'static str, Value, Vec<Figure>);
 
 fn friction([tau_c, c_v, tau_h, omega_s, delta_s]: [f64; 5]) -> Vec<Figure> {
@@ -140,7 +140,7 @@ fn stiffness([inverse_k, k, beta_0]: [f64; 3]) -> Vec<Figure> {
     ]
 }
 
-/// The classes of both ranges of the torque sensor together: 0.1 % of 20 Nm and 0.05 % of 200 Nm.
+/// The accuracy classes of both ranges of the torque sensor together: 0.1 % of 20 Nm and 0.05 % of 200 Nm.
 const RANGES_AGREE_NM: f64 = 0.12;
 
 /// The campaign of a joint, in its order.
@@ -165,9 +165,9 @@ fn joint(bearing_nm_rad: f64, figures: [Vec<Figure>; 3]) -> Vec<Part> {
     ]
 }
 
-/// What the gear and brake B are there for: high loads, and a torque that does depend on speed.
+/// The purpose of the gear and brake B: high loads, and a torque that depends on speed.
 fn gear_and_brake_b() -> Vec<Part> {
-    // Ten times the torque for the same current: the joint's own limits end it at a third.
+    // Ten times the torque at the same current: the joint's own limits end it at a third.
     let share = 0.35;
     let (slow, stiff) =
         (json!({"top_current": share}), json!({"top_load": share, "bearing_stiffness_nm_rad": 155.0e3}));
@@ -177,7 +177,7 @@ fn gear_and_brake_b() -> Vec<Part> {
     ]
 }
 
-/// The smallest steps of the stage that an edge is looked for with, a shift and a rotation.
+/// The smallest steps of the stage in an edge search, a shift and a rotation.
 const SHIFT_STEP: Demand = Demand::Within(4e-6);
 const ROTATION_STEP: Demand = Demand::Within(2e-4);
 
@@ -218,7 +218,7 @@ fn encoder() -> Vec<Part> {
     ]
 }
 
-/// Figure 3.2 of the chapter on the Puma, joint 2: volts, and volts over degrees each second at the link.
+/// Figure 3.2 of the chapter on the Puma, joint 2: volts, and volts over degrees in a second at the link.
 fn puma() -> Vec<Part> {
     let line = |name, figure, share: Option<f64>| ("3.2", name, Some(figure), share.map(Demand::WithinShare));
     let figures = vec![
@@ -263,8 +263,8 @@ impl Subject {
     }
 }
 
-/// Runs the campaign in its order and tells of each chapter as it is done. `given` names what the bench was given, by the
-/// names of the quantities.
+/// Runs the campaign in its order and reports each chapter when it is done. `given` contains the true values of the
+/// bench, by the names of the quantities.
 pub fn reproduce(
     bench: &mut Bench,
     subject: Subject,

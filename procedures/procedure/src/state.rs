@@ -31,13 +31,13 @@ pub enum RunState {
 pub enum Outcome {
     /// Every step was done.
     Completed,
-    /// A person asked for an orderly end.
+    /// A person requested an orderly end.
     Stopped,
-    /// A person asked for an end at once.
+    /// A person requested an immediate end.
     Aborted,
     /// A limit, a fault, a full disk or a programming error ended it.
     Failed,
-    /// The process that stores the run, or the one that makes it, died in mid-run.
+    /// The process that stores the run, or the one that performs it, died during the run.
     Interrupted,
 }
 
@@ -56,7 +56,7 @@ impl Outcome {
     }
 }
 
-/// What can move a run.
+/// Transitions of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Transition {

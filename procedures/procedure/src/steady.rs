@@ -1,13 +1,14 @@
-//! When a joint is warm: temperature and current no longer drift from one cycle of the warm-up to the next.
+//! Criterion of a warm joint: temperature and current no longer drift between the cycles of the warm-up.
 
 use crate::findings::legs;
 use crate::plan::Steady;
 use jointbench_instrument::RunTable;
 
-/// A shorter rest is forgiven: gears cool in minutes. After a longer one the cycles before it count no more.
+/// Longest rest that does not restart the criterion, because gears cool in minutes. After a longer one the earlier
+/// cycles do not count.
 pub(crate) const COOLS_S: f64 = 60.0;
 
-/// Watches the warm-up of one run. Only the settled part of each step counts.
+/// Evaluates the warm-up of one run. Only the steady-state part of each step counts.
 #[derive(Debug, Clone)]
 pub(crate) struct SteadyWatch {
     rule: Steady,
@@ -30,7 +31,7 @@ impl Mean {
     }
 }
 
-/// How fast the joint still changes.
+/// Drift rates of the joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Drift {
     pub temperature_c_per_min: f64,
@@ -61,14 +62,14 @@ impl SteadyWatch {
         Self { rule, current: Mean::default(), cycles: Vec::new(), steps: 0 }
     }
 
-    /// The watch as it stood at the end of a run of nothing but a warm-up.
+    /// The state at the end of a run that is only a warm-up.
     pub fn of(rule: Steady, run: &RunTable) -> Option<Self> {
         let [time_s, setpoint_rad_s, current_a] =
             ["time_s", "velocity_setpoint_rad_s", "motor_current_a"].map(|name| run.column(name));
         let (time_s, setpoint_rad_s, current_a) = (time_s?, setpoint_rad_s?, current_a?);
         let temperature_c = run.column("temperature_c");
         let mut watch = Self::new(rule);
-        // A step that was begun anew after a pause turns the same way as what there is of it before.
+        // A step that was repeated after a pause turns in the same direction as its first attempt.
         for attempts in legs(run).chunk_by(|a, b| a.direction == b.direction) {
             let rows = attempts[0].rows.start..attempts[attempts.len() - 1].rows.end;
             let plateau_rad_s = setpoint_rad_s[rows.clone()].iter().fold(0.0, |top, v: &f64| v.abs().max(top));

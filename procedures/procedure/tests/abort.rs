@@ -1,4 +1,4 @@
-//! What a stop and an abort of the mock bench leave in its brake, and what is told of it.
+//! Effects of a stop and of an abort of the mock bench on its brake, and their reports.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::Bench;
@@ -10,9 +10,9 @@ use serde_json::json;
 use std::f64::consts::TAU;
 use std::sync::mpsc::{Sender, channel};
 
-/// The joint turns at its top speed against 80 % of the brake's rating then.
+/// Time at which the joint turns at its top speed against 80 % of the brake's rating.
 const AT_S: f64 = 91.7;
-/// Poles on one turn of the brake's rotor.
+/// Poles in one turn of the brake's rotor.
 const POLES: f64 = 21.0;
 
 struct Steered {
@@ -44,7 +44,7 @@ impl Recorder for Steered {
     }
 }
 
-/// Amplitude of the link's torque over the brake's poles in a turn without current [Nm].
+/// Amplitude of the link torque over the brake's poles in a turn without current [Nm].
 fn cogging_nm(bench: &mut Bench) -> f64 {
     let (link_rad_s, ratio, clock) = (1.0, bench.constants.gear_ratio, bench.clock.clone());
     bench.joint.arm(RadPerSec(2.0 * link_rad_s * ratio), Amperes(5.0)).unwrap();
@@ -64,7 +64,7 @@ fn cogging_nm(bench: &mut Bench) -> f64 {
     2.0 * waves[0].hypot(waves[1]) / rows
 }
 
-/// How the run ended, what was told, and the torque that the brake cogs with then.
+/// State at the end of the run, its notes, and the amplitude of the brake's cogging.
 fn ended_by(control: Control) -> (RunState, Vec<String>, f64) {
     let mock = MockBench::start(MockSettings::new(Joint::JointA, 6)).unwrap();
     let mut bench = mock.open_bench("bench").unwrap();
@@ -78,14 +78,14 @@ fn ended_by(control: Control) -> (RunState, Vec<String>, f64) {
 }
 
 #[test]
-fn a_stop_unloads_the_brake_and_an_abort_tells_what_it_leaves() {
+fn a_stop_unloads_the_brake_and_an_abort_reports_its_remanence() {
     let (state, notes, stopped_nm) = ended_by(Control::Stop);
     assert_eq!(state, RunState::Stopped);
     assert!(!notes.iter().any(|note| note.contains("Demagnetise")), "{notes:?}");
 
     let (state, notes, aborted_nm) = ended_by(Control::Abort);
     assert_eq!(state, RunState::Aborted);
-    // The current that has magnetised the rotor, not what was left of it when somebody looked.
+    // The current that magnetised the rotor, not the remaining current at the next reading.
     assert!(notes.iter().any(|note| note.contains("fell from 0.480 A with the drive off. Demagnetise")), "{notes:?}");
     assert!(stopped_nm < 0.05 * aborted_nm && aborted_nm > 0.5, "{stopped_nm} and {aborted_nm} Nm");
 }

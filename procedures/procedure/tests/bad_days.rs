@@ -1,5 +1,5 @@
-//! Every bad day that strikes in mid-run, on the mock bench and through the drivers: the run ends in the right verdict, the
-//! bench is safe, nothing is kept that was not measured, and once the trouble is over every port can be used again.
+//! Every fault during a run, on the mock bench and through the drivers: the run ends with the right verdict, and the
+//! bench is safe. Nothing unmeasured is kept, and every port can be used again after the fault.
 
 use jointbench_devices::sim::{MockInstrument, PlannedTrouble, Transport, Trouble};
 use jointbench_devices::{Joint, MockBench, MockSettings};
@@ -10,14 +10,14 @@ use jointbench_procedure::{
 use serde_json::json;
 use std::sync::mpsc::channel;
 
-/// In the first strokes, long before anything is finished.
+/// In the first strokes, long before the end of the run.
 const FROM_S: f64 = 8.0;
-/// So long the plug is out while another unit is put in the place of an instrument: gone before anyone gives it up.
+/// Time without a plug while another unit replaces an instrument: shorter than the deadline of the engine.
 const PULLED_S: f64 = 0.05;
-/// Slow quantities are asked for every half second: as long may rows follow whose quick ones are good.
+/// Slow quantities are read every half second, so that rows with good fast readings may continue for this time.
 const NOTICED_S: f64 = 0.6;
 
-/// The times of the rows, and what was told.
+/// The times of the rows, and the notes.
 #[derive(Default)]
 struct Kept {
     times_s: Vec<f64>,
@@ -59,10 +59,10 @@ fn play(bench: &mut Bench, id: &str, parameters: serde_json::Value) -> (RunEnd, 
     (end, kept)
 }
 
-/// `named`: what the reason of the failure has to say. `safe`: what the run has to reach by itself.
+/// `named`: required text in the reason of the failure. `safe`: required result of securing.
 fn check(id: &str, instrument: MockInstrument, trouble: Trouble, named: &str, safe: &[Safe]) {
     let case = format!("{id}: {instrument:?}, {trouble:?}");
-    // Nobody changes an instrument without pulling its plug.
+    // An instrument is only exchanged after its plug was pulled.
     let pulled = (instrument, Trouble::Unplugged, FROM_S, None);
     let troubles = match trouble {
         Trouble::Exchanged => vec![pulled, (instrument, trouble, FROM_S + PULLED_S, None)],
@@ -77,15 +77,15 @@ fn check(id: &str, instrument: MockInstrument, trouble: Trouble, named: &str, sa
     assert!(safe.contains(&end.safe), "{case}: {} after {reason}", end.safe);
     assert_eq!(end.rows, times_s.len() as u64, "{case}");
     assert!(end.rows > 0 && times_s.windows(2).all(|pair| pair[0] < pair[1]), "{case}");
-    // A loose contact shows when the brake is to hold a current; of gaps only many are too many.
-    let shows_late = [Trouble::CurrentLost, Trouble::StreamGap].contains(&trouble);
-    let latest_s = if shows_late { f64::INFINITY } else { FROM_S + NOTICED_S };
+    // A loose contact shows when the brake has to hold a current; of gaps only many are a failure.
+    let shows_with_delay = [Trouble::CurrentLost, Trouble::StreamGap].contains(&trouble);
+    let latest_s = if shows_with_delay { f64::INFINITY } else { FROM_S + NOTICED_S };
     assert!(times_s.last().is_some_and(|last_s| *last_s <= latest_s), "{case}: {:?}", times_s.last());
 
     mock.trouble(instrument, Trouble::None);
     bench.clock.sleep_until_s(bench.clock.now_s() + 3.0);
-    // The first word of an instrument that lost its power is that it did.
-    let _told = bench.joint.recover();
+    // The first reply of an instrument after a loss of power reports that loss.
+    let _reply = bench.joint.recover();
     let secured = secure(&mut bench);
     assert_eq!(secured.safe, Safe::SafeVerified, "{case}: {:?}", secured.notes);
     assert!(!bench.joint.health().unwrap().armed, "{case}");
@@ -105,7 +105,7 @@ const CABLE: [Trouble; 8] = [
     Trouble::PowerCycled,
 ];
 
-/// Side by side: nearly all of it is waiting for deadlines.
+/// In parallel, because nearly all of the time is waiting for deadlines.
 fn check_all(cases: impl IntoIterator<Item = (MockInstrument, Trouble, &'static str)>, safe: &[Safe]) {
     std::thread::scope(|scope| {
         for (instrument, trouble, named) in cases {
@@ -121,7 +121,7 @@ fn without_its_torque_sensor_a_run_fails_and_the_bench_is_read_back_safe() {
     check_all(CABLE.into_iter().chain(others).map(sensor), &[Safe::SafeVerified]);
 }
 
-/// A joint that does not answer was told to stand down, and says so only when it is heard again.
+/// A joint that does not answer was commanded to disarm, and confirms it when it is reachable again.
 #[test]
 fn without_its_joint_a_run_fails_and_says_what_could_not_be_read_back() {
     let joint = |trouble| (MockInstrument::Joint, trouble, "joint");
@@ -172,7 +172,7 @@ fn another_unit_behind_a_port_that_was_never_lost_is_named_at_the_end() {
 fn a_torque_stream_that_fails_ends_its_run_and_the_bench_is_read_back_safe() {
     std::thread::scope(|scope| {
         for trouble in CABLE.into_iter().chain([Trouble::StreamGap, Trouble::Saturated, Trouble::Exchanged]) {
-            // What comes a little later in whole chunks is in its place by its own index: nothing is wrong with it.
+            // Samples that arrive late in whole chunks have the right place by their index.
             if trouble == Trouble::Stale {
                 continue;
             }
@@ -189,7 +189,7 @@ fn a_torque_stream_that_fails_ends_its_run_and_the_bench_is_read_back_safe() {
 }
 
 #[test]
-fn a_gap_in_the_torque_stream_is_told_and_stays_one() {
+fn a_gap_in_the_torque_stream_is_reported_and_not_filled() {
     let short = json!({"load_levels": 3, "dwell_s": 0.5, "top_load": 0.3});
     let gaps = (MockInstrument::TorqueSensor, Trouble::StreamGap, FROM_S, Some(FROM_S + 0.6));
     let (_mock, mut bench) = start([gaps]);
@@ -207,9 +207,9 @@ fn a_gap_in_the_torque_stream_is_told_and_stays_one() {
         .collect();
     assert!(!counts.is_empty() && counts.iter().all(|count| *count == 8), "{counts:?}");
     let missing: u64 = counts.iter().sum();
-    let told = format!("{missing} torque samples are missing");
-    assert!(events.iter().any(|event| matches!(event, EventKind::Warning { text } if text.contains(&told))));
-    // Eight samples are two rows of 250 a second: they are not there, and the others are where they were.
+    let reported = format!("{missing} torque samples are missing");
+    assert!(events.iter().any(|event| matches!(event, EventKind::Warning { text } if text.contains(&reported))));
+    // Eight samples are two rows at 250 Hz: these are missing, and the other rows are unchanged.
     let holes = times_s.windows(2).filter(|pair| (0.0061..0.1).contains(&(pair[1] - pair[0]))).count();
     assert_eq!(holes, counts.len());
 }
@@ -232,7 +232,7 @@ fn a_cable_that_is_back_under_another_port_serves_a_bench_that_is_opened_again()
     assert!(end.reason.unwrap().contains("port lost"));
     drop(bench);
     mock.trouble(MockInstrument::TorqueSensor, Trouble::None);
-    // Plugged in by a thread of its own.
+    // Another thread plugs it in.
     let since = std::time::Instant::now();
     let mut again = loop {
         match mock.open_bench("again") {

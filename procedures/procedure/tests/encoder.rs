@@ -1,4 +1,4 @@
-//! The encoder bench's procedures on the mock bench, against what it hides.
+//! The encoder bench's procedures on the mock bench, compared with its hidden truth.
 
 use jointbench_devices::sim::{EncoderTruth, MockInstrument, PlannedTrouble, Trouble};
 use jointbench_devices::{Joint, MockBench, MockSettings};
@@ -26,14 +26,14 @@ fn run(bench: &mut Bench, id: &str, parameters: Value) -> Identification {
     let finds = procedure(id).unwrap().finds();
     for quantity in &found.quantities {
         println!("  {} = {:.6e} {} {:?}", quantity.name, quantity.value, quantity.unit, quantity.ci95);
-        let is_told = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
-        assert!(is_told, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
+        let is_declared = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
+        assert!(is_declared, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
     }
     assert_eq!(found.verdict, Verdict::Identified);
     found
 }
 
-/// The interval holds the truth and is no wider than to either side of its value.
+/// The interval contains the truth, with a half width of at most `reach`.
 fn check(found: &Identification, name: &str, truth: f64, reach: f64) {
     let quantity = found.quantity(name).unwrap_or_else(|| panic!("no {name}"));
     let [low, high] = quantity.ci95.unwrap();
@@ -41,7 +41,7 @@ fn check(found: &Identification, name: &str, truth: f64, reach: f64) {
     assert!(0.5 * (high - low) <= reach, "{name}: {low:e} to {high:e} is wider than ±{reach:e}");
 }
 
-/// Pauses with every third commit of a running run, and resumes soon after.
+/// Pauses at every third commit of a running run, and resumes soon after.
 struct Pauser {
     controls: Sender<Demand>,
     commits: u32,
@@ -145,7 +145,7 @@ fn however_a_run_of_the_stage_is_ended_shaft_and_stage_stand_still() {
         let stage = bench.stage.as_mut().unwrap();
         let moved_m = (stage.pose().unwrap().shift_m[0] - here.shift_m[0]).abs();
         assert!(stage.is_referenced().unwrap() && moved_m < 1e-6, "{control:?}: {moved_m} m");
-        // The next run starts.
+        // The next run can start.
         let offset = conduct(&mut bench, procedure("encoder_offset").unwrap(), &Default::default()).unwrap();
         assert_eq!(offset.identification.unwrap().verdict, Verdict::Identified);
     }
@@ -195,11 +195,12 @@ fn every_power_up_moves_the_zero_and_the_bench_switches_by_itself() {
     assert!((low..=high).contains(&truth.startup_spread_rad), "{low:e} to {high:e}");
     let value = |name: &str| found.quantity(name).unwrap().value;
     assert!(value("repeatability") < 0.1 * value("startup_spread"), "{}", found.summary);
-    // The joint is where it was read from, but for whole turns: offsets stay within what a start-up can do.
+    // The joint is at the position of its reading, except for whole turns: offsets stay within the range of a
+    // start-up.
     assert!(value("startup_range") < 60.5 * POINT_RAD, "{}", found.summary);
 }
 
-/// Switches the encoder off and on whenever the run asks for it; the first time it only says so.
+/// Switches the encoder off and on when the run requests it; the first time it only confirms.
 struct Hand {
     mock: MockBench,
     controls: Sender<Demand>,
@@ -259,10 +260,10 @@ fn the_dry_run_says_nothing_of_a_brake_where_there_is_none() {
     let (_, _mock, bench) = open(1, false);
     let facts = BenchFacts::of(&bench);
     let preview = procedure("encoder_offset").unwrap().plan(&Default::default(), &facts).unwrap().preview(&facts);
-    let told: Vec<_> =
+    let reported: Vec<_> =
         preview.extremes.iter().map(|one| one.quantity).chain(preview.checks.iter().map(|one| one.name)).collect();
-    assert!(told.contains(&"motor velocity") && told.contains(&"limits"), "{told:?}");
-    assert!(!told.iter().any(|name| name.contains("brake") || name.contains("torque")), "{told:?}");
+    assert!(reported.contains(&"motor velocity") && reported.contains(&"limits"), "{reported:?}");
+    assert!(!reported.iter().any(|name| name.contains("brake") || name.contains("torque")), "{reported:?}");
 }
 
 #[test]
@@ -274,10 +275,10 @@ fn offset_and_delay_are_those_that_the_mock_was_given() {
     let effects = ["offset", "harmonic_1", "harmonic_2", "delay"].map(String::from);
     let spec = ModelSpec::new(conducted.table.kind(), &effects).unwrap();
     let model = fit(&conducted.table, &spec, &Options::default()).unwrap();
-    let told = offset.summary.split("(truncated) it is ").nth(1).and_then(|rest| rest.split(' ').next());
-    let told_rad = 1e-3 * told.unwrap().parse::<f64>().unwrap();
+    let reported = offset.summary.split("(truncated) it is ").nth(1).and_then(|rest| rest.split(' ').next());
+    let stated_rad = 1e-3 * reported.unwrap().parse::<f64>().unwrap();
     assert!(
-        (told_rad - model.parameters[0].value).abs() < POINT_RAD,
+        (stated_rad - model.parameters[0].value).abs() < POINT_RAD,
         "{}: {}",
         offset.summary,
         model.parameters[0].value
@@ -320,7 +321,7 @@ fn fifteen_bits_are_usable_behind_the_table() {
     }
     let [before, after, noise] = &figure("harmonics").series[..] else { panic!("{:?}", figure("harmonics")) };
     assert!((before.band[0][0]..=before.band[0][1]).contains(&truth.eccentricity_rad), "{before:?}");
-    // Once and twice a turn, the pole pairs and inside them: what the table takes away.
+    // Harmonics 0, 1 and 4 of the pole pairs: the table removes them.
     for n in [0, 1, 4] {
         assert!(after.y[n] < 0.1 * before.y[n] && before.y[n] > noise.y[0], "{before:?} {after:?} {noise:?}");
     }
@@ -350,7 +351,7 @@ fn every_edge_is_within_a_step_of_the_stage_and_the_best_place_is_found() {
     let best_m = found.quantity("best_radial_shift").unwrap().value;
     assert!(smallest.x == [best_m] && fitted.y.iter().all(|error| *error >= smallest.y[0]), "{drawn:?}");
 
-    // Behind the run the sensor is back in its place, and the best one is better.
+    // After the run the sensor is back at its position, and the best one is better.
     let at_m = bench.stage.as_mut().unwrap().pose().unwrap().shift_m[0];
     assert!(at_m.abs() < 1e-6, "{at_m} m");
     let next = procedure("encoder_alignment").unwrap().follow_up(&found).unwrap();

@@ -1,4 +1,4 @@
-//! Instruments on one shaft of the mock bench: how much later they tell of it than their moments say, by what they tell.
+//! Instruments on one shaft of the mock bench: their lag beyond their time stamps, from their readings.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::roles::{CounterReading, EncoderStatus, Identity, Instrument, PositionCounter};
@@ -42,8 +42,8 @@ fn strokes(bench: &Bench) -> Plan {
     procedure("encoder_delay").unwrap().plan(short.as_object().unwrap(), &BenchFacts::of(bench)).unwrap()
 }
 
-/// What is told of the motor's own encoder and of the one under test.
-fn told(bench: &mut Bench, plan: &Plan) -> [String; 2] {
+/// Notes about the motor's own encoder and the encoder under test.
+fn notes_of_shaft(bench: &mut Bench, plan: &Plan) -> [String; 2] {
     let (_held, controls) = channel();
     let mut notes = Notes::default();
     let end = run(bench, plan, 1, &controls, &mut notes);
@@ -58,21 +58,21 @@ fn told(bench: &mut Bench, plan: &Plan) -> [String; 2] {
     })
 }
 
-/// The lag of a note and half the width of its interval [s].
+/// The lag of a note and the half width of its interval [s].
 fn lag(note: &str) -> [f64; 2] {
-    let (_, told) = note.split_once("by a further ").unwrap_or_else(|| panic!("{note}"));
-    let mut words = told.split(' ');
+    let (_, notes_of_shaft) = note.split_once("by a further ").unwrap_or_else(|| panic!("{note}"));
+    let mut words = notes_of_shaft.split(' ');
     let mut figure = || 1e-3 * words.next().unwrap().parse::<f64>().unwrap();
     let size_s = figure();
     let way = if note.contains("it leads by") { -1.0 } else { 1.0 };
-    [way * size_s, told.split(' ').nth(2).unwrap().parse::<f64>().unwrap() * 1e-3]
+    [way * size_s, notes_of_shaft.split(' ').nth(2).unwrap().parse::<f64>().unwrap() * 1e-3]
 }
 
 #[test]
 fn clock_and_values_agree_but_for_the_delay_of_the_encoder_under_test() {
     let (mock, mut bench) = start();
     let plan = strokes(&bench);
-    let [motor, test] = told(&mut bench, &plan);
+    let [motor, test] = notes_of_shaft(&mut bench, &plan);
     assert!(motor.contains("Time stamps and signals agree"), "{motor}");
     let [lag_s, reach_s] = lag(&test);
     let truth_s = mock.truth().encoders.delay_s;
@@ -80,7 +80,7 @@ fn clock_and_values_agree_but_for_the_delay_of_the_encoder_under_test() {
     assert!(test.contains("delay of this encoder"), "{test}");
 }
 
-/// A counter behind a buffer that always holds one reply back, and a clock that knows nothing of it.
+/// A counter behind a buffer that always holds one reply back, with a clock that does not include it.
 struct Buffered {
     counter: Box<dyn PositionCounter>,
     held: Option<Radians>,
@@ -138,20 +138,20 @@ fn a_delay_that_no_clock_knows_contradicts_it() {
     let counter = bench.reference_encoder.take().unwrap();
     bench.reference_encoder = Some(Box::new(Buffered { counter, held: None }));
     let plan = strokes(&bench);
-    let [motor, _] = told(&mut bench, &plan);
+    let [motor, _] = notes_of_shaft(&mut bench, &plan);
     let [lag_s, reach_s] = lag(&motor);
-    // What a drive tells may be one turn of its control loop old.
+    // The reading of a drive may be one period of its control loop old.
     let held_s = -1.0 / plan.rate_hz;
     assert!((lag_s - held_s).abs() <= reach_s + 125e-6 && reach_s < 0.1e-3, "{held_s} s: {motor}");
     assert!(motor.contains("Unrecorded latency"), "{motor}");
 }
 
 #[test]
-fn without_motion_nothing_is_told_of_a_lag() {
+fn without_motion_no_lag_is_reported() {
     let (_mock, mut bench) = start();
     let mut plan = strokes(&bench);
     plan.steps.iter_mut().for_each(|step| step.velocity = Profile::from(0.0).hold(0.5));
-    for note in told(&mut bench, &plan) {
+    for note in notes_of_shaft(&mut bench, &plan) {
         assert!(note.contains("do not determine it"), "{note}");
     }
 }

@@ -10,9 +10,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 const STEP_S: f64 = 1e-3;
-/// Way over which the bristles bend [rad], Stribeck speed [rad/s] and rise of the static friction: as in peer.py.
+/// Presliding displacement [rad], Stribeck speed [rad/s] and rise of the static friction, as in peer.py.
 const SHAPE: [f64; 3] = [1e-5, 0.05, 0.5];
-/// LSODA is that slow.
+/// Rows for LSODA, which is slower.
 const OF_PEER: usize = 20_000;
 
 pub fn measure(rows: usize) {
@@ -28,14 +28,14 @@ pub fn measure(rows: usize) {
     let mut signals = Signals::new(rows);
     signals.set(Signal::Position, position.collect());
     signals.set(Signal::Velocity, velocity.clone());
-    // The effect is the state beside what it ends at in this direction: the state itself without any.
+    // The effect is the state minus its limit in this direction, so that a zero direction gives the state itself.
     signals.set(Signal::Direction, vec![0.0; rows]);
     let view = View::new(signals.clone(), signals, Vec::new(), vec![0], STEP_S);
     let effect = find(Kind::Friction, "presliding").expect("the library has it");
     let (here_s, states) = least_s(5, || effect.columns("lugre", &SHAPE, &view));
     let of_peer = OF_PEER.min(rows);
-    let beside = peer::ask("lugre", &[&velocity[..of_peer]]);
-    let apart = beside.as_ref().map_or(String::new(), |(_, there)| {
+    let scipy = peer::ask("lugre", &[&velocity[..of_peer]]);
+    let apart = scipy.as_ref().map_or(String::new(), |(_, there)| {
         let squares: f64 = states[0].iter().zip(there).map(|(a, b)| (a - b).powi(2)).sum();
         let rms = (squares / of_peer as f64).sqrt();
         assert!(rms < 0.1, "the states differ by {rms} of the friction");
@@ -43,5 +43,5 @@ pub fn measure(rows: usize) {
     });
     let what = format!("LuGre state on noisy velocity, a sample of {rows}");
     let peer = format!("SciPy odeint (LSODA){apart}, a sample of {of_peer}");
-    line(&what, here_s / rows as f64, &peer, beside.map(|b| b.0 / of_peer as f64), 500.0);
+    line(&what, here_s / rows as f64, &peer, scipy.map(|b| b.0 / of_peer as f64), 500.0);
 }

@@ -1,7 +1,7 @@
-//! `cargo bench -p jointbench-model --bench fitting`: what fits cost, and what SciPy takes for the same answer from the same
-//! rows beside it, in the same run.
+//! `cargo bench -p jointbench-model --bench fitting`: cost of fits, compared with SciPy for the same answer from the
+//! same rows, in the same run.
 //!
-//! `-- 100000` for another number of rows. SciPy's part is skipped where python3 or SciPy is missing.
+//! `-- 100000` for another number of rows. SciPy's part is skipped if python3 or SciPy is missing.
 
 mod linear;
 mod lugre;
@@ -18,7 +18,7 @@ fn main() {
     lugre::measure(rows);
 }
 
-/// The least of several runs, with what came out.
+/// The least duration of several runs, with the result.
 fn least_s<T>(times: usize, mut work: impl FnMut() -> T) -> (f64, T) {
     let mut timed = || {
         let start = Instant::now();
@@ -29,12 +29,12 @@ fn least_s<T>(times: usize, mut work: impl FnMut() -> T) -> (f64, T) {
     (1..times).map(|_| timed()).fold(first, |best, next| if next.0 < best.0 { next } else { best })
 }
 
-/// A line of the table. `beside_s` is `None` where the peer is missing.
-fn line(what: &str, here_s: f64, beside: &str, beside_s: Option<f64>, bar: f64) {
-    match beside_s {
-        Some(s) => println!("| {what} | {} | {beside}: {} | {:.1} | ≥ {bar} |", show(here_s), show(s), s / here_s),
+/// A line of the table. The peer's duration is `None` if it is missing.
+fn line(what: &str, here_s: f64, peer: &str, peer_s: Option<f64>, bar: f64) {
+    match peer_s {
+        Some(s) => println!("| {what} | {} | {peer}: {} | {:.1} | ≥ {bar} |", show(here_s), show(s), s / here_s),
         None => {
-            println!("| {what} | {} | {beside}: skipped, python3 with SciPy is missing | – | ≥ {bar} |", show(here_s))
+            println!("| {what} | {} | {peer}: skipped, python3 with SciPy is missing | – | ≥ {bar} |", show(here_s))
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A Stribeck curve beside friction: six parameters, two of them searched for.
+//! A Stribeck curve with Coulomb and viscous friction: six parameters, two of them nonlinear.
 
 use crate::{least_s, line, peer};
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
@@ -15,33 +15,33 @@ const NAMES: [&str; 6] = ["tau_0", "tau_c", "c_v", "tau_s", "omega_s", "delta"];
 pub fn measure(rows: usize) {
     let columns = columns(rows);
     let torque: Vec<f64> = columns[3].iter().map(|i| TORQUE_CONSTANT * i).collect();
-    let beside = peer::ask("stribeck", &[&columns[2], &torque]);
+    let scipy = peer::ask("stribeck", &[&columns[2], &torque]);
     let run = table(columns);
     let spec = ModelSpec::new(Kind::Friction, EFFECTS).expect("the library has these");
     let (here_s, found) = least_s(15, || fit(&run, &spec, &Options::default()).expect("the run can be fitted"));
     let prepared = prepare(&run, &Options::default()).expect("the run can be prepared");
     let (search_s, _) = least_s(15, || fit_prepared(&prepared, &spec, &Options::default()).expect("as before"));
-    for (name, there) in NAMES.iter().zip(beside.iter().flat_map(|(_, answer)| answer)) {
+    for (name, there) in NAMES.iter().zip(scipy.iter().flat_map(|(_, answer)| answer)) {
         let here = value(&found, name);
         assert!((here / there - 1.0).abs() < 0.02, "{name}: {here} here, {there} there");
     }
-    let beside_s = beside.map(|b| b.0);
+    let scipy_s = scipy.map(|b| b.0);
     let peer = "SciPy least_squares, analytic Jacobian, all rows";
     line(
         &format!("Stribeck fit with intervals from {rows} rows: steps averaged, then fitted"),
         here_s,
         peer,
-        beside_s,
+        scipy_s,
         15.0,
     );
-    line("the same of a run that is averaged already", search_s, peer, beside_s, 15.0);
+    line("the same of a run that is averaged already", search_s, peer, scipy_s, 15.0);
 }
 
 fn value(fit: &Fit, name: &str) -> f64 {
     fit.parameters.iter().find(|p| p.name == name).expect("every effect is visible").value
 }
 
-/// Steps of nine speeds both ways, 250 samples each.
+/// Steps of nine speeds in both directions, 250 samples each.
 fn columns(rows: usize) -> Vec<Vec<f64>> {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let mut noise = || -> f64 { StandardNormal.sample(&mut random) };

@@ -1,6 +1,6 @@
-//! `cargo bench -p jointbench-model`: seconds of one diagnosis, and of the same ranking by SciPy beside it, on the same rows.
+//! `cargo bench -p jointbench-model`: seconds of one diagnosis, and of the same ranking by SciPy, on the same rows.
 //!
-//! `-- 50000 1000000` for other numbers of rows. SciPy's part is skipped where python3 or SciPy is missing.
+//! `-- 50000 1000000` for other numbers of rows. SciPy's part is skipped if python3 or SciPy is missing.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, diagnose};
@@ -50,8 +50,8 @@ fn main() {
     }
 }
 
-/// Steps of nine speeds both ways at three loads, 250 samples each, as often as there are rows; load-dependent friction
-/// that the baseline does not have.
+/// Steps of nine speeds in both directions at three loads, 250 samples each, as many as the rows require;
+/// load-dependent friction, which the baseline lacks.
 fn columns(rows: usize) -> Vec<Vec<f64>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
@@ -94,14 +94,14 @@ fn table(columns: Vec<Vec<f64>>) -> RunTable {
     RunTable::new(meta, Trace::from_columns(NAMES.map(Channel::new).to_vec(), columns)).expect("a valid table")
 }
 
-/// Seconds that SciPy takes, without starting and reading.
+/// Duration of SciPy in seconds, without starting and reading.
 fn scipy(columns: &[Vec<f64>]) -> Option<f64> {
     let file = std::env::temp_dir().join(format!("jointbench-selection-{}.f64", std::process::id()));
     let bytes: Vec<u8> = columns.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
     std::fs::write(&file, bytes).expect("the temporary folder can be written");
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/selection/peer.py");
-    let told = Command::new("python3").arg(script).arg(&file).output();
+    let output = Command::new("python3").arg(script).arg(&file).output();
     std::fs::remove_file(&file).expect("the file was written");
-    let told = told.ok().filter(|t| t.status.success())?;
-    String::from_utf8(told.stdout).ok()?.trim().parse().ok()
+    let output = output.ok().filter(|t| t.status.success())?;
+    String::from_utf8(output.stdout).ok()?.trim().parse().ok()
 }

@@ -1,18 +1,18 @@
-//! Made-up runs of all four kinds with known truth.
+//! Simulated runs of all four kinds with known truth.
 
 use super::noise::Noise;
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, TableFault, Trace};
 use std::f64::consts::TAU;
 
-/// One made-up bench and what is put into it.
+/// One simulated bench with its hidden truth.
 pub struct Case {
     pub name: &'static str,
     pub effects: &'static [&'static str],
     /// Effect, parameter, value.
     pub truth: &'static [(&'static str, &'static str, f64)],
-    /// The form of an effect that was put in, where it has several.
+    /// The true form of an effect that has several forms.
     pub forms: &'static [(&'static str, &'static str)],
-    /// Parameters that the model is not linear in.
+    /// Nonlinear parameters of the model.
     pub curved: &'static [&'static str],
     pub run: fn(u64) -> Result<RunTable, TableFault>,
 }
@@ -166,7 +166,8 @@ fn trace(names: &[&str]) -> Trace {
     Trace::new(names.iter().map(|n| Channel::new(*n)).collect())
 }
 
-/// Two repeats of ten speeds both ways at three loads, 0.6 s each. `friction(velocity, load on the motor side, link)`.
+/// Two repeats of ten speeds in both directions at three loads, 0.6 s each. `friction(velocity, load on the motor
+/// side, link)`.
 fn staircase(seed: u64, friction: fn(f64, f64, f64) -> f64) -> Result<RunTable, TableFault> {
     let mut noise = Noise::new(seed, 2e-3, 6e-4);
     let mut table = trace(&[
@@ -201,7 +202,7 @@ fn staircase(seed: u64, friction: fn(f64, f64, f64) -> f64) -> Result<RunTable, 
     RunTable::new(meta(Kind::Friction), table)
 }
 
-/// Thirty strokes of different speed, back and forth, without any segment column.
+/// Thirty strokes of different speed, back and forth, without a segment column.
 fn trajectory(seed: u64) -> Result<RunTable, TableFault> {
     let mut noise = Noise::new(seed, 4e-3, 1.5e-3);
     let mut table = trace(&["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a"]);
@@ -223,7 +224,7 @@ fn trajectory(seed: u64) -> Result<RunTable, TableFault> {
     RunTable::new(meta(Kind::Friction), table)
 }
 
-/// Three repeats of four speeds both ways, 1.2 s each at 500 Hz. `difference(angle, velocity, time)`.
+/// Three repeats of four speeds in both directions, 1.2 s each at 500 Hz. `difference(angle, velocity, time)`.
 fn turns(seed: u64, difference: fn(f64, f64, f64) -> f64) -> Result<RunTable, TableFault> {
     let mut noise = Noise::new(seed, 4e-4, 1.5e-4);
     let mut table =
@@ -247,7 +248,7 @@ fn turns(seed: u64, difference: fn(f64, f64, f64) -> f64) -> Result<RunTable, Ta
 }
 
 /// Three repeats of up and down to ten torques, 1 s each at 250 Hz. `torsion(torque, state)`, where the state is an
-/// elastic element that is dragged along beyond 4 Nm, little by little: dz = (1 − z·sgn dτ)·dτ/4.
+/// elastic element that slips gradually beyond 4 Nm: dz = (1 − z·sgn dτ)·dτ/4.
 fn sweeps(seed: u64, torsion: fn(f64, f64) -> f64) -> Result<RunTable, TableFault> {
     let mut noise = Noise::new(seed, 1e-4, 4e-5);
     let mut table =
@@ -278,7 +279,8 @@ fn sweeps(seed: u64, torsion: fn(f64, f64) -> f64) -> Result<RunTable, TableFaul
     RunTable::new(meta(Kind::Stiffness), table)
 }
 
-/// Three repeats of three speeds with the current up and down, 2 s each leg at 250 Hz. `torque(current, velocity, time)`.
+/// Three repeats of three speeds with the current up and down, 2 s for each leg at 250 Hz. `torque(current, velocity,
+/// time)`.
 fn ramps(seed: u64, torque: fn(f64, f64, f64) -> f64) -> Result<RunTable, TableFault> {
     let mut noise = Noise::new(seed, 4e-3, 1.5e-3);
     let mut table = trace(&["time_s", "brake_current_a", "brake_torque_nm", "velocity_rad_s", "segment", "repeat"]);

@@ -1,10 +1,9 @@
-//! How often a 95 % interval holds the truth: `cargo run --release -p jointbench-model --example coverage [SETS]
-//! [CASE-PART]`.
+//! Coverage of 95 % intervals: `cargo run --release -p jointbench-model --example coverage [SETS] [CASE-PART]`.
 //!
-//! Every set is a made-up run with coloured noise (AR(1), 0.85 from sample to sample) and segments that differ by an
-//! offset, a tilt over their length and a share that turns with the direction. The formulas of the truth are written
-//! down in the example and nowhere in the library. A parameter that is said to be at its bound or unidentified is
-//! counted apart: its words are the answer, not its interval. The same for a fit that chose another form of the effect.
+//! Every set is a simulated run with coloured noise (AR(1), 0.85 from sample to sample) and segments with a separate
+//! offset, tilt and direction-dependent offset. The library does not contain the formulas of the truth. Parameters
+//! that are at bound or unidentified are counted separately, because their state is the answer, not their interval.
+//! Fits with another form of the effect are counted separately, too.
 
 mod cases;
 mod noise;
@@ -13,7 +12,7 @@ use cases::{CASES, Case};
 use jointbench_model::{ModelSpec, Options, ParameterState, diagnose, fit};
 use std::error::Error;
 
-/// What was seen of one parameter over all sets.
+/// Results of one parameter over all sets.
 #[derive(Default)]
 struct Seen {
     inside: usize,
@@ -62,10 +61,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A whole diagnosis takes longer than a fit.
+/// A diagnosis takes longer than a fit.
 const FLOOR_SETS: u64 = 100;
 
-/// How often the interval of the noise floor holds what the floor is on average over all sets.
+/// Coverage of the noise-floor interval for the mean floor over all sets.
 fn floor(case: &Case, sets: u64) -> Result<(), Box<dyn Error>> {
     let mut floors = Vec::new();
     for seed in 0..sets {

@@ -1,4 +1,4 @@
-//! Noise that remembers, and segments that differ.
+//! Correlated noise, and segments that differ.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -12,7 +12,7 @@ pub struct Noise {
     state: f64,
     /// Standard deviation of the noise from sample to sample.
     size: f64,
-    /// Standard deviation of offset, tilt and directed share of each segment.
+    /// Standard deviation of offset, tilt and direction-dependent offset of each segment.
     scatter: f64,
     offset: f64,
     tilt: f64,
@@ -32,7 +32,7 @@ impl Noise {
         StandardNormal.sample(&mut self.random)
     }
 
-    /// A new segment begins.
+    /// Starts a new segment.
     pub fn segment(&mut self) {
         self.offset = self.scatter * self.normal();
         self.tilt = self.scatter * self.normal();

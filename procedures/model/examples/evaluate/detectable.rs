@@ -1,5 +1,5 @@
-//! The size from which a diagnosis says that it would have found an effect, put into a run of the same machine with other
-//! noise: how often it is found there.
+//! Power of the detection limit: an effect of that size is added to a run of the same machine with other noise, and
+//! the rate of its detection is measured.
 
 use crate::made::Dice;
 use crate::options::Asked;

@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Every case of a folder against its answer.
+/// Every case of a folder compared with its answer.
 fn answered(folder: &Path, asked: &Asked) -> Result<(), Box<dyn Error>> {
     if styles::is_written(folder) {
         return styles::evaluate(folder, asked);

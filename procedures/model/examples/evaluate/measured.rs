@@ -1,4 +1,4 @@
-//! Measurements made by others, beside what is asked of a diagnosis of each.
+//! Published measurements, with the requirements on the diagnosis of each.
 
 use crate::common::recordings::{BAM, EMPS, KR300, ODRIVE, PLACID, WAVES, most, of_pulses, recording, waves};
 use crate::options::Asked;
@@ -6,7 +6,7 @@ use jointbench_model::{Discovery, ModelSpec, Options, Suggestion, diagnose, disc
 use std::error::Error;
 use std::path::Path;
 
-/// What is asked, what was found of it, and whether that is so.
+/// The requirement, the result, and whether it is met.
 type Judged = (&'static str, String, bool);
 
 pub fn measure(data: &Path, asked: &Asked) -> Result<(), Box<dyn Error>> {

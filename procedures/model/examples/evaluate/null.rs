@@ -1,4 +1,4 @@
-//! Runs with nothing hidden: how often anything is named.
+//! Runs without hidden effects: the rate of named effects.
 
 use crate::made;
 use crate::options::Asked;

@@ -1,4 +1,4 @@
-//! What is asked for on the command line.
+//! Command line options.
 
 use clap::Parser;
 use clap::builder::PossibleValuesParser;

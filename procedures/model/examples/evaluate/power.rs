@@ -1,4 +1,4 @@
-//! Effects that are weaker than the noise of one sample: how often they are found, and what is named beside them.
+//! Effects that are weaker than the noise of one sample: their detection rate, and other named effects.
 
 use crate::made::{Coloured, Dice};
 use crate::options::Asked;
@@ -55,7 +55,7 @@ pub fn measure(asked: &Asked) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What `discover` adds.
+/// Effects that `discover` adds.
 fn one(effect: &str, run: &RunTable, power: &mut Power) -> Result<Vec<String>, Box<dyn Error>> {
     let spec = ModelSpec::baseline(run)?;
     let first = diagnose(run, &spec, &Options::default())?;
@@ -75,16 +75,16 @@ const ROWS: usize = 200;
 const STEP_S: f64 = 0.004;
 const GEAR: f64 = 60.0;
 
-/// How much of an effect is in a run [Nm].
+/// Size of an effect in a run [Nm].
 #[derive(Clone, Copy)]
 pub enum Rms {
-    /// Beside what dry and viscous friction can take of it.
+    /// RMS of the part that is orthogonal to dry and viscous friction.
     AugmentedGrams(f64),
     Whole(f64),
 }
 
-/// Nine speeds both ways at three loads, twice, in random order: 108 steps of 200 samples. AR(1) noise with a
-/// correlation of 0.85; every step has its own offset, tilt and dry friction, a tenth of the noise each.
+/// Nine speeds in both directions at three loads, twice, in random order: 108 steps of 200 samples. AR(1) noise with
+/// a correlation of 0.85. Every step has a separate offset, tilt and dry friction, each a tenth of the noise.
 pub fn run(effect: &str, size: Rms, dice: &mut Dice) -> RunTable {
     let speeds: Vec<f64> = (0..9).map(|i| 2.5 * 1.6f64.powi(i)).collect();
     let fastest = speeds[8];
@@ -97,7 +97,7 @@ pub fn run(effect: &str, size: Rms, dice: &mut Dice) -> RunTable {
         let mut steps: Vec<(f64, f64)> = speeds.iter().flat_map(|v| [0.0, 4.0, 12.0].map(|l| (*v, l))).collect();
         dice.shuffle(&mut steps);
         for (speed, load, side) in steps.into_iter().flat_map(|(v, l)| [(v, l, 1.0), (v, l, -1.0)]) {
-            // Every pair of steps starts somewhere else on the turn.
+            // Every pair of steps starts at another angle of the turn.
             if side > 0.0 {
                 angle = dice.phase() * GEAR;
             }
@@ -128,14 +128,14 @@ pub fn run(effect: &str, size: Rms, dice: &mut Dice) -> RunTable {
         Rms::AugmentedGrams(size) => (size, &left_over(shape.clone(), &columns[2])),
         Rms::Whole(size) => (size, &shape),
     };
-    let factor = size / (counts.iter().map(|b| b * b).sum::<f64>() / counts.len() as f64).sqrt();
+    let coefficient = size / (counts.iter().map(|b| b * b).sum::<f64>() / counts.len() as f64).sqrt();
     // More friction near standstill and under load; the others have either sign.
     let sign = if ["stribeck", "load_linear"].contains(&effect) { 1.0 } else { dice.sign() };
-    let current = torque.iter().zip(&shape).map(|(t, s)| (t + sign * factor * s) / 0.08).collect();
+    let current = torque.iter().zip(&shape).map(|(t, s)| (t + sign * coefficient * s) / 0.08).collect();
     table(columns, current)
 }
 
-/// What an effect leaves beside dry and viscous friction.
+/// Part of an effect that is orthogonal to dry and viscous friction.
 fn left_over(mut shape: Vec<f64>, velocity: &[f64]) -> Vec<f64> {
     let dry: Vec<f64> = velocity.iter().map(|v| v.signum()).collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

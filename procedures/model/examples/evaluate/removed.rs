@@ -1,4 +1,4 @@
-//! One effect taken out of a complete model, as a user takes it out in the workbench: is it what the diagnosis names?
+//! One effect removed from a complete model, as by a user in the workbench: the diagnosis has to name it.
 
 use crate::made;
 use crate::options::Asked;
@@ -6,10 +6,10 @@ use crate::score::Count;
 use jointbench_model::{ModelSpec, Options, diagnose, fit};
 use std::error::Error;
 
-/// An effect is missed where the error without it is larger by this share.
+/// An effect is missed if its removal increases the error by this share.
 const MISSED: f64 = 0.1;
 
-/// Takes each effect out of the complete models of all cases, one at a time.
+/// Removes each effect of the complete models of all cases, one at a time.
 pub fn measure(asked: &Asked) -> Result<(), Box<dyn Error>> {
     let (mut first, mut exact) = (Count::default(), Count::default());
     let rounds = (asked.first..).take(asked.rounds as usize).flat_map(made::round);

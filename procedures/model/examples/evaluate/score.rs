@@ -1,4 +1,4 @@
-//! Holds the answers of `diagnose` and `discover` against what is right.
+//! Compares the answers of `diagnose` and `discover` with the correct ones.
 
 use crate::common;
 use crate::made::{Answer, Case};
@@ -31,7 +31,8 @@ impl Count {
 
 const FIGURES: [&str; 5] = ["top-1", "exact", "null", "unknown", "floor"];
 
-/// Figures of each family, and in how many of the unknown cases an effect of the library is named beside the structure.
+/// Figures of each family, and the number of unknown cases in which a library effect is named in addition to the
+/// structure.
 pub struct Table {
     title: &'static str,
     quiet: bool,
@@ -44,7 +45,7 @@ impl Table {
         Self { title, quiet, rows: Vec::new(), slowest_s: 0.0 }
     }
 
-    /// One case: what was found, and which figures it counts for.
+    /// One case: its result, and the figures that it counts for.
     pub fn judge(&mut self, case: &Case) -> Result<(), Box<dyn Error>> {
         let Case { family, name, run, answer } = case;
         let spec = ModelSpec::baseline(run)?;
@@ -123,7 +124,7 @@ impl Table {
     }
 }
 
-/// Cases from beside the repository: run, meta file and answer.
+/// Cases from next to the repository: run, meta file and answer.
 pub fn practice(folder: &Path) -> Result<Vec<Case>, Box<dyn Error>> {
     let mut folders: Vec<_> = std::fs::read_dir(folder)?.filter_map(|e| Some(e.ok()?.path())).collect();
     folders.retain(|f| f.join("answer.json").is_file());

@@ -1,4 +1,4 @@
-//! One run without an answer: what is found, step by step.
+//! One run without an answer: its findings, step by step.
 
 use crate::common;
 use jointbench_model::{ModelSpec, Options, diagnose, discover};

@@ -1,4 +1,4 @@
-//! Seconds and memory of one diagnosis, after loading.
+//! Duration and memory of one diagnosis, after loading.
 
 use crate::made::{Dice, friction_run};
 use jointbench_instrument::{Channel, RunTable, Trace};
@@ -14,7 +14,7 @@ const HIDDEN: [(&str, &[&str]); 3] = [
 ];
 const ROWS: [usize; 2] = [50_000, 1_000_000];
 
-/// Every case in a process of its own: what the allocator kept of one is no measure of the next.
+/// Every case runs in a separate process, because the allocator of a process keeps memory of earlier cases.
 pub fn measure(case: Option<usize>) -> Result<(), Box<dyn Error>> {
     if let Some(case) = case {
         return one(HIDDEN[case / ROWS.len() % HIDDEN.len()], ROWS[case % ROWS.len()]);
@@ -35,7 +35,7 @@ pub fn measure(case: Option<usize>) -> Result<(), Box<dyn Error>> {
 }
 
 fn one((label, hidden): (&str, &[&str]), rows: usize) -> Result<(), Box<dyn Error>> {
-    // The first diagnosis brings the program's own pages in.
+    // The first diagnosis loads the pages of the program.
     let small = of_length(&friction_run(&mut Dice::new(4), &[]), 2_000);
     diagnose(&small, &ModelSpec::baseline(&small)?, &Options::default())?;
     let run = of_length(&friction_run(&mut Dice::new(4), hidden), rows);
@@ -59,7 +59,7 @@ fn one((label, hidden): (&str, &[&str]), rows: usize) -> Result<(), Box<dyn Erro
     Ok(())
 }
 
-/// The run again and again until it has so many rows: time goes on, segments and repeats are counted on.
+/// Repeats the run until it has this number of rows, with continued time, segments and repeats.
 fn of_length(run: &RunTable, rows: usize) -> RunTable {
     let n = run.len();
     let channels: Vec<Channel> = run.trace().channels().to_vec();
@@ -77,9 +77,9 @@ fn of_length(run: &RunTable, rows: usize) -> RunTable {
     RunTable::new(run.meta().clone(), Trace::from_columns(channels, columns)).expect("the run was a valid table")
 }
 
-/// Bytes of this process, where the system tells.
+/// Resident memory of this process, if the system reports it.
 fn resident() -> Option<f64> {
-    // A peak of an earlier part is no peak of this one.
+    // Resets the peak of an earlier part.
     std::fs::write("/proc/self/clear_refs", "5").ok()?;
     status("VmRSS:")
 }

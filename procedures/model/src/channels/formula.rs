@@ -1,6 +1,7 @@
 //! A formula over the columns of a run: `motor_current_a * 0.064 - derivative(motor_velocity_rad_s) * 1.2e-5`.
 //!
-//! The language is that of effects, without parameters: a name is a column of the run. Three functions look along the time.
+//! The language is that of effects, without parameters: a name is a column of the run. Three functions operate over
+//! time.
 
 use super::over_time;
 use crate::formula::syntax::{self, Node, Syntax};
@@ -10,17 +11,17 @@ use jointbench_instrument::units::unit_of;
 use std::ops::Range;
 
 const TIME: &str = "time_s";
-/// What names a column in the formulas of effects; here its name alone is enough.
+/// Function name for a column in formulas of effects; here the column name alone is sufficient.
 const COLUMN: &str = "column";
 
-/// Functions of a column that look at the rows around each one.
+/// Functions of a column over the neighbouring rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OverTime {
-    /// Change in each second.
+    /// Derivative with respect to time.
     Derivative,
-    /// Sum over time from the first row on.
+    /// Integral over time from the first row on.
     Integral,
-    /// Mean over so many seconds, half of them before each row.
+    /// Mean over this number of seconds, centred on each row.
     Smooth,
 }
 
@@ -51,7 +52,7 @@ pub struct ChannelFormula {
 #[derive(Debug, Clone, PartialEq)]
 enum Part {
     Number(f64),
-    /// Which of the columns that the formula names.
+    /// Index of the column in the list of the formula.
     Column(usize),
     Negate(Box<Part>),
     Binary(Operator, Box<Part>, Box<Part>),
@@ -64,7 +65,7 @@ impl ChannelFormula {
     /// `known` are the columns of the run.
     ///
     /// # Errors
-    /// The first mistake, at its character, with the others of the same text.
+    /// The first error, at its character, with all other errors of the same text.
     pub fn parse(text: &str, known: &[&str]) -> Result<Self, FormulaFault> {
         let found = |mistake: Mistake| mistake.found("", "formula", text);
         let tree = syntax::right_hand_side(text).map_err(found)?;
@@ -76,17 +77,17 @@ impl ChannelFormula {
         }
     }
 
-    /// As it was written.
+    /// The original text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The columns that it names, each once.
+    /// The columns of the formula, each once.
     pub fn columns(&self) -> &[String] {
         &self.columns
     }
 
-    /// The unit of a column, its derivative, integral or mean; of what is computed from several nothing is known.
+    /// The unit of a column, its derivative, integral or mean. `None` for a combination of several columns.
     pub fn unit(&self) -> Option<String> {
         self.unit_of(&self.whole)
     }
@@ -142,7 +143,7 @@ fn in_seconds(unit: &str) -> String {
     }
 }
 
-/// Gives every name its meaning. What means nothing is zero, and a mistake.
+/// Resolves every name. An unknown name is an error and evaluates to zero.
 struct Names<'k> {
     known: &'k [&'k str],
     columns: Vec<String>,

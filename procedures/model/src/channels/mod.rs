@@ -1,4 +1,4 @@
-//! Channels that no instrument measures: formulas over the columns of a run, row by row, and what is in them at each frequency.
+//! Computed channels: formulas over the columns of a run, row by row, and their spectra.
 
 mod formula;
 mod over_time;

@@ -1,8 +1,8 @@
-//! What looks along the time. A pause is a border: nothing is computed across it.
+//! Functions over time. Nothing is computed across a pause.
 
 use std::ops::Range;
 
-/// A step so many times as long as the usual one is a pause.
+/// A pause is a time step longer than this multiple of the usual one.
 const PAUSE: f64 = 5.0;
 
 /// Rows that follow each other without a pause.
@@ -31,7 +31,7 @@ pub fn usual_step_s(time_s: &[f64]) -> f64 {
     *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Central difference; at the ends of a stretch from the one neighbour that there is.
+/// Central difference, one-sided at the ends of a stretch.
 pub fn derivative(time_s: &[f64], values: &[f64]) -> Vec<f64> {
     let mut slopes = vec![f64::NAN; values.len()];
     for stretch in stretches(time_s).into_iter().filter(|stretch| stretch.len() > 1) {
@@ -43,15 +43,15 @@ pub fn derivative(time_s: &[f64], values: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// By trapezoids from the first row on. A missing value and a pause add nothing.
+/// Trapezoidal integral from the first row on. A missing value and a pause add nothing.
 pub fn integral(time_s: &[f64], values: &[f64]) -> Vec<f64> {
     let mut sums = vec![0.0; values.len()];
     let mut sum = 0.0;
     for stretch in stretches(time_s) {
         for i in stretch.clone() {
             if i > stretch.start {
-                let piece = (values[i] + values[i - 1]) / 2.0 * (time_s[i] - time_s[i - 1]);
-                sum += if piece.is_finite() { piece } else { 0.0 };
+                let area = (values[i] + values[i - 1]) / 2.0 * (time_s[i] - time_s[i - 1]);
+                sum += if area.is_finite() { area } else { 0.0 };
             }
             sums[i] = sum;
         }
@@ -59,13 +59,13 @@ pub fn integral(time_s: &[f64], values: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Mean of what lies within `over_s` about each row, without missing values.
+/// Mean over an interval of `over_s` around each row, without missing values.
 pub fn smooth(time_s: &[f64], values: &[f64], over_s: f64) -> Vec<f64> {
     let mut means = vec![f64::NAN; values.len()];
     for stretch in stretches(time_s) {
         let (mut first, mut end, mut sum, mut n) = (stretch.start, stretch.start, 0.0, 0_usize);
         for i in stretch.clone() {
-            // A run's clock has microseconds: half a microsecond is no distance.
+            // The clock of a run has a resolution of microseconds, so that half a microsecond is a tolerance.
             let (low, high) = (time_s[i] - over_s / 2.0 - 5e-7, time_s[i] + over_s / 2.0 + 5e-7);
             while end < stretch.end && time_s[end] <= high {
                 (sum, n) = if values[end].is_finite() { (sum + values[end], n + 1) } else { (sum, n) };

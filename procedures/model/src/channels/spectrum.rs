@@ -5,27 +5,28 @@ use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// The shortest window of which a spectrum says something.
+/// Shortest useful window.
 const SHORTEST: usize = 32;
-/// A window of 16,384 rows resolves 0.06 Hz at 1 kHz; a longer one averages too little.
+/// Longest window: 16,384 rows resolve 0.06 Hz at 1 kHz, and a longer window leaves too few averages.
 const LONGEST: usize = 1 << 14;
 
-/// How large a sine at each frequency would have to be.
+/// Amplitude spectrum: the amplitude of a sine at each frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
     pub frequency_hz: Vec<f64>,
-    /// In the unit of the values: the amplitude of a sine.
+    /// Amplitude of a sine, in the unit of the values.
     pub amplitude: Vec<f64>,
-    /// Windows that were averaged.
+    /// Number of averaged windows.
     pub windows: usize,
 }
 
-/// Of values at about equal steps. `None` where no stretch without a pause or a missing value has 32 rows.
+/// Spectrum of values at nearly equal time steps. `None` without a stretch of 32 rows that has no pause and no
+/// missing value.
 pub fn spectrum(time_s: &[f64], values: &[f64]) -> Option<Spectrum> {
     let step_s = usual_step_s(time_s);
     let whole: Vec<Range<usize>> = stretches(time_s).into_iter().flat_map(|rows| finite(rows, values)).collect();
     let most = whole.iter().map(Range::len).max().filter(|most| *most >= SHORTEST && step_s > 0.0)?;
-    // Two windows and a half, where they are long enough to resolve anything: one alone averages nothing.
+    // Half the stretch, if that is long enough, so that at least two windows are averaged.
     let length = previous_power_of_two(if most >= 4 * SHORTEST { most / 2 } else { most }).min(LONGEST);
     let window: Vec<f64> = (0..length).map(|i| 0.5 - 0.5 * (TAU * i as f64 / length as f64).cos()).collect();
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
@@ -44,7 +45,7 @@ pub fn spectrum(time_s: &[f64], values: &[f64]) -> Option<Spectrum> {
             windows += 1;
         }
     }
-    // The two halves of the spectrum together, over the sum of the window.
+    // Both halves of the spectrum, divided by the sum of the window.
     let scale = 2.0 / window.iter().sum::<f64>();
     Some(Spectrum {
         frequency_hz: (0..powers.len()).map(|k| k as f64 / (length as f64 * step_s)).collect(),

@@ -47,7 +47,7 @@ fn a_mean_over_time_leaves_out_what_is_missing() {
 }
 
 #[test]
-fn a_mistake_stands_at_its_character() {
+fn an_error_has_its_character() {
     for (text, position, part) in [
         ("motor_currant_a * 2", 0, "motor_current_a"),
         ("derivativ(motor_current_a)", 0, "derivative"),
@@ -62,7 +62,7 @@ fn a_mistake_stands_at_its_character() {
 }
 
 #[test]
-fn a_sine_stands_in_the_spectrum_with_its_amplitude() {
+fn a_sine_has_its_amplitude_in_the_spectrum() {
     let time_s = times(5000, 0.001);
     let values: Vec<f64> = time_s.iter().map(|t| 4.0 + 0.3 * (std::f64::consts::TAU * 125.0 * t).sin()).collect();
     let found = spectrum(&time_s, &values).unwrap();

@@ -1,15 +1,15 @@
-//! What speaks for a suggested effect beside its chance.
+//! Evidence for a suggested effect in addition to its p-value.
 
 use crate::linear::basis::dot;
-use crate::preprocess::independent_blocks::pieces;
-use crate::regression::cross_validation::held_out;
+use crate::preprocess::independent_blocks::independent_blocks;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::LinearModel;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// 95 % interval of the share that goes off the held-out RMS from one model to the other: jackknife over what was held
-/// out together, on the logarithm of the ratio. `None` where there are too few of these to scatter.
+/// 95 % interval of the relative reduction of the validation RMS between two models: jackknife over folds, on the
+/// logarithm of the ratio. `None` with too few folds.
 pub fn reduction(before: &LinearModel, after: &LinearModel) -> Option<[f64; 2]> {
-    let each: Vec<(f64, f64)> = held_out(before).into_iter().zip(held_out(after)).collect();
+    let each: Vec<(f64, f64)> = validation_losses(before).into_iter().zip(validation_losses(after)).collect();
     let (from, to) = each.iter().fold((0.0, 0.0), |(b, a), fold| (b + fold.0, a + fold.1));
     let groups = each.len() as f64;
     let logs: Vec<f64> = each.iter().map(|(b, a)| ((to - a) / (from - b)).ln()).collect();
@@ -22,15 +22,15 @@ pub fn reduction(before: &LinearModel, after: &LinearModel) -> Option<[f64; 2]> 
     ci95.iter().all(|end| end.is_finite()).then_some(ci95)
 }
 
-/// Change of the Bayesian information criterion (Schwarz 1978), counted over independent pieces of the run: samples that
-/// follow each other say the same again.
+/// Change of the Bayesian information criterion (Schwarz 1978), counted over independent blocks of the run, because
+/// consecutive samples are correlated.
 pub fn bic_change(before: &LinearModel, after: &LinearModel) -> f64 {
     let parameters = |terms: &LinearModel| terms.terms.iter().map(|t| t.size() as f64).sum::<f64>();
-    let count = pieces(before.problem, after.columns().len()).1 as f64;
+    let count = independent_blocks(before.problem, after.columns().len()).1 as f64;
     count * (after.linear().sse / before.linear().sse).ln() + (parameters(after) - parameters(before)) * count.ln()
 }
 
-/// Correlation of what two models take off the residual of one.
+/// Correlation of the contributions of two models to the residual of a third one.
 pub fn correlation(of: &LinearModel, one: &LinearModel, other: &LinearModel) -> f64 {
     let left = of.linear().residual;
     let taken = |by: &LinearModel| -> Vec<f64> { left.iter().zip(by.linear().residual).map(|(l, r)| l - r).collect() };

@@ -1,4 +1,5 @@
-//! What became of the effects that are not in the last model: each is silent, invisible or left out, and none is forgotten.
+//! Effects that are not in the last model: each is below its detection limit, not testable, or rejected. No effect is
+//! omitted.
 
 use crate::effect::{Effect, Form, Regime, ShapeSearch};
 use crate::regression::two_stage_model::TwoStageModel;
@@ -12,40 +13,41 @@ const TOO_LARGE: &str = "its detection limit exceeds the largest measured value"
 
 #[derive(Default)]
 pub struct ExcludedEffects {
-    /// Looked for and not found, with the smallest that would have been.
+    /// Not found, with the detection limit.
     pub silent: Vec<Silent>,
     pub invisible: Vec<Invisible>,
-    /// Tried, and left out for a reason.
+    /// Tested and rejected, with the reason.
     pub left_out: Vec<LeftOut>,
 }
 
 impl ExcludedEffects {
     pub fn of(selected: &ModelSelection) -> Self {
-        let ModelSelection { withdrawn, ties, silences, .. } = selected;
+        let ModelSelection { withdrawn, ties, detection_limits, .. } = selected;
         let end = selected.end();
-        let on_ramps = ramp_stage::silence(end);
-        let around_reversals = hysteresis_stage::silences(end);
-        let silences: Vec<&DetectionLimit> = silences.iter().chain(&around_reversals).chain(&on_ramps).collect();
+        let on_ramps = ramp_stage::detection_limit(end);
+        let around_reversals = hysteresis_stage::detection_limits(end);
+        let detection_limits: Vec<&DetectionLimit> =
+            detection_limits.iter().chain(&around_reversals).chain(&on_ramps).collect();
         let largest = end.prepared.main.target.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let mut others = Self::default();
         let is_out = |effect: &&dyn Effect| !end.effects.iter().any(|e| e == effect.info().id);
         for effect in end.spec.known().filter(is_out) {
             let id = effect.info().id;
-            let tied = ties.iter().find(|(_, rival)| *rival == id);
+            let tied = ties.iter().find(|(_, scored)| *scored == id);
             let tied = tied.map(|(named, _)| format!("{named} is in the model, and this run cannot distinguish them"));
             let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words().to_owned());
             let refused = selected.decided.iter().flat_map(|decided| &decided.refused).find(|r| r.effect == id);
             let tried = tried.or_else(|| refused.map(Refused::why));
-            let silence = silences.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
+            let detection_limit = detection_limits.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
             if let Some(why) = tried.or_else(|| given(effect, end).map(String::from)) {
                 others.left_out.push(LeftOut { effect: id.into(), why: tied.unwrap_or(why) });
-            } else if silence.is_some_and(|silence| silence.detectable_rms > largest) {
+            } else if detection_limit.is_some_and(|detection_limit| detection_limit.detectable_rms > largest) {
                 others.invisible.push(Invisible { effect: id.into(), why: TOO_LARGE.into() });
-            } else if let Some(silence) = silence {
+            } else if let Some(detection_limit) = detection_limit {
                 let sought = sought(effect, end);
                 others.silent.push(Silent {
                     effect: id.into(),
-                    minimum_detectable_rms: silence.detectable_rms,
+                    minimum_detectable_rms: detection_limit.detectable_rms,
                     sought,
                 });
             } else {
@@ -57,13 +59,13 @@ impl ExcludedEffects {
     }
 }
 
-/// What enters as it is has no size from which it would have been found.
+/// An offset term has a fixed size, so that it has no detection limit.
 fn given(effect: &dyn Effect, end: &TwoStageModel) -> Option<&'static str> {
     let is_tried = effect.is_offset() && effect.hidden(&end.prepared.main.view).is_none();
     is_tried.then_some("it is used as measured, and does not clearly reduce the error")
 }
 
-/// The numbers of waves that were tried.
+/// The tested numbers of waves.
 fn sought(effect: &dyn Effect, end: &TwoStageModel) -> Option<String> {
     let forms = effect.forms(&end.prepared.main.view);
     let a_turn = |name: &str| effect.info().parameters.iter().any(|p| p.name == name && p.unit == "1/turn");
@@ -78,7 +80,7 @@ fn sought(effect: &dyn Effect, end: &TwoStageModel) -> Option<String> {
     }
 }
 
-/// What a run would have to hold that tells an effect from the others.
+/// Excitation of a run that would distinguish the effect from others.
 fn excitation(effect: &dyn Effect) -> &'static str {
     let needs = |column: &str| effect.info().needs.contains(&column);
     match effect.regime() {

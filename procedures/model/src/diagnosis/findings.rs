@@ -1,8 +1,8 @@
-//! What a selection found: the evidence for each effect, what was not found, and the verdict.
+//! Findings of a selection: the evidence for each effect, the effects that were not found, and the verdict.
 
 use crate::diagnosis::excluded_effects::ExcludedEffects;
 use crate::preprocess::Prepared;
-use crate::regression::cross_validation::held_out_rms;
+use crate::regression::cross_validation::validation_rms;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Imitated, Invisible, LeftOut, NoiseFloor, Silent, Verdict};
@@ -23,26 +23,26 @@ pub struct Findings<'p> {
     pub advances: Vec<SelectionStep<'p>>,
     pub withdrawn: Vec<Withdrawn<'p>>,
     others: ExcludedEffects,
-    /// Maps of what the last model leaves.
+    /// Residual maps of the last model.
     pub maps: Maps,
-    /// What shows in them is what whole stretches of motion scatter by.
+    /// The structure in the maps is only scatter between stretches of motion.
     scatters: bool,
-    /// What happened once and never again.
+    /// Events that do not repeat.
     pub events: Vec<Event>,
     pub floor: NoiseFloor,
-    pub end_held_out_rms: f64,
-    /// Effects of the last model, and what this run cannot tell them from.
+    pub end_validation_rms: f64,
+    /// Effects of the last model with the effects that are confounded with them.
     ties: Vec<(&'p str, &'p str)>,
-    /// Effects of the last model that the error would hardly miss.
+    /// Effects of the last model that hardly reduce the error, but prevent biased coefficients.
     pub upheld: Vec<Imitated>,
-    /// One that may be there as well.
+    /// An effect that may be present as well.
     pub open: Option<Imitated>,
-    /// What one decision leaves, where the run is judged sample by sample.
+    /// Result of the evidence search, for runs that are judged sample by sample.
     pub decided: Option<Decided<'p>>,
 }
 
 impl<'p> Findings<'p> {
-    /// `on_advance` sees every move when it is made.
+    /// `on_advance` gets each step when it is made.
     pub fn new(
         prepared: &'p Prepared,
         spec: &'p ModelSpec,
@@ -52,7 +52,7 @@ impl<'p> Findings<'p> {
     ) -> Result<Self, ModelError> {
         let selected = selection::search(prepared, spec, options, most, on_advance)?;
         let others = ExcludedEffects::of(&selected);
-        // The reversals of a joint are events of every repeat.
+        // The reversals of a joint would be events of every repeat.
         let events = match prepared.kind {
             Kind::Friction => Vec::new(),
             _ => Events::of(&prepared.main, &selected.residual).without_jumps(&selected.now).find(),
@@ -61,7 +61,7 @@ impl<'p> Findings<'p> {
         let floor = noise_floor::noise_floor(prepared, &selected.residual, remembers, &events);
         let scatters = selected.decided.is_none()
             && lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
-        let end_held_out_rms = held_out_rms(&selected.end().main);
+        let end_validation_rms = validation_rms(&selected.end().main);
         let ModelSelection { start, advances, withdrawn, maps, ties, upheld, open, decided, .. } = selected;
         Ok(Self {
             start,
@@ -72,7 +72,7 @@ impl<'p> Findings<'p> {
             scatters,
             events,
             floor,
-            end_held_out_rms,
+            end_validation_rms,
             ties,
             upheld,
             open,
@@ -89,24 +89,24 @@ impl<'p> Findings<'p> {
         self.start.hidden.iter().chain(&self.others.invisible).cloned().collect()
     }
 
-    /// Effects that were looked for and not found.
+    /// Effects that were tested and not found.
     pub fn silent(&self) -> Vec<Silent> {
         self.others.silent.clone()
     }
 
-    /// Effects that were tried and left out.
+    /// Effects that were tested and rejected.
     pub fn left_out(&self) -> Vec<LeftOut> {
         self.others.left_out.clone()
     }
 
-    /// What this run cannot tell an effect of the last model from: the model is as good with it in its place.
+    /// Effects that are confounded with an effect of the last model: the model is as good with them in its place.
     pub fn ties_of(&self, effect: &str) -> Vec<String> {
-        self.ties.iter().filter(|(e, _)| *e == effect).map(|(_, rival)| (*rival).into()).collect()
+        self.ties.iter().filter(|(e, _)| *e == effect).map(|(_, scored)| (*scored).into()).collect()
     }
 
-    /// This run cannot tell it from an effect of the last model.
-    pub fn is_rival(&self, effect: &str) -> bool {
-        self.ties.iter().any(|(_, rival)| *rival == effect)
+    /// Whether the effect is confounded with an effect of the last model.
+    pub fn is_confounded(&self, effect: &str) -> bool {
+        self.ties.iter().any(|(_, scored)| *scored == effect)
     }
 
     /// Verdict on the last model.
@@ -123,43 +123,43 @@ impl<'p> Findings<'p> {
         }
     }
 
-    /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
-    /// noise, whether or not a map shows where it comes from. A floor without an interval is too little known to accuse.
+    /// Whether most of the residual is repeatable, or the validation error is far above the noise floor: then it is
+    /// not noise, even if no map shows its origin. A noise floor without an interval is too uncertain for this.
     fn repeats_itself(&self) -> bool {
         let surely = self.floor.repeatable_ci95.is_some_and(|[least, _]| least > STRUCTURE_SHARE);
         self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE) && surely
             || self.floor.ci95.is_some() && self.exceeds_floor()
     }
 
-    /// The model is far from predicting what was held out as well as the run repeats itself.
+    /// Whether the validation error is far above the noise floor.
     pub fn exceeds_floor(&self) -> bool {
         let rounding = self.start.prepared.main.view.constants.rounding;
-        self.floor.rms.is_some_and(|floor| self.end_held_out_rms > FLOOR_RATIO * floor.hypot(rounding))
+        self.floor.rms.is_some_and(|floor| self.end_validation_rms > FLOOR_RATIO * floor.hypot(rounding))
     }
 
-    /// What is left is what the readings are rounded by, however much of it repeats.
+    /// Whether the residual is encoder quantization, even if it is repeatable.
     pub fn is_rounding(&self) -> bool {
         let rounding = self.start.prepared.main.view.constants.rounding;
         self.floor.rms.is_some_and(|floor| floor < rounding) && !self.exceeds_floor()
     }
 
-    /// RMS of what whole stretches of motion differ by, where that is what shows over an axis.
+    /// RMS between stretches of motion, if it is the cause of the structure over an axis.
     pub fn scatter_rms(&self) -> Option<f64> {
         self.scatters.then(|| self.maps.between_rms())
     }
 
-    /// What is left is small beside what was measured, however much of it repeats.
+    /// Whether the residual is small relative to the measured signal, even if it is repeatable.
     pub fn is_negligible(&self) -> bool {
-        self.end().main.is_negligible(self.end_held_out_rms, self.start.prepared.kind)
+        self.end().main.is_negligible(self.end_validation_rms, self.start.prepared.kind)
     }
 
-    /// Added effects that are still there, the most important first: by what the last model loses without them, so
-    /// that effects that mask each other come out in the right order.
+    /// Added effects of the last model by decreasing importance: the loss without each of them. This order is right
+    /// even for effects that mask each other.
     pub fn ranking(&self) -> Vec<(&SelectionStep<'p>, f64)> {
         let end = self.end();
         let mut seen: Vec<&str> = Vec::new();
         let mut ranked: Vec<(&SelectionStep, f64)> = Vec::new();
-        // From the end, because an effect that was dropped and came again has its present evidence there.
+        // In reverse order: for an effect that was removed and added again, the last step has its evidence.
         for advance in self.advances.iter().rev() {
             let Some(id) = advance.added.as_ref().map(|r| r.term.id()) else { continue };
             if !seen.contains(&id) && end.effects.iter().any(|e| e == id) {
@@ -168,8 +168,8 @@ impl<'p> Findings<'p> {
             }
         }
         if self.decided.is_some() {
-            // In the order in which they came, each with what it took then.
-            let taken = |advance: &SelectionStep| advance.added.as_ref().map_or(0.0, |rival| rival.share);
+            // In the order of addition, each with its error reduction at that time.
+            let taken = |advance: &SelectionStep| advance.added.as_ref().map_or(0.0, |scored| scored.share);
             return ranked.into_iter().rev().map(|(advance, _)| (advance, taken(advance))).collect();
         }
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -178,20 +178,20 @@ impl<'p> Findings<'p> {
 }
 
 impl Findings<'_> {
-    /// Share of the held-out error that the last model has less than the same model without an effect.
+    /// Relative reduction of the validation error by an effect of the last model.
     pub fn lost_without(&self, id: &str) -> f64 {
         let parts = parts_without(self.end(), id);
-        parts.first().map_or(0.0, |(part, without)| 1.0 - held_out_rms(part) / held_out_rms(without))
+        parts.first().map_or(0.0, |(part, without)| 1.0 - validation_rms(part) / validation_rms(without))
     }
 }
 
-/// Share of the squared error without an effect that the effect takes away.
+/// Partial R² of an effect in the last model.
 fn importance(end: &TwoStageModel, id: &str) -> f64 {
     let loss = |(part, without): &(&LinearModel, LinearModel)| 1.0 - part.linear().sse / without.linear().sse;
     parts_without(end, id).iter().map(loss).fold(0.0, f64::max)
 }
 
-/// The parts of a model that hold an effect, beside what they are without it.
+/// The parts of a model that contain an effect, each with the part without it.
 fn parts_without<'a, 'p>(end: &'a TwoStageModel<'p>, id: &str) -> Vec<(&'a LinearModel<'p>, LinearModel<'p>)> {
     if let Ok(effect) = end.spec.find(id)
         && effect.is_offset()

@@ -1,4 +1,4 @@
-//! Which effect is missing, and what is left when all that can be named is in the model.
+//! Diagnosis: the missing effects, and the unexplained structure of the final model.
 
 pub(crate) mod evidence;
 pub(crate) mod excluded_effects;
@@ -11,7 +11,7 @@ use crate::fit::{report, written};
 use crate::inference::confounding;
 use crate::linear::basis::dot;
 use crate::preprocess::{Prepared, prepare};
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Diagnosis, Discovery, Evidence, Experiment, Step, Suggestion, Verdict};
 use crate::report::fit::Parameter;
@@ -23,10 +23,10 @@ use crate::words::{figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
 use jointbench_instrument::RunTable;
 
-/// How far the search looks ahead for a diagnosis.
+/// Largest number of effects that a diagnosis adds.
 const MOST_EFFECTS: usize = 6;
 
-/// Compares a model with a run: where it fails, which effects are missing, how sure that is.
+/// Compares a model with a run: regions of large residuals, missing effects, and their significance.
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
     let prepared = prepare(run, options)?;
     let found = Findings::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
@@ -43,8 +43,8 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let maps = of_start.as_ref().unwrap_or(&found.maps);
     let mut regions = regions(maps, &fit, &found, verdict == Verdict::Adequate && undecided.is_none());
     let remembering = found.ranking().into_iter().filter_map(|(advance, _)| advance.added.as_ref());
-    let apart = remembering.filter(|rival| found.start.is_apart(rival.term.effect));
-    let reach = apart.filter_map(|rival| rival.term.shape.first().copied());
+    let apart = remembering.filter(|scored| found.start.is_apart(scored.term.effect));
+    let reach = apart.filter_map(|scored| scored.term.shape.first().copied());
     let measure = yardstick(&fit, Some(&found.floor));
     let reversals = reach.filter_map(|reach| reversals::region(&found.start, reach, &fit, measure.as_ref()));
     regions.splice(0..0, reversals.collect::<Vec<_>>());
@@ -77,9 +77,9 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     })
 }
 
-/// Diagnoses, adds the best effect and fits again until nothing more can be named or `max_effects` were added.
+/// Diagnoses, adds the best effect and refits until no candidate passes or `max_effects` were added.
 ///
-/// `on_step` sees every step when it is made.
+/// `on_step` gets each step when it is made.
 pub fn discover(
     run: &RunTable,
     spec: &ModelSpec,
@@ -139,7 +139,7 @@ fn step(model: &TwoStageModel, advance: Option<&SelectionStep>) -> Step {
         confounded_with: advance.map_or_else(Vec::new, |a| a.ties.iter().map(|t| (*t).into()).collect()),
         model: model.effects.clone(),
         rms: (dot(&residual, &residual) / n).sqrt(),
-        validation_rms: (held_out(&model.main).iter().sum::<f64>() / n).sqrt(),
+        validation_rms: (validation_losses(&model.main).iter().sum::<f64>() / n).sqrt(),
     }
 }
 
@@ -152,25 +152,25 @@ fn suggestions(
 ) -> Result<Vec<Suggestion>, ModelError> {
     let mut out = Vec::new();
     for (advance, importance) in found.ranking() {
-        let Some(rival) = &advance.added else { continue };
-        let id = rival.term.id();
+        let Some(scored) = &advance.added else { continue };
+        let id = scored.term.id();
         let with = spec.with(id)?;
         let alone = TwoStageModel::new(found.start.prepared, &with, options)?;
         let with = report(&alone)?;
-        let apart = alone.is_apart(rival.term.effect);
+        let apart = alone.is_apart(scored.term.effect);
         let reduction = if apart {
-            1.0 - (1.0 - rival.share).max(0.0).sqrt()
+            1.0 - (1.0 - scored.share).max(0.0).sqrt()
         } else {
             1.0 - with.validation_rms / fit.validation_rms
         };
-        let info = rival.term.effect.info();
+        let info = scored.term.effect.info();
         let confounded_with = found.ties_of(id);
         let tie = if confounded_with.is_empty() {
             String::new()
         } else {
             let mut alike = Vec::new();
-            for rival in &confounded_with {
-                let other = spec.with(rival)?;
+            for scored in &confounded_with {
+                let other = spec.with(scored)?;
                 let other = TwoStageModel::new(found.start.prepared, &other, options)?;
                 alike.push(format!("{:.2}", evidence::correlation(&found.start.main, &alone.main, &other.main)));
             }
@@ -181,7 +181,7 @@ fn suggestions(
             )
         };
         let evidence = if apart {
-            format!("Around reversals it reduces the squared error by {}.", percent(rival.share))
+            format!("Around reversals it reduces the squared error by {}.", percent(scored.share))
         } else if let Some(upheld) = found.upheld.iter().find(|u| u.effect == id) {
             format!("Removing it hardly changes the error, but without it {}.", narrative::elsewhere(upheld, false))
         } else if found.decided.is_some() {
@@ -192,7 +192,7 @@ fn suggestions(
             format!("Removing it from the final model increases the squared error {times}-fold.")
         };
         let written = found.end().main.terms.iter().find(|term| term.id() == id).and_then(written);
-        let instead = confounding::instead(rival.term.effect, found.start.prepared);
+        let instead = confounding::instead(scored.term.effect, found.start.prepared);
         let also: String = written.into_iter().chain(instead).map(|said| format!(" {said}.")).collect();
         let why = format!("{} {evidence}{tie}{also}", info.sentence);
         let reduction_ci95 = (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten();
@@ -204,9 +204,9 @@ fn suggestions(
             error_reduction: reduction,
             error_reduction_ci95: reduction_ci95,
             bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),
-            p_value: rival.p_value,
-            evidence: Evidence::of(rival.p_value, reduction, reduction_ci95, together),
-            p_at_most: found.decided.is_none() && rival.p_value * (options.flips + 1) as f64 <= 1.001,
+            p_value: scored.p_value,
+            evidence: Evidence::of(scored.p_value, reduction, reduction_ci95, together),
+            p_at_most: found.decided.is_none() && scored.p_value * (options.flips + 1) as f64 <= 1.001,
             error_reduction_together: together,
             parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),
             confounded_with,
@@ -216,8 +216,8 @@ fn suggestions(
     Ok(out)
 }
 
-/// An interval of a parameter says nothing of an effect that is not in the model. Where that may be there as well, it reaches
-/// to what the parameter would be with it.
+/// The interval of a parameter assumes that no effect is missing. If an effect may be present as well, the interval
+/// is extended to the value with that effect.
 fn leave_open(fit: &mut Fit, found: &Findings) {
     let Some(open) = &found.open else { return };
     let is_meant = |p: &&mut Parameter| format!("{}.{}", p.effect, p.name) == open.parameter;
@@ -228,7 +228,7 @@ fn leave_open(fit: &mut Fit, found: &Findings) {
     }
 }
 
-/// Where a model fails. Nowhere that counts, where it is known to be adequate.
+/// Regions of large residuals. None for an adequate model.
 fn regions(maps: &Maps, fit: &Fit, found: &Findings, is_adequate: bool) -> Vec<Region> {
     match is_adequate {
         true => Vec::new(),
@@ -240,12 +240,12 @@ fn structure(found: &Findings, verdict: Verdict) -> Option<PairMap> {
     (verdict == Verdict::UnexplainedStructure).then(|| found.maps.structure(&found.start.prepared.main))?
 }
 
-/// The columns that the summary names, where structure remains.
+/// The columns that the summary names for unexplained structure.
 fn shows_over(found: &Findings, structure: Option<&PairMap>) -> Vec<String> {
     structure.and_then(|shown| narrative::shown_over(found, Some(shown))).unwrap_or_default().0
 }
 
-/// What to measure next.
+/// The recommended next run.
 fn experiment(found: &Findings, prepared: &Prepared) -> Option<Experiment> {
     if found.floor.rms.is_none() && prepared.clashes.is_empty() {
         let mut parameters = serde_json::Map::new();

@@ -14,12 +14,13 @@ use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, SM
 use crate::words::{Scale, figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
-/// The missing effects, and what remains with them. `fit` is the given model, `complete` the one with all suggestions.
+/// The missing effects, and the structure that remains with them. `fit` is the given model, `complete` the one with
+/// all suggestions.
 pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
     let unit = Scale::of(fit.validation_rms, &fit.unit);
     let (error, floor) = (unit.figure(fit.validation_rms), floor(found, complete, &unit));
     let first = &suggestions[0];
-    let named: Vec<String> = suggestions.iter().map(or_rivals).collect();
+    let named: Vec<String> = suggestions.iter().map(with_confounded).collect();
     let with = unit.figure(first.validation_rms);
     let effect = &first.effect;
     let all = match suggestions.len() {
@@ -75,11 +76,11 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
 }
 
 /// An effect with those that it is confounded with.
-fn or_rivals(suggestion: &Suggestion) -> String {
-    let Suggestion { effect, confounded_with: rivals, .. } = suggestion;
-    match rivals.is_empty() {
+fn with_confounded(suggestion: &Suggestion) -> String {
+    let Suggestion { effect, confounded_with: confounded, .. } = suggestion;
+    match confounded.is_empty() {
         true => effect.clone(),
-        false => format!("{effect} (or {}: this run cannot distinguish them)", rivals.join(" or ")),
+        false => format!("{effect} (or {}: this run cannot distinguish them)", confounded.join(" or ")),
     }
 }
 
@@ -101,7 +102,7 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
             "The model explains this run. Validation error {error}, encoder quantization {}, {floor}.",
             unit.figure(found.start.prepared.main.view.constants.rounding)
         ),
-        // Far above the noise floor it is adequate for one reason only.
+        // Far above the noise floor, a model is adequate only because the residual is negligible.
         (_, None) if found.exceeds_floor() && found.is_negligible() => format!(
             "The residual is negligible relative to the measured signal. Validation error {error}, {floor}{}.",
             above(found, fit)
@@ -114,12 +115,12 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
              decided: {why}."
         ),
     };
-    // Of a model that is adequate but for it, the sentence itself says so.
+    // For an otherwise adequate model, the sentence itself contains this.
     let sized: &[&Fit] = if verdict == Verdict::UnexplainedStructure { &[fit] } else { &[] };
     attention(found, sized) + &said + &scatter(found, verdict, &fit.unit) + &open(found) + &rejected(found, &fit.unit)
 }
 
-/// Why what shows over an axis is called noise.
+/// Why the structure over an axis counts as noise.
 fn scatter(found: &Findings, verdict: Verdict, unit: &str) -> String {
     let main = &found.start.prepared.main;
     let elsewhere = match 2 * main.different_angle.len() > main.replicate_pairs.len() {
@@ -136,7 +137,7 @@ fn scatter(found: &Findings, verdict: Verdict, unit: &str) -> String {
     found.scatter_rms().filter(|_| verdict == Verdict::Adequate).map(said).unwrap_or_default()
 }
 
-/// An effect that may be there as well, for all that the error tells.
+/// An effect that may be present as well, because the error does not decide.
 fn open(found: &Findings) -> String {
     let said = |open: &Imitated| {
         format!(" This run does not determine whether {} is present: with it {}.", open.effect, elsewhere(open, true))
@@ -144,7 +145,7 @@ fn open(found: &Findings) -> String {
     found.open.as_ref().map(said).unwrap_or_default()
 }
 
-/// The figure that an effect changes which another one imitates.
+/// The parameter that the absence of an imitated effect biases.
 pub fn elsewhere(imitated: &Imitated, is_there: bool) -> String {
     let Imitated { parameter, unit, without, with, .. } = imitated;
     let (would, instead) = if is_there { (with, without) } else { (without, with) };
@@ -155,8 +156,8 @@ const CORRECT: &str = "Correct this first: the results are based on these column
 const CORRECT_ALL: &str =
     "Correct this first: no effect is suggested until then, and the results are based on these columns. ";
 
-/// What a user has to correct before anything else counts: columns that contradict each other, a size that contradicts physics in all
-/// of the fits, and what the model takes as given and the run shows as a constant, which may not have been connected.
+/// Problems that a user has to correct first: contradicting columns, a parameter that is physically impossible in all
+/// fits, and a constant input of an offset term, whose sensor may not have been connected.
 fn attention(found: &Findings, fits: &[&Fit]) -> String {
     let problem = |what: &String| format!("Data problem: {what}. ");
     let clashes = &found.start.prepared.clashes;
@@ -177,7 +178,7 @@ fn floor(found: &Findings, end: &Fit, unit: &Scale) -> String {
     let Some(floor) = found.floor.rms else {
         return "noise floor unknown".to_owned();
     };
-    // An error within the floor's own interval needs no excuse.
+    // An error within the interval of the noise floor needs no explanation.
     let below = match end.validation_rms < found.floor.ci95.map_or(floor, |[low, _]| low) {
         true => " (from repeated conditions only; the error over all samples may be smaller)",
         false => "",
@@ -186,7 +187,7 @@ fn floor(found: &Findings, end: &Fit, unit: &Scale) -> String {
     format!("noise floor {about}{}{below}", unit.figure(floor))
 }
 
-/// What an error above the noise floor consists of.
+/// Composition of an error above the noise floor.
 fn above(found: &Findings, end: &Fit) -> String {
     if found.floor.ci95.is_none_or(|[_, high]| end.validation_rms <= high) {
         return String::new();
@@ -212,7 +213,7 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
         && let Some(event) = found.events.first()
     {
         let [from_s, to_s] = Events::span_s(&found.start.prepared.main, event);
-        // Without repeats nothing can recur.
+        // Without repeats no recurrence can be observed.
         let recurs = if found.start.prepared.main.replicate_pairs.is_empty() { "" } else { " and does not recur" };
         let which = match found.events.len() {
             1 => format!("one interval of the run deviates far beyond the scatter of all others{recurs}:"),
@@ -235,7 +236,7 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
     }
 }
 
-/// The columns over which what is left shows most, and what a function of them would take off it. `None` where none does.
+/// The columns with most structure, and the cross-validated R² of a function of them. `None` without structure.
 pub fn shown_over(found: &Findings, shown: Option<&PairMap>) -> Option<(Vec<String>, f64)> {
     if let Some(decided) = &found.decided {
         let prepared = found.start.prepared;
@@ -244,13 +245,14 @@ pub fn shown_over(found: &Findings, shown: Option<&PairMap>) -> Option<(Vec<Stri
     }
     let pair = shown.map(|s| (vec![s.x.clone(), s.y.clone()], s.removable_share));
     let axis = found.maps.shows_over();
-    // A second axis cuts the first one's bins: what shows over one alone can be more, and is said more shortly.
+    // A second axis divides the bins of the first one, so that a single axis can have a larger R², and is simpler to
+    // report.
     let pair = pair.filter(|(_, both)| axis.as_ref().is_none_or(|(_, alone)| *both > SECOND_AXIS_GAIN * alone));
     let most = pair.or(axis);
     most.filter(|(_, share)| *share > PRACTICAL_SHARE)
 }
 
-/// Why no region is named where the model fails, in a sentence of its own. `maps` is what was looked at.
+/// Why no region of large residuals is reported, in a separate sentence. `maps` are the evaluated maps.
 pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> String {
     match verdict {
         Verdict::Adequate => String::new(),
@@ -262,17 +264,17 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
     }
 }
 
-/// Why a verdict decides nothing, and the sentence that says so.
+/// The reason why a verdict is undecided, and the sentence for it.
 pub struct Undecided {
     pub reason: UndecidedReason,
     pub said: String,
 }
 
-/// Why the verdict decides nothing: columns that contradict each other carry none, too short a run cannot find fault with a
-/// model, or a size contradicts physics in all of the fits.
+/// Why the verdict is undecided: contradicting columns, too few blocks to reject a model, an unknown noise floor, or
+/// a parameter that is physically impossible in all fits.
 pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Options) -> Option<Undecided> {
     let blocks = found.start.main.problem.blocks;
-    // The smallest p-value that flipping the signs of so many blocks can give.
+    // The smallest possible p-value of sign flips with this number of blocks.
     let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
     let (reason, said) = match verdict {
         _ if !found.start.prepared.clashes.is_empty() => {
@@ -292,7 +294,8 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
     Some(Undecided { reason, said })
 }
 
-/// A size that contradicts physics in all of the fits: beside a curve that came in for it, what is left of a line may well turn.
+/// A parameter that is physically impossible in all fits. With an additional curve in the model, the remaining linear
+/// coefficient may change its sign.
 fn impossible(fits: &[&Fit]) -> Option<String> {
     let is_impossible = |p: &&Parameter| p.state == ParameterState::Impossible;
     let in_fit = |fit: &Fit, of: &Parameter| {
@@ -306,7 +309,7 @@ fn impossible(fits: &[&Fit]) -> Option<String> {
     Some(format!("{} of {} is {}, which {note}", p.name, p.effect, figure(p.value, &p.unit)))
 }
 
-/// What is said of structure, where a rejected effect might explain it.
+/// Statement about unexplained structure; a rejected effect might explain it.
 fn unexplained(found: &Findings) -> &'static str {
     let is_refused = found.decided.as_ref().is_some_and(|decided| !decided.refused.is_empty());
     match undetermined(found).next().is_some() || is_refused {
@@ -315,38 +318,38 @@ fn unexplained(found: &Findings) -> &'static str {
     }
 }
 
-/// Effects that would reduce the error, and whose size the run does not determine.
+/// Rejected effects that would reduce the error, but whose size the run does not determine.
 fn undetermined<'f, 'p>(found: &'f Findings<'p>) -> impl Iterator<Item = &'f Withdrawn<'p>> {
-    let bound = TOLD_LOSS * found.end_held_out_rms;
-    found.withdrawn.iter().filter(move |w| w.why == RemovalReason::Unidentified && w.held_out_rms < bound)
+    let bound = TOLD_LOSS * found.end_validation_rms;
+    found.withdrawn.iter().filter(move |w| w.why == RemovalReason::Unidentified && w.validation_rms < bound)
 }
 
-/// Effects that were tried and removed, with the reason.
+/// Rejected effects with the reason.
 fn rejected(found: &Findings, unit: &str) -> String {
-    // What could replace an effect of the model is named there.
-    let open: Vec<&Withdrawn> = undetermined(found).filter(|w| !found.is_rival(w.effect)).collect();
+    // Effects that could replace an effect of the model are reported with that effect.
+    let open: Vec<&Withdrawn> = undetermined(found).filter(|w| !found.is_confounded(w.effect)).collect();
     let rejected = |why: RemovalReason| -> Vec<&str> {
-        let of = found.withdrawn.iter().filter(|w| w.why == why && !found.is_rival(w.effect));
+        let of = found.withdrawn.iter().filter(|w| w.why == why && !found.is_confounded(w.effect));
         of.map(|w| w.effect).rev().collect()
     };
     let named: Vec<&str> = open.iter().map(|w| w.effect).rev().collect();
-    let with = open.iter().map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
+    let with = open.iter().map(|w| w.validation_rms).fold(f64::INFINITY, f64::min);
     let open = (!open.is_empty()).then(|| {
         let (object, size) = if open.len() > 1 { ("the best of them", "their sizes") } else { ("it", "its size") };
-        let scale = Scale::of(found.end_held_out_rms, unit);
+        let scale = Scale::of(found.end_validation_rms, unit);
         format!(
             " Rejected: {}. With {object} the validation error would be {} instead of {}, but this run does not determine \
              {size}.",
             list(&named),
             scale.figure(with),
-            scale.figure(found.end_held_out_rms)
+            scale.figure(found.end_validation_rms)
         )
     });
     let for_reason = [RemovalReason::PartialExplanation, RemovalReason::Spurious].into_iter().filter_map(|why| {
         let effects = rejected(why);
         (!effects.is_empty()).then(|| format!(" Rejected: {} ({}).", list(&effects), why.words()))
     });
-    let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_rival(r.effect));
+    let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_confounded(r.effect));
     let refused = refused.map(|refused| format!(" Rejected: {} ({}).", refused.effect, refused.why()));
     open.into_iter().chain(for_reason).chain(refused).collect()
 }

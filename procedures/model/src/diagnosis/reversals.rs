@@ -1,4 +1,4 @@
-//! Where a model of settled motion fails: on the first way after a reversal.
+//! Residual of a steady-state model directly after a reversal.
 
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::Fit;
@@ -8,8 +8,8 @@ use crate::signal::Signal;
 use crate::words::figure;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The friction that a model predicts within `reach` of a reversal, against what was measured there. The interval is
-/// Student's t over the reversals. `None` with fewer than three.
+/// Difference between measured and predicted friction within `reach` of a reversal. The interval is Student's t over
+/// the reversals. `None` with fewer than three.
 pub fn region(model: &TwoStageModel, reach: f64, fit: &Fit, yardstick: Option<&ReferenceMagnitude>) -> Option<Region> {
     let problem = model.prepared.memory.as_ref()?;
     let samples = &problem.view.samples;

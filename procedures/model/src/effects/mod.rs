@@ -1,4 +1,4 @@
-//! The library: one small file for each effect.
+//! The library of effects, one file for each effect.
 
 pub(crate) mod brake;
 pub(crate) mod encoder;
@@ -14,7 +14,7 @@ use crate::view::View;
 use jointbench_instrument::Kind;
 use std::ops::RangeInclusive;
 
-/// All effects of a kind, in the order of the contract.
+/// All effects of a kind, in the order of the library.
 pub fn effects(kind: Kind) -> &'static [&'static dyn Effect] {
     match kind {
         Kind::Friction => friction::ALL,
@@ -24,7 +24,7 @@ pub fn effects(kind: Kind) -> &'static [&'static dyn Effect] {
     }
 }
 
-/// The effect with an id. [`ModelError::UnknownEffect`] names those that are known.
+/// The effect with an id. [`ModelError::UnknownEffect`] lists the known ids.
 pub fn find(kind: Kind, id: &str) -> Result<&'static dyn Effect, ModelError> {
     effects(kind).iter().copied().find(|e| e.info().id == id).ok_or_else(|| ModelError::UnknownEffect {
         id: id.to_owned(),
@@ -33,13 +33,13 @@ pub fn find(kind: Kind, id: &str) -> Result<&'static dyn Effect, ModelError> {
     })
 }
 
-/// `count` values from `low` to `high`, each the same factor above the last.
+/// `count` values from `low` to `high` with a constant ratio.
 pub(crate) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
     let ratio = (high / low).ln();
     (0..count).map(|i| low * (ratio * i as f64 / (count - 1).max(1) as f64).exp()).collect()
 }
 
-/// Slow and fast ends of the motion [rad/s]: the 2nd and the 98th percentile of |ω|. `None` where nothing moves.
+/// Slow and fast ends of the motion [rad/s]: the 2nd and the 98th percentile of |ω|. `None` without motion.
 fn speed_range(view: &View) -> Option<(f64, f64)> {
     let mut speed = view.map(Signal::Velocity, f64::abs);
     speed.sort_by(f64::total_cmp);
@@ -48,8 +48,8 @@ fn speed_range(view: &View) -> Option<(f64, f64)> {
     (fast > 0.0).then(|| (slow.max(1e-3 * fast), fast))
 }
 
-/// Lengths over which a reversal can be remembered and seen: from a thousandth of the motion between two reversals, or
-/// three steps of the encoder, to the longest of these motions but for a tenth. `None` where the motion never turns.
+/// Range of reaches that reversals can identify: from a thousandth of the motion between two reversals, or three
+/// encoder steps, to the 90th percentile of these motions. `None` without reversals.
 fn reversal_range(view: &View) -> Option<(f64, f64)> {
     if view.constants.followed_hz.is_some() {
         return view.constants.reaches.map(|[low, high]| (low, high)).filter(|(low, high)| low < high);
@@ -67,19 +67,19 @@ fn reversal_range(view: &View) -> Option<(f64, f64)> {
     let mut ways: Vec<f64> = turns.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|w| *w > 0.0).collect();
     ways.sort_by(f64::total_cmp);
     let typical = *ways.get(ways.len() / 2)?;
-    // What is shorter than the encoder's step is a jump.
+    // A reach below the encoder's step is a jump.
     let mut steps: Vec<f64> = position.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0).collect();
     let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
     steps.retain(|s| *s < 1.5 * smallest);
     let counted = steps.len() * 20 > position.len();
     let low = if counted { (3.0 * smallest).max(1e-3 * typical) } else { 1e-3 * typical };
-    // Loops of several sizes: what most of them do not leave, the largest ones do.
+    // In loops of several sizes, only the largest ones exceed a large reach.
     let high = *ways.get(ways.len() * 9 / 10)?;
     (low < high).then_some((low, high))
 }
 
-/// A harmonic of an angle, searched over whole orders. Orders that turn further than half a wave between two samples
-/// at the slowest motion cannot be told from lower ones and are left out.
+/// A harmonic of an angle, searched over integer orders. Orders with more than half a wave between two samples at the
+/// slowest motion are aliased with lower orders, so that they are excluded.
 fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form<'static>> {
     let Some(samples) = view.samples.find(angle).filter(|_| !view.constants.slides) else { return Vec::new() };
     if let Some(followed_hz) = view.constants.followed_hz {
@@ -92,7 +92,7 @@ fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec
     whole_orders(orders, highest, "harmonic", &["a", "b"])
 }
 
-/// Orders of an angle of which a filter leaves something in more than a fiftieth of the run.
+/// Highest order of an angle that the filter passes in more than a fiftieth of the run.
 fn highest_followed(angle: &[f64], sample_s: f64, followed_hz: f64) -> f64 {
     const OF_RUN: f64 = 0.02;
     let mut steps: Vec<f64> = angle.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
@@ -104,12 +104,12 @@ fn highest_followed(angle: &[f64], sample_s: f64, followed_hz: f64) -> f64 {
     4.0 * std::f64::consts::PI * followed_hz * sample_s / slow.max(f64::MIN_POSITIVE)
 }
 
-/// A wave whose order is known.
+/// A wave of known order.
 fn known_order(order: u32) -> Vec<Form<'static>> {
     whole_orders(order..=order, f64::INFINITY, "harmonic", &["a", "b"])
 }
 
-/// A wave over the whole orders up to the highest.
+/// A wave over the integer orders up to the highest.
 fn whole_orders(
     orders: RangeInclusive<u32>,
     highest: f64,
@@ -125,8 +125,8 @@ fn whole_orders(
     vec![Form { name: "harmonic", linear: linear.to_vec(), shape, grid }]
 }
 
-/// The same of an axis that may turn only a part of a turn: an order counts where the angle went all the way round, or
-/// its wave was there twice. Less of it is a curve over the angle, and under gravity that is a curve over the load.
+/// The same for an axis that may cover only a part of a turn. An order counts if the angle covered a whole turn, or
+/// two periods of the wave. A shorter section is a curve over the angle, and under gravity a curve over the load.
 fn repeated_harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form<'static>> {
     let turns = view.turns(angle);
     let twice = if turns >= 1.0 { 1 } else { (2.0 / turns).ceil() as u32 };
@@ -136,7 +136,7 @@ fn repeated_harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32
 /// Name of the form of an effect that may have several harmonics.
 pub(crate) const SEVERAL_HARMONICS: &str = "harmonics";
 
-/// A form of harmonics with one more, each with two factors.
+/// A form of harmonics with one more, each with two coefficients.
 pub(crate) fn one_more_harmonic(form: &Form) -> Option<(&'static str, Form<'static>)> {
     const LINEAR: [&str; 16] =
         ["a", "b", "a_2", "b_2", "a_3", "b_3", "a_4", "b_4", "a_5", "b_5", "a_6", "b_6", "a_7", "b_7", "a_8", "b_8"];

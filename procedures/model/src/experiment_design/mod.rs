@@ -1,14 +1,14 @@
-//! What to measure next: of the runs that a bench offers, the one that decides what the data leaves open.
+//! Experiment design: of the runs that a bench offers, the one that separates the models that the data leaves open.
 //!
-//! This crate knows no bench and no procedure. Whoever does offers a menu: each [`Choice`] is a run that could be made,
-//! as the settled stretches that it would consist of. What comes back is the shortest one that is expected to decide.
+//! This crate contains no benches and procedures. The caller offers a menu: each [`Choice`] is a possible run, given
+//! as its steady-state stretches. The result is the shortest run that is expected to separate the models.
 
 pub(crate) mod separation;
 pub(crate) mod simulate;
 pub(crate) mod unobserved;
 
 use crate::experiment_design::separation::{Noise, Side};
-use crate::experiment_design::simulate::imagine;
+use crate::experiment_design::simulate::simulate;
 use crate::inference::confounding;
 use crate::preprocess::{Prepared, prepare};
 use crate::regression::two_stage_model::TwoStageModel;
@@ -21,12 +21,12 @@ use jointbench_instrument::{Motion, RunTable};
 use serde_json::{Map, Value};
 use std::cmp::Ordering;
 
-/// A run that could be made.
+/// A possible run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
     pub procedure: String,
     pub parameters: Map<String, Value>,
-    /// Infinite where nobody knows.
+    /// Infinite if unknown.
     pub duration_s: f64,
     pub stretches: Vec<Stretch>,
 }
@@ -36,7 +36,7 @@ impl Choice {
         self.stretches.iter().any(|stretch| stretch.power_ups > 0)
     }
 
-    /// What its expectation rests on beside the model, in words.
+    /// Assumptions of the expectation in addition to the model, in words.
     fn provided(&self) -> String {
         let warmer_k = self.stretches.iter().map(|s| s.warmer_k).fold(0.0, f64::max);
         if warmer_k > 0.0 { format!(", if it warms the joint by {warmer_k:.0} K") } else { String::new() }
@@ -46,36 +46,36 @@ impl Choice {
 /// Constant speed under constant load.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stretch {
-    /// Since the run began.
+    /// Time since the start of the run.
     pub start_s: f64,
     pub duration_s: f64,
-    /// Motor side; on an encoder bench the shaft.
+    /// Motor side; for encoders the shaft.
     pub velocity_rad_s: f64,
-    /// Motor position at the beginning, from where the run starts.
+    /// Motor position at the beginning, relative to the start of the run.
     pub from_rad: f64,
     /// Link torque that the joint delivers.
     pub load_nm: f64,
     /// Coil current of the brake.
     pub brake_current_a: f64,
-    /// How often the encoder under test was powered anew before it; 0 where it never was.
+    /// Number of power cycles of the encoder under test before this stretch.
     pub power_ups: u32,
-    /// How much warmer the joint is than at the end of the run at hand, where the choice warms it [K].
+    /// Temperature of the joint above that at the end of the measured run, if the choice warms it [K].
     pub warmer_k: f64,
 }
 
-/// What a diagnosis leaves open.
+/// Questions that a diagnosis leaves open.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Open {
-    /// The model with everything that was named.
+    /// The model with all named effects.
     pub model: Vec<String>,
-    /// A named effect, and those that explain the data as well.
+    /// Named effects, each with the effects that are confounded with it.
     pub ties: Vec<(String, Vec<String>)>,
-    /// An effect that may be there as well.
+    /// An effect that may be present as well.
     pub imitated: Option<String>,
     pub has_noise_floor: bool,
-    /// What remains shows in this data: a run for effects that it cannot show says nothing about it.
+    /// Unexplained structure remains in this data; a run for effects that it cannot show would not explain that.
     pub has_structure: bool,
-    /// Effects that the user wrote, which the model or its rivals may be.
+    /// User effects that the model or its alternatives contain.
     pub own: Vec<OwnEffect>,
 }
 
@@ -109,19 +109,19 @@ impl From<&Discovery> for Open {
     }
 }
 
-/// What is to be done about what a diagnosis leaves open.
+/// The recommended next run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Next {
-    /// The run to make, `None` where nothing is open that the menu could decide.
+    /// The run to perform, `None` if no run of the menu answers an open question.
     pub experiment: Option<Experiment>,
-    /// Where there is none: the ties that stay, in a sentence.
+    /// Confounded pairs that no run of the menu separates, in a sentence.
     pub in_vain: Option<String>,
 }
 
-/// The run to make next. Of columns that contradict each other none follows: they are to be mended.
+/// The recommended next run. None is recommended for contradicting columns, which have to be corrected first.
 ///
-/// Rivals that tie come first, then an effect that may be there as well, then a change with temperature that may be one with time,
-/// then a run without repeats, then effects that this run could not have shown.
+/// The priority is: confounded effects, an effect that may be present as well, a temperature effect confounded with
+/// time, missing repeats, then effects that this run could not show.
 pub fn next_run(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Result<Next, ModelError> {
     let mut next = choose(run, open, menu, options)?;
     if let (Some(next), Motion::Linear) = (&mut next.experiment, run.meta().motion) {
@@ -142,37 +142,38 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let side = Side::new(&model.main, &noise);
     let known = menu.iter().filter(|choice| !choice.stretches.is_empty());
-    let mut imagined: Vec<_> = known.map(|choice| (choice, imagine(choice, &prepared, &model, gear))).collect();
+    let mut simulated: Vec<_> = known.map(|choice| (choice, simulate(choice, &prepared, &model, gear))).collect();
 
     let decided = |others: &[ModelSpec]| -> Result<Option<Bid>, ModelError> {
         let others = others.iter().map(|s| TwoStageModel::new(&prepared, s, options));
         let others: Vec<TwoStageModel> = others.collect::<Result<_, _>>()?;
         let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
-        // Nobody switches an encoder off and on for another question.
+        // An encoder is power-cycled only for effects that depend on it.
         let asks_for_power_ups = side.changes_by_run() || others.iter().any(Side::changes_by_run);
-        let useful = imagined.iter().filter(|(choice, _)| asks_for_power_ups || !choice.powers_anew());
+        let useful = simulated.iter().filter(|(choice, _)| asks_for_power_ups || !choice.powers_anew());
         Ok(decide(useful.map(|(choice, problem)| {
             let apart = others.iter().map(|other| side.separation(other, problem, &noise));
             Bid { choice, z: apart.fold(f64::INFINITY, f64::min) }
         })))
     };
     let mut in_vain = Vec::new();
-    for (effect, rivals) in &open.ties {
-        let instead = |rival: &String| {
-            let effects: Vec<String> = open.model.iter().map(|e| if e == effect { rival } else { e }.clone()).collect();
+    for (effect, alternatives) in &open.ties {
+        let instead = |alternative: &String| {
+            let effects: Vec<String> =
+                open.model.iter().map(|e| if e == effect { alternative } else { e }.clone()).collect();
             spec(&effects)
         };
-        // One that no run tells from it keeps no other from being told.
+        // A candidate that no run separates does not prevent the separation of the others.
         let (mut apart, mut specs, mut alike, mut first) = (Vec::new(), Vec::new(), Vec::new(), None);
-        for rival in rivals.iter().filter(|rival| !open.model.contains(rival)) {
-            let other = [instead(rival)?];
+        for alternative in alternatives.iter().filter(|alternative| !open.model.contains(alternative)) {
+            let other = [instead(alternative)?];
             match decided(&other)? {
                 Some(bid) => {
                     first.get_or_insert(bid);
-                    apart.push(rival.clone());
+                    apart.push(alternative.clone());
                     specs.extend(other);
                 }
-                None => alike.push(rival.clone()),
+                None => alike.push(alternative.clone()),
             }
         }
         let vain = (!alike.is_empty()).then(|| format!("{effect} from {}", list(&alike)));
@@ -184,7 +185,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
         let bid = together.or(first);
         if let Some(bid) = bid {
             let question = format!("distinguish {effect} from {}", list(&apart));
-            let mut next = told(bid, &question, std::iter::once(effect).chain(&apart));
+            let mut next = experiment(bid, &question, std::iter::once(effect).chain(&apart));
             next.why.extend(
                 vain.map(|vain| format!("; no run within the limits of this bench is expected to distinguish {vain}")),
             );
@@ -195,11 +196,11 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let next = if let Some(effect) = &open.imitated
         && let Some(bid) = decided(&[with_all.with(effect)?])?
     {
-        Some(told(bid, &format!("decide whether {effect} is present"), [effect]))
+        Some(experiment(bid, &format!("decide whether {effect} is present"), [effect]))
     } else if let Some((effect, spec)) = over_time(&with_all, &prepared)?
         && let Some(bid) = decided(&[spec])?
     {
-        Some(told(bid, &format!("distinguish {effect} from a drift over time"), [&effect]))
+        Some(experiment(bid, &format!("distinguish {effect} from a drift over time"), [&effect]))
     } else if !open.has_noise_floor
         && let Some(choice) = nearest(menu, &prepared)
     {
@@ -207,8 +208,8 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     } else if open.has_structure {
         None
     } else {
-        imagined.retain(|(choice, _)| !choice.powers_anew());
-        unobserved::unseen(&model, &noise, &imagined)
+        simulated.retain(|(choice, _)| !choice.powers_anew());
+        unobserved::unseen(&model, &noise, &simulated)
     };
     let in_vain = (!in_vain.is_empty()).then(|| {
         let ties = list(&in_vain);
@@ -227,7 +228,7 @@ impl From<Experiment> for Next {
     }
 }
 
-/// An effect of the model that tells of a temperature which moved as time did, and the model with the same over time.
+/// A temperature effect of the model that is confounded with time, and the model with the same effect over time.
 fn over_time(model: &ModelSpec, prepared: &Prepared) -> Result<Option<(String, ModelSpec)>, ModelError> {
     for id in &model.effects {
         let Some(over_time) = confounding::over_time(model.find(id)?, prepared) else { continue };
@@ -242,14 +243,14 @@ fn over_time(model: &ModelSpec, prepared: &Prepared) -> Result<Option<(String, M
     Ok(None)
 }
 
-/// A choice with what is expected of it.
+/// A choice with its expected separation.
 #[derive(Clone, Copy)]
 struct Bid<'m> {
     choice: &'m Choice,
     z: f64,
 }
 
-/// The shortest run that decides; where none does, the one that says most.
+/// The shortest run that separates the models, otherwise the run with the largest separation.
 fn decide<'m>(bids: impl Iterator<Item = Bid<'m>>) -> Option<Bid<'m>> {
     let bids: Vec<Bid> = bids.filter(|bid| bid.z.is_finite() && bid.z >= USELESS_Z).collect();
     let enough = bids.iter().filter(|bid| bid.z >= SEPARATED_Z);
@@ -257,7 +258,7 @@ fn decide<'m>(bids: impl Iterator<Item = Bid<'m>>) -> Option<Bid<'m>> {
     shortest.or_else(|| bids.iter().max_by(|a, b| a.z.total_cmp(&b.z))).copied()
 }
 
-fn told<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String>) -> Experiment {
+fn experiment<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String>) -> Experiment {
     let times = (SEPARATED_Z / bid.z).powi(2).ceil();
     let enough = if bid.z >= SEPARATED_Z {
         String::new()
@@ -278,13 +279,13 @@ fn told<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String
     }
 }
 
-/// Beyond a hundred nobody doubts.
+/// A separation above a hundred needs no exact figure.
 fn in_words(z: f64) -> String {
     if z < 100.0 { format!("{z:.1}") } else { "more than 100".to_owned() }
 }
 
-/// The choice that comes nearest to the fastest of the run at hand, then to its largest load; of equals the first, which is the
-/// ordinary one.
+/// The choice that covers the largest speed of the measured run best, then its largest load; among equals the first,
+/// which is the default.
 fn nearest<'m>(menu: &'m [Choice], prepared: &Prepared) -> Option<&'m Choice> {
     let points = &prepared.main.view.points;
     let largest = |signal| points.find(signal).map_or(0.0, |of| of.iter().fold(0.0f64, |most, v| most.max(v.abs())));
@@ -298,7 +299,7 @@ fn nearest<'m>(menu: &'m [Choice], prepared: &Prepared) -> Option<&'m Choice> {
     menu.iter().rev().max_by(|a, b| covered(a).partial_cmp(&covered(b)).unwrap_or(Ordering::Equal))
 }
 
-/// A run that could be made anew, for its repeats.
+/// A run with the same profile again, for its repeats.
 fn again(choice: &Choice) -> Experiment {
     Experiment {
         procedure: choice.procedure.clone(),

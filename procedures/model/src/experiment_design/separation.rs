@@ -1,7 +1,7 @@
-//! How far apart two models would be after one more run.
+//! Expected separation of two models after one more run.
 //!
-//! T-optimality (Atkinson and Fedorov 1975): the run is best on which the rival, with its parameters chosen anew to fit
-//! everything known, still cannot follow the other model.
+//! T-optimality (Atkinson and Fedorov 1975): the best run is the one on which the alternative model, refitted to all
+//! data, still cannot follow the other model.
 
 use crate::linear::basis::dot;
 use crate::linear::cholesky::Cholesky;
@@ -9,23 +9,23 @@ use crate::preprocess::Problem;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::solution::Solution;
 
-/// Scatter of a measurement: what all points of a block have in common, and what each has for itself.
+/// Noise of a measurement: a common part for all points of a block, and an independent part for each point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
     pub block: f64,
     pub row: f64,
 }
 
-/// Fewer pairs of repeats than this are no measure of noise.
-const FEWEST_TWINS: usize = 8;
+/// Fewer replicate pairs than this do not estimate noise.
+const FEWEST_PAIRS: usize = 8;
 
 impl Noise {
-    /// From repeats where there are any, else from what the model leaves.
+    /// Estimated from repeats if there are any, otherwise from the residual of the model.
     pub fn of(model: &LinearModel) -> Self {
         let problem = model.problem;
         let residual = model.linear().residual;
         let mut groups: Vec<((usize, usize), Vec<f64>)> = Vec::new();
-        if problem.replicate_pairs.len() >= FEWEST_TWINS {
+        if problem.replicate_pairs.len() >= FEWEST_PAIRS {
             let mut pairs: Vec<_> = problem
                 .replicate_pairs
                 .iter()
@@ -54,7 +54,7 @@ impl Noise {
         Self { block: block.sqrt(), row: row.sqrt().max(1e-9 * size).max(f64::MIN_POSITIVE) }
     }
 
-    /// The column in standard deviations: white, whatever the points of a block have in common.
+    /// The column in standard deviations, whitened for the common noise of the points of a block.
     pub fn whiten(&self, column: &[f64], problem: &Problem) -> Vec<f64> {
         let mut sums = vec![(0.0, 0.0); problem.blocks];
         for (x, b) in column.iter().zip(&problem.block) {
@@ -70,7 +70,8 @@ impl Noise {
     }
 }
 
-/// Mean square of what the formulas of a model err by: elsewhere it is another, and all points of a stretch have it in common.
+/// Mean square of the form error of a model. In another run it has other values, and it is common to all points of a
+/// stretch.
 fn form_error(model: &LinearModel) -> f64 {
     let errs = Solution::of(model).map_or_else(Vec::new, |solution| solution.form_error(model));
     dot(&errs, &errs) / errs.len().max(1) as f64
@@ -83,52 +84,54 @@ fn push(groups: &mut Vec<((usize, usize), Vec<f64>)>, key: (usize, usize), value
     }
 }
 
-/// A model laid out on the run at hand, with what that run says about its parameters.
+/// A model on the measured run, with the information of that run about its parameters.
 pub struct Side<'a> {
     model: &'a LinearModel<'a>,
-    factors: Vec<Vec<f64>>,
-    /// White columns and slopes at the run at hand.
+    coefficients: Vec<Vec<f64>>,
+    /// Whitened columns and derivatives at the measured run.
     columns: Vec<Vec<f64>>,
-    /// Information about all parameters, those of shape included.
+    /// Information about all parameters, including nonlinear ones.
     gram: Vec<f64>,
 }
 
 impl<'a> Side<'a> {
     pub fn new(model: &'a LinearModel<'a>, noise: &Noise) -> Self {
-        let factors = model.linear().factors;
-        let columns = tangent(model, &factors, noise);
-        Self { model, gram: gram(&columns), columns, factors }
+        let coefficients = model.linear().coefficients;
+        let columns = tangent(model, &coefficients, noise);
+        Self { model, gram: gram(&columns), columns, coefficients }
     }
 
-    /// A part of the model is another in each run.
+    /// Whether the model has a nuisance effect that differs in each run.
     pub fn changes_by_run(&self) -> bool {
         self.model.terms.iter().any(|term| term.effect.is_nuisance())
     }
 
-    /// Expected distance of the two models in standard deviations after the run, the mean of both ways of being wrong.
-    pub fn separation(&self, rival: &Side, run: &Problem, noise: &Noise) -> f64 {
+    /// Expected distance of the two models in standard deviations after the run, as the mean over both models being
+    /// the true one.
+    pub fn separation(&self, alternative: &Side, run: &Problem, noise: &Noise) -> f64 {
         let difference: Vec<f64> =
-            predict(self.model, run).iter().zip(predict(rival.model, run)).map(|(a, b)| a - b).collect();
+            predict(self.model, run).iter().zip(predict(alternative.model, run)).map(|(a, b)| a - b).collect();
         let difference = noise.whiten(&difference, run);
-        let (own, other) = (self.at(run, noise), rival.at(run, noise));
+        let (own, other) = (self.at(run, noise), alternative.at(run, noise));
         let one_way = |side: &Side, at: &There, wrong: &There| {
-            // What the other model expects to be new there this one cannot follow, unless it expects the same.
+            // A term that only the other model has in the new run cannot be followed, unless this model has one as
+            // well.
             let new = if at.new.is_empty() { wrong.new.as_slice() } else { &[] };
             std::iter::once(&difference).chain(new).map(|white| side.left_over(white, at)).sum::<f64>()
         };
-        (0.5 * (one_way(self, &own, &other) + one_way(rival, &other, &own))).max(0.0).sqrt()
+        (0.5 * (one_way(self, &own, &other) + one_way(alternative, &other, &own))).max(0.0).sqrt()
     }
 
-    /// Squared length of what is left of a white column at the run when the model follows it as far as the run at hand
-    /// lets it.
+    /// Squared norm of the remainder of a whitened column at the new run, after the model is refitted within the
+    /// information of the measured run.
     fn left_over(&self, white: &[f64], there: &There) -> f64 {
         let side: Vec<f64> = there.columns().map(|c| dot(c, white)).collect();
         let followed = Cholesky::new(&self.known_then(there), side.len(), 0.0).whiten(&side);
         dot(white, white) - dot(&followed, &followed)
     }
 
-    /// What the run at hand, and that with one more run, say about the factor of a further white column: squared standard
-    /// deviations of a factor of one.
+    /// Information about the coefficient of a further whitened column, from the measured run and with the new run:
+    /// squared standard deviations of a coefficient of one.
     pub fn information(&self, now: &[f64], then: &[f64], there: &There) -> (f64, f64) {
         let alone: Vec<f64> = self.columns.iter().map(|c| dot(c, now)).collect();
         let begun = alone.iter().copied().chain(std::iter::repeat(0.0));
@@ -160,26 +163,26 @@ impl<'a> Side<'a> {
     pub fn at(&self, run: &Problem, noise: &Noise) -> There {
         let there = elsewhere(self.model, run);
         let (mut known, mut new) = (Vec::new(), Vec::new());
-        for (term, factors) in there.terms.iter().zip(&self.factors) {
+        for (term, coefficients) in there.terms.iter().zip(&self.coefficients) {
             if !term.effect.is_nuisance() {
                 known.extend(term.columns.iter().map(|c| noise.whiten(c, run)));
                 continue;
             }
-            known.extend(factors.iter().map(|_| vec![0.0; run.rows()]));
-            let size = (dot(factors, factors) / factors.len().max(1) as f64).sqrt();
+            known.extend(coefficients.iter().map(|_| vec![0.0; run.rows()]));
+            let size = (dot(coefficients, coefficients) / coefficients.len().max(1) as f64).sqrt();
             let sized = |column: &Vec<f64>| column.iter().map(|x| size * x).collect::<Vec<f64>>();
             new.extend(term.columns.iter().map(|c| noise.whiten(&sized(c), run)));
         }
-        known.extend(there.slopes(&self.factors).into_iter().map(|(_, _, slope)| noise.whiten(&slope, run)));
+        known.extend(there.slopes(&self.coefficients).into_iter().map(|(_, _, slope)| noise.whiten(&slope, run)));
         There { known, new }
     }
 }
 
-/// White columns of a model at another run.
+/// Whitened columns of a model at another run.
 pub struct There {
-    /// Of the parameters that it has at the run at hand.
+    /// Columns of the parameters that the measured run has.
     known: Vec<Vec<f64>>,
-    /// Of those that only the other run brings, times the size that they are expected to have.
+    /// Columns of parameters that exist only in the new run, scaled by their expected size.
     new: Vec<Vec<f64>>,
 }
 
@@ -189,10 +192,10 @@ impl There {
     }
 }
 
-/// White columns of a model and its slopes in the shape parameters.
-fn tangent(model: &LinearModel, factors: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
+/// Whitened columns of a model and its derivatives in the nonlinear parameters.
+fn tangent(model: &LinearModel, coefficients: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
     let own = model.columns().into_iter().map(|c| noise.whiten(c, model.problem));
-    let slopes = model.slopes(factors).into_iter().map(|(_, _, slope)| noise.whiten(&slope, model.problem));
+    let slopes = model.slopes(coefficients).into_iter().map(|(_, _, slope)| noise.whiten(&slope, model.problem));
     own.chain(slopes).collect()
 }
 
@@ -207,14 +210,14 @@ fn elsewhere<'a>(model: &LinearModel<'a>, problem: &'a Problem) -> LinearModel<'
     there
 }
 
-/// What a model that was fitted elsewhere predicts, without what enters with a factor of one and what is another in each run.
+/// Prediction of a model at another problem, without offset terms and nuisance effects that differ in each run.
 pub fn predict(model: &LinearModel, problem: &Problem) -> Vec<f64> {
     let there = elsewhere(model, problem);
     let mut sum = vec![0.0; problem.rows()];
-    let terms = there.terms.iter().zip(model.linear().factors);
-    for (term, factors) in terms.filter(|(term, _)| !term.effect.is_nuisance()) {
-        for (column, factor) in term.columns.iter().zip(factors) {
-            sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+    let terms = there.terms.iter().zip(model.linear().coefficients);
+    for (term, coefficients) in terms.filter(|(term, _)| !term.effect.is_nuisance()) {
+        for (column, coefficient) in term.columns.iter().zip(coefficients) {
+            sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
         }
     }
     sum

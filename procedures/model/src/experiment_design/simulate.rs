@@ -1,4 +1,4 @@
-//! A run that has not been made, at the points at which it would be judged.
+//! Simulation of a proposed run at the points of its evaluation.
 
 use crate::experiment_design::separation::predict;
 use crate::experiment_design::{Choice, Stretch};
@@ -12,18 +12,18 @@ use jointbench_instrument::Kind;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// More points of one stretch say little more: what one stretch has in common is not averaged away. Waves over the turn of
-/// an encoder have to be followed.
+/// More points of one stretch add little information, because its common noise is not averaged out. Encoder waves
+/// need a finer spacing.
 fn most_points(kind: Kind) -> usize {
     if kind == Kind::Encoder { 400 } else { 48 }
 }
 
-/// The pause before the run [s].
+/// Pause before the run [s].
 const PAUSE_S: f64 = 60.0;
 
-/// Samples of the run, as they come.
+/// Samples of the simulated run.
 #[derive(Default)]
-struct Laid {
+struct Samples {
     time_s: Vec<f64>,
     motor_rad: Vec<f64>,
     stretch: Vec<usize>,
@@ -31,19 +31,19 @@ struct Laid {
     block: Vec<usize>,
 }
 
-/// Points are spaced as those of the run at hand, and so are the samples behind them: a periodic effect fades at speed as
-/// it would in the data. The joint is as warm as it was at the end of that run, or warmer by what the choice says; it
-/// starts where that one started. `gear`: turns of the motor for each of the link.
-pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear: f64) -> Problem {
-    let laid = lay_out(choice, prepared);
-    let samples = signals(&laid, &choice.stretches, prepared, gear);
-    let mut points = Signals::new(laid.chunks.len());
+/// Points and samples are spaced as in the measured run, so that periodic effects are attenuated at speed as in the
+/// data. The joint has the temperature of the end of that run, plus the warming of the choice. The run starts at the
+/// same position. `gear`: turns of the motor for each turn of the link.
+pub fn simulate(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear: f64) -> Problem {
+    let samples_of = sample_times(choice, prepared);
+    let samples = signals(&samples_of, &choice.stretches, prepared, gear);
+    let mut points = Signals::new(samples_of.chunks.len());
     for (signal, values) in samples.iter() {
         let mean = |c: &std::ops::Range<usize>| values[c.clone()].iter().sum::<f64>() / c.len() as f64;
-        points.set(signal, laid.chunks.iter().map(mean).collect());
+        points.set(signal, samples_of.chunks.iter().map(mean).collect());
     }
-    let rows = laid.chunks.len();
-    let mut view = View::new(points, samples, laid.chunks, vec![0], 1.0 / prepared.about.sample_rate_hz);
+    let rows = samples_of.chunks.len();
+    let mut view = View::new(points, samples, samples_of.chunks, vec![0], 1.0 / prepared.about.sample_rate_hz);
     view.constants = prepared.main.view.constants;
     let mut problem = Problem {
         view,
@@ -51,7 +51,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear
         sampled: Arc::default(),
         reduce: Reduce::Same,
         blocks: choice.stretches.len(),
-        block: laid.block,
+        block: samples_of.block,
         fold: vec![0; rows],
         folds: 1,
         replicate_pairs: Vec::new(),
@@ -65,7 +65,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear
         bandwidths: Vec::new(),
         memo: Memo::default(),
     };
-    // What the drive is follows from the response, and a part of the response may follow from it.
+    // The drive torque follows from the response, and a part of the response can follow from the drive torque.
     problem.view.points.set(Signal::Drive, vec![0.0; rows]);
     problem.target = predict(&model.main, &problem);
     let drive = if prepared.kind == Kind::Brake { brake_torque_of_current(&problem) } else { problem.target.clone() };
@@ -76,7 +76,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear
     problem
 }
 
-fn lay_out(choice: &Choice, prepared: &Prepared) -> Laid {
+fn sample_times(choice: &Choice, prepared: &Prepared) -> Samples {
     let about = &prepared.about;
     let sample_s = 1.0 / about.sample_rate_hz;
     // Neighbouring chunks of a long run were averaged.
@@ -84,43 +84,44 @@ fn lay_out(choice: &Choice, prepared: &Prepared) -> Laid {
     let averaged = chunks.iter().map(|c| c.len()).sum::<usize>() / chunks.len().max(1);
     let each = if about.chunk_s.is_some() { averaged.max(1) } else { 1 };
     let point_s = if about.chunk_s.is_some() { each } else { about.decimation } as f64 * sample_s;
-    let mut laid = Laid::default();
+    let mut samples_of = Samples::default();
     for (number, stretch) in choice.stretches.iter().enumerate() {
         let fits = (stretch.duration_s / point_s) as usize;
         let points = fits.clamp(1, most_points(prepared.kind));
         let stride_s = stretch.duration_s / points as f64;
         for point in 0..points {
-            laid.chunks.push(laid.time_s.len()..laid.time_s.len() + each);
-            laid.block.push(number);
+            samples_of.chunks.push(samples_of.time_s.len()..samples_of.time_s.len() + each);
+            samples_of.block.push(number);
             for sample in 0..each {
                 let t_s = point as f64 * stride_s + (sample as f64 + 0.5) * sample_s;
-                laid.time_s.push(stretch.start_s + t_s);
-                laid.motor_rad.push(stretch.from_rad + stretch.velocity_rad_s * t_s);
-                laid.stretch.push(number);
+                samples_of.time_s.push(stretch.start_s + t_s);
+                samples_of.motor_rad.push(stretch.from_rad + stretch.velocity_rad_s * t_s);
+                samples_of.stretch.push(number);
             }
         }
     }
-    laid
+    samples_of
 }
 
-/// What the models of the kind know of such a run.
-fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -> Signals {
+/// Signals of the simulated run for the models of the kind.
+fn signals(samples_of: &Samples, stretches: &[Stretch], prepared: &Prepared, gear: f64) -> Signals {
     let measured = &prepared.main.view.samples;
     let at = |signal, first: bool| {
         let values = measured.find(signal)?;
         if first { values.first().copied() } else { values.last().copied() }
     };
-    // Position and velocity of the shaft that the run tells of, for each of the motor.
+    // Position and velocity of the reported shaft, relative to the motor.
     let link = 1.0 / gear;
     let [turned, turning] = match prepared.kind {
         Kind::Friction | Kind::Encoder => [1.0, 1.0],
         Kind::Stiffness => [1.0, link],
         Kind::Brake => [link, link],
     };
-    let each = |of: &dyn Fn(&Stretch) -> f64| -> Vec<f64> { laid.stretch.iter().map(|s| of(&stretches[*s])).collect() };
-    let mut signals = Signals::new(laid.time_s.len());
+    let each =
+        |of: &dyn Fn(&Stretch) -> f64| -> Vec<f64> { samples_of.stretch.iter().map(|s| of(&stretches[*s])).collect() };
+    let mut signals = Signals::new(samples_of.time_s.len());
     let before_s = at(Signal::Time, false).unwrap_or(0.0) + PAUSE_S;
-    signals.set(Signal::Time, laid.time_s.iter().map(|t| before_s + t).collect());
+    signals.set(Signal::Time, samples_of.time_s.iter().map(|t| before_s + t).collect());
     signals.set(Signal::Direction, each(&|s| s.velocity_rad_s.signum()));
     if prepared.kind == Kind::Friction {
         signals.set(Signal::Acceleration, each(&|_| 0.0));
@@ -131,7 +132,7 @@ fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -
         let before = |s: usize| s.checked_sub(1).map_or(0.0, |s| stretches[s].brake_current_a);
         let rises: Vec<f64> =
             stretches.iter().enumerate().map(|(i, s)| (s.brake_current_a - before(i)).signum()).collect();
-        signals.set(Signal::Direction, laid.stretch.iter().map(|s| rises[*s]).collect());
+        signals.set(Signal::Direction, samples_of.stretch.iter().map(|s| rises[*s]).collect());
         signals.set(Signal::Current, each(&|s| s.brake_current_a));
     }
     let mut set = |signal: Signal, values: Vec<f64>| {
@@ -141,16 +142,16 @@ fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -
     };
     let from_rad = at(Signal::Position, true).unwrap_or(0.0);
     let link_rad = at(Signal::Link, true).unwrap_or(0.0);
-    set(Signal::Link, laid.motor_rad.iter().map(|q| link_rad + link * q).collect());
-    set(Signal::Position, laid.motor_rad.iter().map(|q| from_rad + turned * q).collect());
+    set(Signal::Link, samples_of.motor_rad.iter().map(|q| link_rad + link * q).collect());
+    set(Signal::Position, samples_of.motor_rad.iter().map(|q| from_rad + turned * q).collect());
     set(Signal::Velocity, each(&|s| turning * s.velocity_rad_s));
     set(Signal::Load, each(&|s| s.load_nm / prepared.load_scale));
     let temperature_c = at(Signal::Temperature, false).unwrap_or(0.0);
     set(Signal::Temperature, each(&|s| temperature_c + s.warmer_k));
     set(Signal::Repeat, each(&|s| f64::from(s.power_ups)));
-    // What nobody steers stays as it was.
+    // Columns that are not controlled keep their last value.
     for (signal, values) in measured.iter().filter(|(signal, _)| matches!(signal, Signal::Column(_))) {
-        signals.set(signal, vec![values.last().copied().unwrap_or(0.0); laid.time_s.len()]);
+        signals.set(signal, vec![values.last().copied().unwrap_or(0.0); samples_of.time_s.len()]);
     }
     signals
 }

@@ -1,4 +1,4 @@
-//! Effects that the run at hand could not have shown, and another run would.
+//! Effects that the measured run could not show, but another run would.
 
 use crate::effect::{Regime, ShapeSearch};
 use crate::experiment_design::separation::{Noise, Side};
@@ -12,15 +12,15 @@ use crate::thresholds::WORTH_SEEING;
 use crate::words::list;
 use jointbench_instrument::Kind;
 
-/// Below this an effect is not found with any certainty: z₀.₉₇₅ + z₀.₈.
+/// Below this an effect is not found reliably: z₀.₉₇₅ + z₀.₈.
 const FOUND_Z: f64 = 2.8;
 
-/// The run that shows most effects that could not be seen so far, of those the shortest.
-pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Problem)]) -> Option<Experiment> {
+/// The run that makes most undetectable effects detectable, among equals the shortest.
+pub fn unseen(model: &TwoStageModel, noise: &Noise, simulated: &[(&Choice, Problem)]) -> Option<Experiment> {
     let is_friction = model.spec.kind == Kind::Friction;
     let side = Side::new(&model.main, noise);
     let mut best: Option<(Bid, Vec<&str>)> = None;
-    for (choice, run) in imagined {
+    for (choice, run) in simulated {
         let mut seen: Vec<(&str, f64)> = Vec::new();
         let own = side.at(run, noise);
         for effect in model.spec.known() {
@@ -31,7 +31,7 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Proble
             }
             let forms = effect.forms(&run.view);
             let Some(form) = forms.first() else { continue };
-            // What happens at one moment is shown by the run in which it happens.
+            // A changepoint can only be shown by the run in which it occurs.
             if form.shape.iter().any(|shape| shape.search == ShapeSearch::Jump) {
                 continue;
             }
@@ -49,8 +49,8 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Proble
                 true => WORTH_SEEING * dot(&run.target, &run.target).sqrt(),
                 false => noise.row * (run.rows() as f64).sqrt(),
             };
-            let factor = worth / size;
-            now.iter_mut().chain(&mut then).for_each(|x| *x *= factor);
+            let scale = worth / size;
+            now.iter_mut().chain(&mut then).for_each(|x| *x *= scale);
             let (now, then) = (noise.whiten(&now, model.main.problem), noise.whiten(&then, run));
             let (before, after) = side.information(&now, &then, &own);
             if before.sqrt() < FOUND_Z && after.sqrt() >= SEPARATED_Z {

@@ -1,4 +1,4 @@
-//! A fit as a JSON file that travels.
+//! A fit as a JSON file for exchange.
 
 use crate::export::terms;
 use crate::report::fit::Fit;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 const FORMAT: &str = "jointbench-model";
 const VERSION: u32 = 1;
 
-/// The complete fit, users' effects included.
+/// The complete fit, including user effects.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelFile {
@@ -27,7 +27,7 @@ impl ModelFile {
         serde_json::to_string_pretty(self).map_err(|fault| ModelError::BadFile(fault.to_string()))
     }
 
-    /// Reads what [`ModelFile::to_json`] wrote: every prediction comes out with the same bits.
+    /// Reads the text of [`ModelFile::to_json`]: every prediction has the same bits.
     pub fn read(text: &str) -> Result<Fit, ModelError> {
         let file: Self = serde_json::from_str(text).map_err(|fault| ModelError::BadFile(fault.to_string()))?;
         file.check()

@@ -16,7 +16,7 @@ pub enum Dialect {
     Urdf,
 }
 
-/// The element with a comment that names what it cannot hold.
+/// The element, with a comment that names what it cannot contain.
 pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
     if fit.kind != Kind::Friction {
         return Err(ModelError::NoExport {
@@ -35,7 +35,7 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
     let gear = scope.load_scale;
     let of = |effect: &'static str, name: &str, scale: f64| {
         let found = fit.parameters.iter().find(|p| p.effect == effect && p.name == name);
-        // What is negative is no physical joint, and simulators refuse it.
+        // A negative value is not physical, and simulators reject it.
         Attribute { effect, of: found.map(|p| (p, p.value * scale)).filter(|(_, v)| *v >= 0.0 && v.is_finite()) }
     };
     let friction = of("coulomb", "tau_c", gear);
@@ -50,31 +50,31 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
         fit.effects.iter().filter(|id| !held(id)).map(|id| (id.as_str(), reason(id, dialect).to_owned())).collect();
     let attributes: Vec<String> =
         carried.iter().filter_map(|(name, a)| a.of.map(|(_, value)| format!("{name}=\"{value}\""))).collect();
-    // What a figure is worth stands beside it: the element follows at once.
-    let beside = carried.iter().filter_map(|(name, a)| Some((name, a.of?.0)));
-    let beside =
-        beside.flat_map(|(name, told)| told.note.iter().map(move |note| format!("{name}, motor side: {note}")));
+    // The comment follows directly before the element and states the uncertainty of its values.
+    let uncertainties = carried.iter().filter_map(|(name, a)| Some((name, a.of?.0)));
+    let uncertainties = uncertainties
+        .flat_map(|(name, parameter)| parameter.note.iter().map(move |note| format!("{name}, motor side: {note}")));
     let mut parts = Parts::of(fit)?;
     parts.parts.retain(|part| held(part.effect));
     let mut words = about(fit, &parts, &left_out, vec![of_model(fit, &left_out)]);
     words.push(format!("At the link: torque times the gear ratio {gear}, damping and inertia times its square."));
     let comment: String = words.iter().map(|words| format!("  {}\n", plain(words))).collect();
-    let beside: String = beside.map(|words| format!("<!-- {} -->\n", plain(&words))).collect();
+    let uncertainties: String = uncertainties.map(|words| format!("<!-- {} -->\n", plain(&words))).collect();
     let element = match dialect {
         Dialect::Mujoco => format!("<joint {}/>", attributes.join(" ")),
         Dialect::Urdf => format!("<dynamics {}/>", attributes.join(" ")),
     };
-    Ok(format!("<!--\n{comment}-->\n{beside}{element}\n"))
+    Ok(format!("<!--\n{comment}-->\n{uncertainties}{element}\n"))
 }
 
-/// An attribute's effect, with the parameter that it holds and the value that it has at the link.
+/// The effect of an attribute, with its parameter and the value at the link.
 #[derive(Debug, Clone, Copy)]
 struct Attribute<'f> {
     effect: &'static str,
     of: Option<(&'f Parameter, f64)>,
 }
 
-/// Two hyphens end a comment.
+/// Two hyphens are not allowed in an XML comment.
 fn plain(words: &str) -> String {
     words.replace("--", "- -")
 }

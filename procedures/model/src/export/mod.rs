@@ -1,4 +1,4 @@
-//! Fitted models out of the program and in again: JSON, C for a controller, tables, attributes of simulators.
+//! Export and import of fitted models: JSON, C for a controller, tables, attributes of simulators.
 
 pub(crate) mod c;
 pub(crate) mod file;
@@ -24,10 +24,10 @@ use crate::signal::Signal;
 use crate::user_effects::signals_with;
 use jointbench_instrument::Kind;
 
-/// What a fit can be written as.
+/// Export formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// The complete fit; the only one that comes in again.
+    /// The complete fit, the only format for import.
     Json,
     /// A self-contained C99 header.
     C,
@@ -52,7 +52,7 @@ impl Format {
         }
     }
 
-    /// Ending of the file's name.
+    /// File name extension.
     pub fn extension(self) -> &'static str {
         match self {
             Format::Json => "json",
@@ -64,7 +64,7 @@ impl Format {
     }
 }
 
-/// Writes a fit. What the format cannot hold is named in its first comment.
+/// Exports a fit. The first comment names what the format cannot contain.
 pub fn export(fit: &Fit, format: Format) -> Result<String, ModelError> {
     match format {
         Format::Json => ModelFile::new(fit.clone()).to_json(),
@@ -75,7 +75,7 @@ pub fn export(fit: &Fit, format: Format) -> Result<String, ModelError> {
     }
 }
 
-/// What the model predicts, in a word.
+/// The predicted quantity, in a word.
 fn quantity(kind: Kind) -> &'static str {
     match kind {
         Kind::Friction => "motor_torque",
@@ -95,8 +95,8 @@ fn predicted(fit: &Fit) -> String {
     format!("{what} [{}]", fit.unit)
 }
 
-/// What everyone should know who meets the export without its run, a line each. Ranges are those of the signals that
-/// what was carried over depends on.
+/// Information for users of the export without its run, one line each. The ranges are those of the signals that the
+/// exported part depends on.
 fn about(fit: &Fit, parts: &Parts, left_out: &[(&str, String)], errors: Vec<String>) -> Vec<String> {
     let mut lines = vec![
         format!("jointbench {}: {} model, {}", env!("CARGO_PKG_VERSION"), fit.kind, predicted(fit)),
@@ -116,7 +116,7 @@ fn about(fit: &Fit, parts: &Parts, left_out: &[(&str, String)], errors: Vec<Stri
     lines
 }
 
-/// The error of the model, which is that of the export where nothing is left out.
+/// The error of the model, which equals that of the export if it is complete.
 fn of_model(fit: &Fit, left_out: &[(&str, String)]) -> String {
     let of = if left_out.is_empty() { "" } else { " of the whole model, what is not carried over included" };
     format!("Error{of}: {}", error(fit))
@@ -130,7 +130,7 @@ fn error(fit: &Fit) -> String {
     }
 }
 
-/// Measures what leaves the program on the run that was fitted.
+/// Measures the errors of the exports on the fitted run.
 pub(crate) fn measure(fit: &mut Fit, problem: &Problem) -> Result<(), ModelError> {
     let means = table::curves(fit, problem)?;
     let fed_rms = load_noise::error(fit, problem)?;

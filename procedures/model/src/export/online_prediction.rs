@@ -1,4 +1,4 @@
-//! A friction model beside a run that is on: what it says of each row as it comes.
+//! Online prediction of a friction model during a run, row by row.
 
 use crate::effect::Regime;
 use crate::export::predict;
@@ -7,10 +7,10 @@ use crate::signal::Signal;
 use crate::user_effects::{find_with_own, signals_with};
 use jointbench_instrument::{Kind, Trace};
 
-/// Slower than this share of the fastest speed that was fitted, the direction is still that of the motion before.
+/// Below this share of the fastest fitted speed, the direction of the previous motion is kept.
 const STILL: f64 = 0.005;
 
-/// The torque of the motor as measured and as a model has it, row by row.
+/// Measured and predicted motor torque, row by row.
 #[derive(Debug)]
 pub struct Alongside {
     fit: Fit,
@@ -19,12 +19,12 @@ pub struct Alongside {
     still_rad_s: f64,
     direction: f64,
     began_s: Option<f64>,
-    /// Time and velocity of the row before.
+    /// Time and velocity of the previous row.
     before: Option<(f64, f64)>,
 }
 
 impl Alongside {
-    /// `None` for a model that needs more of the past than the row before.
+    /// `None` for a model that needs more history than the previous row.
     pub fn new(fit: Fit, torque_constant_nm_per_a: f64, gear_ratio: f64) -> Option<Self> {
         let stage = |id: &String| find_with_own(fit.kind, &fit.own, id).map(|effect| effect.regime());
         let knows = fit.effects.iter().all(|id| stage(id).is_ok_and(|stage| stage != Regime::Hysteresis));
@@ -41,7 +41,7 @@ impl Alongside {
         })
     }
 
-    /// Measured and predicted [Nm], one value for each row. `None` where the rows lack what the model needs.
+    /// Measured and predicted torque [Nm], one value for each row. `None` if the rows lack a signal of the model.
     pub fn tell(&mut self, rows: &Trace) -> Option<[Vec<f64>; 2]> {
         let (time_s, velocity) = (rows.column("time_s")?, rows.column("motor_velocity_rad_s")?);
         let end = (*time_s.last()?, *velocity.last()?);
@@ -71,8 +71,8 @@ impl Alongside {
         moments.extend(rows.column("link_torque_nm").map(|load| ("load", geared(load))));
         moments.extend(rows.column("temperature_c").map(|felt| ("temperature", felt.to_vec())));
         let named = signals_with(self.fit.kind, &self.fit.own).into_iter();
-        let beside = named.filter(|s| matches!(s.signal, Signal::Column(_)));
-        moments.extend(beside.filter_map(|s| Some((s.name, rows.column(s.column)?.to_vec()))));
+        let unknown = named.filter(|s| matches!(s.signal, Signal::Column(_)));
+        moments.extend(unknown.filter_map(|s| Some((s.name, rows.column(s.column)?.to_vec()))));
         let sample_s = passed_s / rows.len() as f64;
         Some([measured, predict(&self.fit, &moments, sample_s).ok()?])
     }

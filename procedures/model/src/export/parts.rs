@@ -1,4 +1,4 @@
-//! A fit taken apart: every term as formulas, whoever wrote the effect.
+//! A fit divided into parts: every term as formulas, for library and user effects alike.
 
 use crate::ModelError;
 use crate::export::symbolic::{Column, Rule, written};
@@ -15,16 +15,16 @@ pub struct Part<'f> {
     pub effect: &'f str,
     pub title: &'f str,
     pub columns: Vec<PartColumn>,
-    /// Name and value of every factor; none where the effect enters as it is.
-    pub factors: Vec<(&'f str, f64)>,
-    /// Name and value of every shape parameter: what formulas number from 0.
+    /// Name and value of every coefficient. Empty for an offset term.
+    pub coefficients: Vec<(&'f str, f64)>,
+    /// Name and value of every nonlinear parameter, in the order of the formula's parameter numbers.
     pub shape: Vec<(&'f str, f64)>,
 }
 
 #[derive(Debug)]
 pub enum PartColumn {
     Formula(Expression),
-    /// The parameter after the shape is the state.
+    /// The parameter after the nonlinear ones is the state.
     Memory {
         rule: Rule,
         signal: Signal,
@@ -39,11 +39,11 @@ pub enum PartColumn {
     },
 }
 
-/// What an export holds and what it cannot hold.
+/// The parts that an export contains, and those that it cannot contain.
 #[derive(Debug)]
 pub struct Parts<'f> {
     pub parts: Vec<Part<'f>>,
-    /// Effect and why it is not there.
+    /// Omitted effects with the reason.
     pub left_out: Vec<(&'f str, String)>,
 }
 
@@ -55,7 +55,7 @@ impl<'f> Parts<'f> {
             let title = effect.info().title;
             if effect.is_offset() {
                 let columns = vec![PartColumn::Formula(formula(fit, "load", &[])?)];
-                parts.parts.push(Part { effect: id, title, columns, factors: Vec::new(), shape: Vec::new() });
+                parts.parts.push(Part { effect: id, title, columns, coefficients: Vec::new(), shape: Vec::new() });
                 continue;
             }
             let Some(term) = fit.terms.iter().find(|t| t.effect == *id) else {
@@ -94,15 +94,15 @@ fn part<'f>(effect: &'f str, title: &'f str, term: &'f Term, columns: Vec<PartCo
         return Err(ModelError::UnknownForm { effect: effect.into(), form: term.form.clone() });
     }
     let mut names = term.names.iter().map(String::as_str);
-    let factors = names.by_ref().zip(term.linear.iter().copied()).take(term.linear.len()).collect();
+    let coefficients = names.by_ref().zip(term.linear.iter().copied()).take(term.linear.len()).collect();
     let shape = term.names[term.linear.len()..].iter().map(String::as_str).zip(term.shape.iter().copied()).collect();
-    Ok(Part { effect, title, columns, factors, shape })
+    Ok(Part { effect, title, columns, coefficients, shape })
 }
 
 /// The columns, or why a controller cannot compute them.
 fn columns(fit: &Fit, term: &Term) -> Result<Result<Vec<PartColumn>, &'static str>, ModelError> {
     if let Some(own) = fit.own.iter().find(|own| own.id() == term.effect) {
-        // Numbered among all parameters there, among the shape parameters here.
+        // The definition numbers all parameters, the part only the nonlinear ones.
         let formula = own.formula();
         let number = |p: usize| formula.shape.iter().position(|s| *s == p).unwrap_or(usize::MAX);
         return Ok(Ok(formula.columns.iter().map(|(_, e)| PartColumn::Formula(e.renumbered(&number))).collect()));

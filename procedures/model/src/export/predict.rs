@@ -1,4 +1,4 @@
-//! What a fit predicts for signals that come from no recording.
+//! Prediction of a fit for given signals instead of a recording.
 
 use crate::ModelError;
 use crate::prediction::predict_on;
@@ -7,11 +7,10 @@ use crate::signal::Signals;
 use crate::user_effects::signals_with;
 use crate::view::View;
 
-/// Signals of equal length by the names that formulas use, one value for each moment.
+/// Signals of equal length by their formula names, one value for each moment.
 pub type Moments<'m> = [(&'m str, Vec<f64>)];
 
-/// The prediction at every moment. Where the past matters, the first moment is the start and `sample_s` [s] the step
-/// from each to the next.
+/// The prediction at every moment. For hysteresis the first moment is the start, and `sample_s` [s] is the time step.
 pub fn predict(fit: &Fit, moments: &Moments, sample_s: f64) -> Result<Vec<f64>, ModelError> {
     let rows = moments.first().map_or(0, |(_, values)| values.len());
     let mut given = Signals::new(rows);

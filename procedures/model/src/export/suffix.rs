@@ -1,4 +1,4 @@
-//! Names that carry their unit, in plain ASCII.
+//! Names with their unit, in plain ASCII.
 
 /// `rad/s²` becomes `rad_s2`; `1` becomes nothing.
 pub fn of(unit: &str) -> String {
@@ -21,7 +21,7 @@ pub fn named(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_owned() } else { format!("{name}_{unit}") }
 }
 
-/// Text that every compiler reads, and that ends no comment.
+/// Text in ASCII that does not end a C comment.
 pub fn ascii(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for c in text.chars() {

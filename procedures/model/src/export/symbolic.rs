@@ -1,26 +1,26 @@
-//! The library's effects once more, as text: what a controller computes.
+//! The effects of the library as text for a controller.
 //!
-//! Formulas are in the language of users' effects, with the shape parameters of the form as their parameters, so one
-//! printer serves both. A test holds every line against the effect that it copies.
+//! The formulas use the language of user effects, with the nonlinear parameters of the form as their parameters, so
+//! that both share one printer. A test compares every formula with its effect.
 
 use crate::report::fit::Term;
 use jointbench_instrument::Kind;
 
-/// What a factor multiplies.
+/// A regressor, multiplied by its coefficient.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Column {
     Formula(String),
-    /// A formula in which `z` is a state that remembers a signal. All columns of an effect remember the same one.
+    /// A formula in which `z` is a state that follows a signal. All columns of an effect follow the same signal.
     Memory {
         rule: Rule,
         signal: &'static str,
-        /// Number of the shape parameter that is its reach, or its time constant.
+        /// Number of the nonlinear parameter that is its reach, or its time constant.
         reach: usize,
-        /// What a Dahl state ends at; elsewhere it is not asked for.
+        /// Limit of a Dahl state; other states do not use it.
         end: &'static str,
         formula: &'static str,
     },
-    /// Stops weighted by hats over their reach (Prandtl–Ishlinskii).
+    /// Stop operators weighted by hat functions over their reach (Prandtl–Ishlinskii).
     Band {
         stops: usize,
         bands: usize,
@@ -33,12 +33,12 @@ pub enum Column {
 pub enum Rule {
     Dahl,
     Stop,
-    /// The mean of stops whose reaches are spread evenly up to the largest.
+    /// The mean of stop operators with reaches evenly spaced up to the largest.
     MaxwellSlip,
     Lag,
 }
 
-/// What the teeth bear where the sensor does not feel the weight.
+/// Torque that the gear teeth transmit if the sensor does not measure the weight.
 const TEETH: &str = "load + g_c * cos(link_position) + g_s * sin(link_position)";
 
 const UNKNOWN: &str = "its form is not written out for a controller";
@@ -164,7 +164,7 @@ pub fn written(kind: Kind, term: &Term) -> Result<Vec<Column>, &'static str> {
     }
 }
 
-/// Chebyshev polynomial beside its value without current.
+/// Chebyshev polynomial minus its value at zero current.
 fn from_zero(degree: usize) -> String {
     let sign = if degree.is_multiple_of(2) { '-' } else { '+' };
     format!("({} {sign} 1)", chebyshev(degree))
@@ -176,9 +176,11 @@ fn chebyshev(degree: usize) -> String {
         let at = |c: &[i64], k: Option<usize>| k.and_then(|k| c.get(k)).copied().unwrap_or(0);
         (0..=now.len()).map(|k| 2 * at(now, k.checked_sub(1)) - at(before, Some(k))).collect()
     };
-    let (_, factors) = (1..degree).fold((vec![1], vec![0, 1]), |(before, now), _| (now.clone(), next(&before, &now)));
-    let rest = factors.iter().rev().map(i64::to_string);
-    rest.reduce(|inner, factor| format!("({inner}) * (2 * current / i_max - 1) + {factor}")).unwrap_or_default()
+    let (_, coefficients) =
+        (1..degree).fold((vec![1], vec![0, 1]), |(before, now), _| (now.clone(), next(&before, &now)));
+    let rest = coefficients.iter().rev().map(i64::to_string);
+    rest.reduce(|inner, coefficient| format!("({inner}) * (2 * current / i_max - 1) + {coefficient}"))
+        .unwrap_or_default()
 }
 
 /// Names of the orders of a term: `harmonic`, `harmonic_2` and so on.

@@ -1,4 +1,4 @@
-//! Whether a term of a file is one that its effect can have.
+//! Validates the terms of a model file against their effects.
 
 use crate::effect::{Effect, Form, ShapeSearch};
 use crate::effects::find;
@@ -9,7 +9,7 @@ use crate::words::list;
 use crate::{ModelError, OwnEffect};
 use std::f64::consts::TAU;
 
-/// Every effect of the model has the terms that it needs, and no other.
+/// Every effect of the model has exactly the terms that it needs.
 pub fn check(fit: &Fit, effects: &[&dyn Effect]) -> Result<(), ModelError> {
     for effect in effects {
         let id = effect.info().id;
@@ -32,7 +32,7 @@ pub fn check(fit: &Fit, effects: &[&dyn Effect]) -> Result<(), ModelError> {
     fit.form_error.iter().try_for_each(|term| check_form_error(fit, term))
 }
 
-/// A column where formulas err. Of another form of an effect it has as many values as that form.
+/// A form-error column. Another form of an effect has as many values as that form.
 fn check_form_error(fit: &Fit, term: &FormErrorTerm) -> Result<(), ModelError> {
     let fault = |what: &str| Err(ModelError::BadFile(format!("form_error {} {what}", term.name)));
     if !term.linear.iter().chain(&term.shape).all(|value| value.is_finite()) {
@@ -53,7 +53,7 @@ fn check_form_error(fit: &Fit, term: &FormErrorTerm) -> Result<(), ModelError> {
     }
 }
 
-/// The run that was fitted could not show the effect: all of its parameters stand at zero, with nothing around them.
+/// Whether the fitted run could not show the effect: all its parameters are zero, with empty intervals.
 fn is_hidden(fit: &Fit, id: &str) -> bool {
     let mut parameters = fit.parameters.iter().filter(|p| p.effect == id).peekable();
     parameters.peek().is_some()
@@ -74,9 +74,9 @@ fn check_term(term: &Term, effect: &dyn Effect, own: Option<&OwnEffect>) -> Resu
     let counts = |form: &Form| (form.linear.len(), form.shape.len());
     let is_of = |form: &&&Form| counts(form) == (term.linear.len(), term.shape.len()) && names(form) == term.names;
     let Some(form) = named.iter().find(is_of) else {
-        let (factors, shape) = counts(named[0]);
+        let (coefficients, shape) = counts(named[0]);
         return Err(format!(
-            "has {} factors, {} shape values and the names {} in the form {}: expected are {factors} and {shape}, {}",
+            "has {} factors, {} shape values and the names {} in the form {}: expected are {coefficients} and {shape}, {}",
             term.linear.len(),
             term.shape.len(),
             list(&term.names),
@@ -90,7 +90,7 @@ fn check_term(term: &Term, effect: &dyn Effect, own: Option<&OwnEffect>) -> Resu
     }
     for (shape, value) in form.shape.iter().zip(&term.shape) {
         let (min, max) = effect.info().bounds(shape.name);
-        // What is held at an end of its range is rounded there. A logarithm has no zero.
+        // A value at a bound is rounded there. Zero has no logarithm.
         let rounding = 1e-9 * value.abs();
         let is_within = value + rounding >= min && value - rounding <= max;
         let is_possible = is_within && (own.is_some() || shape.search == ShapeSearch::Signed || *value > 0.0);
@@ -101,14 +101,14 @@ fn check_term(term: &Term, effect: &dyn Effect, own: Option<&OwnEffect>) -> Resu
     Ok(())
 }
 
-/// Names of the factors, then of the shape parameters.
+/// Names of the coefficients, then of the nonlinear parameters.
 fn names<'e>(form: &Form<'e>) -> Vec<&'e str> {
     form.linear.iter().copied().chain(form.shape.iter().map(|s| s.name)).collect()
 }
 
-/// Every form that an effect of the library can have, with as many factors as `factors` where their number follows the run.
-fn forms(effect: &dyn Effect, factors: usize) -> Vec<Form<'_>> {
-    let mut forms = effect.forms(&shown(factors + 1));
+/// Every form of a library effect, with as many coefficients as `coefficients` if their number depends on the run.
+fn forms(effect: &dyn Effect, coefficients: usize) -> Vec<Form<'_>> {
+    let mut forms = effect.forms(&shown(coefficients + 1));
     let longer = forms.iter().flat_map(|form| {
         let next = |form: &Form<'static>| effect.extended(form).map(|(_, longer)| longer);
         std::iter::successors(effect.extended(form).map(|(_, longer)| longer), next).collect::<Vec<_>>()
@@ -118,7 +118,7 @@ fn forms(effect: &dyn Effect, factors: usize) -> Vec<Form<'_>> {
     forms
 }
 
-/// Signals in which every effect shows: settled and turning, several turns, from slow to fast.
+/// Signals in which every effect is visible: steady state, several turns, slow and fast motion.
 fn shown(repeats: usize) -> View {
     const ROWS: usize = 2048;
     let rows = ROWS.max(repeats);

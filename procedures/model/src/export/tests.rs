@@ -11,7 +11,7 @@ use std::process::Command;
 const ROWS: usize = 240;
 const STEP_S: f64 = 0.004;
 
-/// Signals that move, turn and cross zero.
+/// Signals that move, reverse and cross zero.
 fn moments(kind: Kind) -> Vec<(&'static str, Vec<f64>)> {
     let wave = |rate: f64, size: f64| (0..ROWS).map(|i| size * (rate * i as f64 + 0.3).sin()).collect::<Vec<f64>>();
     let values = |place: usize, signal: Signal| match signal {
@@ -31,7 +31,7 @@ fn view(kind: Kind) -> View {
     for ((_, values), named) in moments(kind).into_iter().zip(signals(kind)) {
         given.set(named.signal, values);
     }
-    // Three repeats, for what changes from one to the next.
+    // Three repeats, for effects that change between repeats.
     given.set(Signal::Repeat, (0..ROWS).map(|i| (i / 60) as f64).collect());
     given.set(Signal::Drive, moments(kind)[1].1.clone());
     let mut view = View::new(given.clone(), given, Vec::new(), vec![0], STEP_S);
@@ -39,7 +39,7 @@ fn view(kind: Kind) -> View {
     view
 }
 
-/// A fit of all effects of a kind, each in one form: the `n`-th of those that it has.
+/// A fit of all effects of a kind, each in its `n`-th form.
 fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
     let view = view(kind);
     let mut terms = Vec::new();
@@ -131,7 +131,7 @@ fn rub() -> Vec<OwnEffect> {
     vec![OwnEffect::inline(Kind::Friction, text).unwrap()]
 }
 
-/// The fit without what a controller cannot compute.
+/// The fit without the effects that a controller cannot compute.
 fn carried(mut fit: Fit) -> Fit {
     let left_out: Vec<String> =
         parts::Parts::of(&fit).unwrap().left_out.iter().map(|(effect, _)| (*effect).to_owned()).collect();
@@ -140,7 +140,7 @@ fn carried(mut fit: Fit) -> Fit {
     fit
 }
 
-/// Compiles the header with a main that prints the prediction at every moment.
+/// Compiles the header with a main function that prints the prediction at every moment.
 fn run_c(fit: &Fit) -> Option<Vec<f64>> {
     let Ok(version) = Command::new("cc").arg("--version").output() else {
         println!("SKIPPED: there is no C compiler (cc) to hold the exported header against");
@@ -182,8 +182,8 @@ fn run_c(fit: &Fit) -> Option<Vec<f64>> {
     let flags = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-o"];
     let built = Command::new("cc").args(flags).arg(&program).arg(folder.join("main.c")).arg("-lm").output().unwrap();
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-    let told = Command::new(&program).output().unwrap();
-    Some(String::from_utf8(told.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect())
+    let reported = Command::new(&program).output().unwrap();
+    Some(String::from_utf8(reported.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect())
 }
 
 #[test]
@@ -202,7 +202,7 @@ fn c_computes_what_the_model_computes() {
     }
 }
 
-/// What remembers, in every form that a search can end with.
+/// Hysteresis effects in every form that a search can result in.
 #[test]
 fn c_remembers_as_the_model_does() {
     let (load, position) = ("torsional_hysteresis", "presliding");
@@ -221,13 +221,13 @@ fn c_remembers_as_the_model_does() {
         fit.terms.retain(|t| t.effect == effect);
         let term = &mut fit.terms[0];
         (term.form, term.shape) = (form.into(), shape.into());
-        let (factors, reaches): (&[&str], &[&str]) = match kind {
+        let (coefficients, reaches): (&[&str], &[&str]) = match kind {
             Kind::Friction => (&["tau_p"], &["theta_p", "omega_s", "rho"]),
             _ => (&["eta", "eta_2", "eta_3"], &["tau_eta", "tau_eta_2", "tau_eta_3"]),
         };
-        let factors = &factors[..shape.len().min(factors.len())];
-        term.linear = (0..factors.len()).map(|k| 0.37 + 0.11 * k as f64).collect();
-        term.names = factors.iter().chain(&reaches[..shape.len()]).map(|name| (*name).to_owned()).collect();
+        let coefficients = &coefficients[..shape.len().min(coefficients.len())];
+        term.linear = (0..coefficients.len()).map(|k| 0.37 + 0.11 * k as f64).collect();
+        term.names = coefficients.iter().chain(&reaches[..shape.len()]).map(|name| (*name).to_owned()).collect();
         let Some(found) = run_c(&fit) else { return };
         let truth = predict(&fit, &moments(kind), STEP_S).unwrap();
         let largest = truth.iter().fold(0.0f64, |m, v| m.max(v.abs()));
@@ -262,18 +262,18 @@ fn little_is_left_out_and_that_is_named() {
 }
 
 #[test]
-fn only_ranges_of_inputs_are_told() {
+fn only_ranges_of_inputs_are_reported() {
     let mut fit = fit_of_all(Kind::Friction, 0, Vec::new());
     fit.effects.retain(|e| ["inertia", "coulomb", "viscous"].contains(&e.as_str()));
     fit.terms.retain(|t| fit.effects.contains(&t.effect));
-    let told = |format| -> Vec<String> {
+    let reported = |format| -> Vec<String> {
         let text = export(&fit, format).unwrap();
         let ranges = text.split("Fitted where ").skip(1);
         ranges.filter_map(|rest| rest.split(' ').next().map(str::to_owned)).collect()
     };
-    assert_eq!(told(Format::C), ["velocity", "acceleration"]);
-    assert_eq!(told(Format::Mujoco), ["velocity", "acceleration"]);
-    assert_eq!(told(Format::Urdf), ["velocity"], "URDF has no armature");
+    assert_eq!(reported(Format::C), ["velocity", "acceleration"]);
+    assert_eq!(reported(Format::Mujoco), ["velocity", "acceleration"]);
+    assert_eq!(reported(Format::Urdf), ["velocity"], "URDF has no armature");
 }
 
 #[test]

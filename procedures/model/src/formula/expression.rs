@@ -1,4 +1,4 @@
-//! A formula whose names are all known: evaluated over whole columns at once.
+//! A formula with resolved names, evaluated over whole columns.
 
 use crate::formula::function::Function;
 use crate::formula::syntax::Operator;
@@ -8,7 +8,7 @@ use std::ops::Range;
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expression {
-    /// Bytes of the formula.
+    /// Byte range in the formula.
     pub at: Range<usize>,
     pub what: What,
 }
@@ -17,7 +17,7 @@ pub struct Expression {
 pub enum What {
     Number(f64),
     Signal(Signal),
-    /// Which of the effect's parameters.
+    /// Index of the effect's parameter.
     Parameter(usize),
     Negate(Box<Expression>),
     Binary(Operator, Box<Expression>, Box<Expression>),
@@ -35,7 +35,7 @@ impl Expression {
         match &self.what {
             What::Number(value) => Value::One(*value),
             What::Parameter(parameter) => Value::One(parameters[*parameter]),
-            // A signal that is not there is asked for by nobody: the effect is not visible.
+            // A missing signal is never evaluated, because its effect is not visible.
             What::Signal(signal) => signals.find(*signal).map_or(Value::One(f64::NAN), |v| Value::Many(v.into())),
             What::Negate(a) => of(a).map(|x| -x),
             What::Binary(operator, a, b) => of(a).operated(*operator, of(b)),
@@ -43,7 +43,7 @@ impl Expression {
         }
     }
 
-    /// Whether any part of the expression is such.
+    /// Whether any part of the expression satisfies `such`.
     pub fn any(&self, such: &mut impl FnMut(&What) -> bool) -> bool {
         such(&self.what)
             || match &self.what {
@@ -62,7 +62,7 @@ impl Expression {
         self.any(&mut |what| *what == What::Signal(signal))
     }
 
-    /// Where a signal is named first.
+    /// First occurrence of a signal.
     pub fn place_of(&self, signal: Signal) -> Option<Range<usize>> {
         match &self.what {
             What::Number(_) | What::Parameter(_) => None,
@@ -73,7 +73,7 @@ impl Expression {
         }
     }
 
-    /// The same with parameters under other numbers.
+    /// The expression with other parameter numbers.
     pub fn renumbered(&self, number: &dyn Fn(usize) -> usize) -> Self {
         let of = |e: &Expression| e.renumbered(number);
         let what = match &self.what {
@@ -113,7 +113,7 @@ impl<'s> Value<'s> {
         }
     }
 
-    /// NaN for a function without arguments, which no formula has.
+    /// NaN for a function without arguments, which no formula contains.
     pub fn called(function: Function, arguments: Vec<Value<'s>>) -> Value<'s> {
         let mut arguments = arguments.into_iter();
         match (arguments.next(), arguments.next()) {

@@ -1,28 +1,28 @@
-//! What is wrong with a formula, and where.
+//! Errors in a formula, with their position.
 
 use std::ops::Range;
 
-/// A mistake at a character of a text that a user wrote, with the others of the same text.
+/// An error at a character of a user's text, with all other errors of the same text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}{message} ({field}, character {}){}", whose(.effect), .position + 1, more(.also))]
 pub struct FormulaFault {
-    /// Whose formula it is; empty where it is that of no effect.
+    /// Id of the effect; empty for a formula without an effect.
     pub effect: String,
-    /// `formula`, or the part of the definition that is wrong.
+    /// `formula`, or the part of the definition that contains the error.
     pub field: &'static str,
-    /// What `position` counts in.
+    /// The text that `position` refers to.
     pub text: String,
-    /// Characters before the mistake.
+    /// Characters before the error.
     pub position: usize,
-    /// Characters of the mistake; 0 where something is missing.
+    /// Length of the error in characters; 0 if something is missing.
     pub length: usize,
-    /// What is wrong and what to write instead.
+    /// The error, and what to write instead.
     pub message: String,
-    /// Further mistakes of the same text, so that they can be mended at once.
+    /// Further errors of the same text, so that all can be corrected at once.
     pub also: Box<[Also]>,
 }
 
-/// A further mistake of a text.
+/// A further error of a text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Also {
     pub position: usize,
@@ -39,7 +39,7 @@ fn more(also: &[Also]) -> String {
 }
 
 impl FormulaFault {
-    /// The same of a text that this one begins in, after so many characters of it.
+    /// The error relative to a longer text, in which this text starts after `start` characters.
     pub(crate) fn within(mut self, text: &str, start: usize) -> Self {
         text.clone_into(&mut self.text);
         self.position += start;
@@ -47,7 +47,7 @@ impl FormulaFault {
         self
     }
 
-    /// The line of the first mistake with another below it that points at the characters of all that stand in it.
+    /// The line of the first error, and a line below it that marks all errors in it.
     pub fn marked(&self) -> String {
         let before: String = self.text.chars().take(self.position).collect();
         let start = before.rfind('\n').map_or(0, |end| end + 1);
@@ -56,7 +56,7 @@ impl FormulaFault {
         let all =
             || std::iter::once((self.position, self.length)).chain(self.also.iter().map(|a| (a.position, a.length)));
         let is_marked = |at: usize| all().any(|(position, length)| (position..position + length.max(1)).contains(&at));
-        // One more for what is missing at the end.
+        // One more character for something that is missing at the end.
         let below = line.chars().chain([' ']).enumerate().map(|(i, c)| match (is_marked(first + i), c) {
             (true, _) => '^',
             (false, '\t') => '\t',
@@ -66,7 +66,7 @@ impl FormulaFault {
     }
 }
 
-/// A mistake in a text that is being read: bytes, as parsers count.
+/// An error in a text that is being parsed, with byte positions.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Mistake {
     pub at: Range<usize>,
@@ -79,7 +79,7 @@ impl Mistake {
         Self { at, message: message.into(), also: Vec::new() }
     }
 
-    /// The first of several, which carries the others. `None` where there are none.
+    /// The first of several errors, which carries the others. `None` without errors.
     pub fn first_of(mut all: Vec<Mistake>) -> Option<Self> {
         (!all.is_empty()).then(|| {
             let mut first = all.remove(0);

@@ -15,7 +15,7 @@ macro_rules! functions {
                 match self { $(Function::$variant => $name),* }
             }
 
-            /// What C99's math.h calls it; `sign` and `wrap`, an angle within half a turn of zero, are written out.
+            /// Name in C99's math.h; `sign` and `wrap` (an angle within half a turn of zero) are defined separately.
             pub fn c_name(self) -> &'static str {
                 match self { $(Function::$variant => $c),* }
             }
@@ -24,7 +24,7 @@ macro_rules! functions {
                 match self { $(Function::$variant => $arity),* }
             }
 
-            /// The value; a function of one argument does not look at the second.
+            /// The value; a function of one argument ignores the second.
             pub fn apply(self, x: f64, y: f64) -> f64 {
                 let apply: fn(f64, f64) -> f64 = match self { $(Function::$variant => $apply),* };
                 apply(x, y)
@@ -60,7 +60,7 @@ impl Function {
         Function::ALL.iter().copied().find(|f| f.name() == name)
     }
 
-    /// A mean over an interval is far from the value at its middle.
+    /// A periodic function: its mean over an interval differs from its value at the middle.
     pub fn is_periodic(self) -> bool {
         matches!(self, Function::Sin | Function::Cos | Function::Tan | Function::Wrap)
     }

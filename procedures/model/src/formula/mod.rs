@@ -1,10 +1,10 @@
-//! Formulas that users write: `tau = a * tanh(velocity / w0) * abs(load)`.
+//! Formulas of users: `tau = a * tanh(velocity / w0) * abs(load)`.
 //!
-//! Text becomes a tree (winnow), names become signals and parameters, and the tree becomes a sum of factors times
-//! columns. Every mistake stands at a character.
+//! Text is parsed to a tree (winnow), names become signals and parameters, and the tree becomes a sum of coefficients
+//! times columns. Every error has a character position.
 
+pub(crate) mod coefficients;
 pub(crate) mod expression;
-pub(crate) mod factors;
 pub(crate) mod fault;
 pub(crate) mod function;
 pub(crate) mod names;
@@ -24,19 +24,19 @@ use crate::signal::Signal;
 use jointbench_instrument::{Kind, Motion};
 use std::collections::BTreeSet;
 
-/// A formula that makes sense for a kind of run.
+/// A valid formula for a kind of run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula {
-    /// Parameters that enter linearly, by their place in the list, each with what it multiplies.
+    /// Linear parameters, by their place in the list, each with its regressor.
     pub columns: Vec<(usize, Expression)>,
-    /// The other parameters.
+    /// The nonlinear parameters.
     pub shape: Vec<usize>,
-    /// Signals that it names, in the order of the kind's table, and columns that are none of these.
+    /// Signals of the formula, in the order of the kind's table, and other columns.
     pub signals: Vec<NamedSignal>,
-    /// A mean over an interval is far from the value at its middle: a sine or cosine of a signal.
+    /// Whether a sine or cosine of a signal occurs: its mean over an interval differs from its value at the middle.
     pub is_periodic: bool,
-    /// Units that contradict each other in a joint that turns, and in one that slides. They change no figure, so that the
-    /// formula is used all the same.
+    /// Contradicting units for a rotating and for a sliding joint. They do not change results, so that the formula is
+    /// still used.
     doubts: [Option<Mistake>; 2],
 }
 
@@ -54,15 +54,15 @@ impl Formula {
             tree
         };
         let whole = Expression::resolve(tree, kind, parameters)?;
-        let factors = factors::factors(&whole, parameters.len());
-        if let Some(alone) = factors.alone {
-            let message = match factors.columns.is_empty() {
+        let coefficients = coefficients::coefficients(&whole, parameters.len());
+        if let Some(alone) = coefficients.alone {
+            let message = match coefficients.columns.is_empty() {
                 true => "no parameter scales this: multiply it by one, such as k * (…)",
                 false => "no parameter scales this part of the sum: multiply it by one",
             };
             return Err(Mistake::new(alone.at, message));
         }
-        let linear = |p: &usize| factors.columns.iter().any(|(q, _)| q == p);
+        let linear = |p: &usize| coefficients.columns.iter().any(|(q, _)| q == p);
         let periodic = |what: &What| matches!(what, What::Call(f, a) if f.is_periodic() && a.iter().any(has_signal));
         let mut columns = BTreeSet::new();
         whole.any(&mut |what| {
@@ -75,11 +75,11 @@ impl Formula {
             signals: signals(kind).iter().copied().filter(|s| whole.uses_signal(s.signal)).chain(columns).collect(),
             is_periodic: whole.any(&mut |what| periodic(what)),
             doubts: units::check(kind, text, &whole, units),
-            columns: factors.columns,
+            columns: coefficients.columns,
         })
     }
 
-    /// Units that contradict each other in such a motion; in every one, where none is known.
+    /// Contradicting units for this motion. If the motion is unknown, only contradictions for both.
     pub(crate) fn doubt(&self, motion: Option<Motion>) -> Option<&Mistake> {
         let [turning, sliding] = &self.doubts;
         match motion {
@@ -89,13 +89,13 @@ impl Formula {
         }
     }
 
-    /// The parameter occurs.
+    /// Whether the parameter occurs.
     pub fn uses(&self, parameter: usize) -> bool {
         self.shape.contains(&parameter) || self.columns.iter().any(|(p, _)| *p == parameter)
     }
 }
 
-/// Only what stands right of the equals sign was written, which can mean nothing else.
+/// Whether only the right-hand side was written, without ambiguity.
 pub(crate) fn is_bare(text: &str, left: &str, parameters: &[&str]) -> bool {
     let begun = text.split(|c: char| !c.is_alphanumeric() && c != '_').find(|word| !word.is_empty());
     !text.contains('=') && !text.trim().is_empty() && (begun != Some(left) || parameters.contains(&left))

@@ -1,4 +1,4 @@
-//! What the names of a formula mean, and what to write instead of those that mean nothing.
+//! Resolution of names in a formula, with suggestions for unknown names.
 
 use crate::formula::expression::{Expression, What};
 use crate::formula::fault::Mistake;
@@ -23,11 +23,11 @@ impl<'n> Names<'n> {
         Self { kind, parameters, unknown: Vec::new(), mistakes: Vec::new() }
     }
 
-    /// Zero where a name means nothing.
+    /// Zero for an unknown name.
     pub fn meaning(&mut self, name: &str, at: &Range<usize>) -> What {
         let parameter = self.parameters.iter().position(|p| *p == name).map(What::Parameter);
         parameter.or_else(|| signal_or_constant(name, self.kind)).unwrap_or_else(|| {
-            // A name that stands there again is the same mistake.
+            // A repeated unknown name is the same error.
             if !self.unknown.iter().any(|known| known == name) {
                 let hint = self.hint(name);
                 let message = format!("{name} is neither a signal nor a parameter of this effect; {hint}");
@@ -93,7 +93,7 @@ impl<'n> Names<'n> {
         Ok(Signal::named(column))
     }
 
-    /// `None` where there is no such function.
+    /// `None` for an unknown function.
     pub fn function(&mut self, name: &str, given: usize, at: &Range<usize>) -> Option<Function> {
         let Some(function) = Function::find(name) else {
             self.mistakes.push(no_function(name, at.start));
@@ -110,14 +110,14 @@ impl<'n> Names<'n> {
 }
 
 impl Expression {
-    /// Gives every name its meaning. Those that have none are mistakes, each name once.
+    /// Resolves every name. Unknown names are errors, each name once.
     pub(crate) fn resolve(node: Node, kind: Kind, parameters: &[&str]) -> Result<Self, Mistake> {
         let mut names = Names::new(kind, parameters);
         let whole = Self::named(node, &mut names);
         Mistake::first_of(names.mistakes).map_or(Ok(whole), Err)
     }
 
-    /// With zero in the place of what means nothing.
+    /// Unknown names become zero.
     fn named(node: Node, names: &mut Names) -> Self {
         let at = node.at;
         let mut inner = |node: Box<Node>| Box::new(Self::named(*node, names));

@@ -1,19 +1,19 @@
-//! The signals of each kind of run under the names that a formula uses.
+//! The signals of each kind of run, with their names in formulas.
 
 use crate::signal::{Signal, may_cause};
 use jointbench_instrument::Kind;
 use jointbench_instrument::units::{quantity_of, unit_of};
 
-/// What names a column of the run that is no signal.
+/// Function name for a column of the run that is no signal.
 pub const COLUMN: &str = "column";
 
-/// A signal as a formula sees it.
+/// A signal in a formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NamedSignal {
     pub name: &'static str,
     pub signal: Signal,
     pub unit: &'static str,
-    /// The column that it comes from; empty where it is derived.
+    /// Its source column; empty for a derived signal.
     pub column: &'static str,
     pub meaning: &'static str,
 }
@@ -29,7 +29,7 @@ const fn named(
 }
 
 impl NamedSignal {
-    /// A column that is none of the kind's signals, by its own name and in its own unit.
+    /// A column that is no signal of the kind, with its own name and unit.
     pub(crate) fn of_column(column: &'static str) -> Self {
         named(column, Signal::Column(column), unit_of(column).unwrap_or("1"), column, "a column of the run")
     }
@@ -76,7 +76,7 @@ const BRAKE: &[NamedSignal] = &[
     TEMPERATURE,
 ];
 
-/// What a formula of a kind may name.
+/// Signals of a kind that a formula may use.
 pub fn signals(kind: Kind) -> &'static [NamedSignal] {
     match kind {
         Kind::Friction => FRICTION,
@@ -86,14 +86,14 @@ pub fn signals(kind: Kind) -> &'static [NamedSignal] {
     }
 }
 
-/// How a formula names a column, or an axis on which errors show. `None` for what it cannot name.
+/// Formula name of a column or of a residual-map axis. `None` if a formula cannot use it.
 pub fn in_formula(kind: Kind, column: &str) -> Option<String> {
     let quantity = quantity_of(column).unwrap_or(column);
     let signal = signals(kind).iter().find(|s| s.column == column || s.name == quantity);
     signal.map(|s| s.name.to_owned()).or_else(|| may_cause(column).then(|| format!("{COLUMN}({column})")))
 }
 
-/// What stands left of the equals sign: the quantity that models of the kind predict.
+/// The left-hand side of a formula: the response of the kind.
 pub fn left_hand_side(kind: Kind) -> &'static str {
     match kind {
         Kind::Friction | Kind::Brake => "tau",

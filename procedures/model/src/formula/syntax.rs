@@ -1,4 +1,4 @@
-//! Text into a tree of names and operators in which every node knows where it stands. By winnow's Pratt parser.
+//! Parser of formulas to a tree of names and operators with their positions, based on winnow's Pratt parser.
 
 use crate::formula::fault::Mistake;
 use std::ops::Range;
@@ -11,7 +11,7 @@ use winnow::stream::LocatingSlice;
 use winnow::token::take_while;
 use winnow::{ModalResult, Parser};
 
-/// Longer formulas are no formulas; and what is short cannot nest deeply.
+/// Longest allowed formula. A limited length also limits the nesting.
 const LONGEST: usize = 400;
 
 pub(crate) type Input<'i> = LocatingSlice<&'i str>;
@@ -41,7 +41,7 @@ pub enum Operator {
     Power,
 }
 
-/// `left = expression`: the left-hand side with its place, and the tree of the other.
+/// `left = expression`: the left-hand side with its position, and the tree of the right-hand side.
 pub fn equation(text: &str) -> Result<((String, Range<usize>), Node), Mistake> {
     check_length(text)?;
     let left = preceded(multispace0, name.with_span().context(expected("the left-hand side, such as tau")));
@@ -49,7 +49,7 @@ pub fn equation(text: &str) -> Result<((String, Range<usize>), Node), Mistake> {
     whole((terminated(left, equals), tree), text, "an operator or the end was expected")
 }
 
-/// What stands right of the equals sign, written by itself.
+/// The right-hand side only.
 pub fn right_hand_side(text: &str) -> Result<Node, Mistake> {
     check_length(text)?;
     tree_of(text)
@@ -62,12 +62,12 @@ fn check_length(text: &str) -> Result<(), Mistake> {
     }
 }
 
-/// An expression by itself, such as a unit.
+/// An expression only, such as a unit.
 pub fn tree_of(text: &str) -> Result<Node, Mistake> {
     whole(tree, text, "an operator or the end was expected")
 }
 
-/// All of a text, or where it stops to be one. `otherwise` is what could have followed what is complete.
+/// Parses a whole text, or reports where it ends to be valid. `otherwise` is what could have followed the valid part.
 pub(crate) fn whole<'i, O>(
     mut parser: impl Parser<Input<'i>, O, ErrMode<ContextError>>,
     text: &'i str,

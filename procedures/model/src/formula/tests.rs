@@ -5,7 +5,7 @@ fn parse(text: &str, parameters: &[&str]) -> Result<Formula, Mistake> {
     Formula::parse(Kind::Friction, text, parameters, &vec!["1"; parameters.len()])
 }
 
-/// A mistake from where `§` stands on, with some of its words.
+/// An error that starts at `§`, with some words of its message.
 fn check_mistake(marked: &str, parameters: &[&str], words: &str) {
     let text = marked.replacen('§', "", 1);
     let at = marked.find('§').unwrap();
@@ -14,7 +14,7 @@ fn check_mistake(marked: &str, parameters: &[&str], words: &str) {
 }
 
 #[test]
-fn every_mistake_stands_at_its_character() {
+fn every_error_has_its_character() {
     let p = &["a", "w0"];
     check_mistake("tau = a * tanh(§velocty / w0)", p, "did you mean velocity");
     check_mistake("tau = a * tanh(§motor_velocity_rad_s)", p, "write velocity");
@@ -50,7 +50,7 @@ fn every_mistake_stands_at_its_character() {
 }
 
 #[test]
-fn a_column_of_the_run_stands_in_a_formula() {
+fn a_formula_may_use_a_column_of_the_run() {
     let formula = parse("tau = a * column(oil_pressure_pa) * column(temperature_c)", &["a"]).unwrap();
     let named: Vec<_> = formula.signals.iter().map(|s| (s.name, s.unit, s.signal)).collect();
     let (oil, known) = (Signal::Column("oil_pressure_pa"), Signal::Temperature);
@@ -81,9 +81,9 @@ fn check_value(text: &str, parameters: &[(&str, f64)], truth: impl Fn(f64, f64) 
     signals.set(Signal::Load, rows.map(|r| r.0).into());
     signals.set(Signal::Velocity, rows.map(|r| r.1).into());
     let mut sum = vec![0.0; rows.len()];
-    for (factor, column) in &formula.columns {
+    for (coefficient, column) in &formula.columns {
         let column = column.column(&values, &signals);
-        sum.iter_mut().zip(column).for_each(|(s, c)| *s += values[*factor] * c);
+        sum.iter_mut().zip(column).for_each(|(s, c)| *s += values[*coefficient] * c);
     }
     for ((load, velocity), found) in rows.into_iter().zip(sum) {
         let truth = truth(load, velocity);
@@ -102,7 +102,7 @@ fn operators_bind_as_everywhere() {
 }
 
 #[test]
-fn factors_are_told_from_shapes() {
+fn linear_parameters_are_separated_from_nonlinear_ones() {
     let split = |text: &str, parameters: &[&str]| {
         let formula = parse(text, parameters).unwrap();
         let linear: Vec<usize> = formula.columns.iter().map(|c| c.0).collect();
@@ -120,7 +120,7 @@ fn a_wave_is_known() {
     assert!(!parse("tau = a * cos(b) * velocity", &["a", "b"]).unwrap().is_periodic);
 }
 
-/// Parameters a, b and w with these units; where `§` stands something contradicts.
+/// Parameters a, b and w with these units; the contradiction is at `§`.
 fn check_units(kind: Kind, marked: &str, units: [&str; 3], words: &str) {
     let text = marked.replacen('§', "", 1);
     let found = Formula::parse(kind, &text, &["a", "b", "w"], &units);
@@ -134,7 +134,7 @@ fn check_units(kind: Kind, marked: &str, units: [&str; 3], words: &str) {
 }
 
 #[test]
-fn units_that_contradict_each_other_are_told_where_they_do() {
+fn contradicting_units_are_reported_at_their_position() {
     let torque = ["Nm", "Nm·s/rad", "rad/s"];
     let check = |marked: &str, units, words: &str| check_units(Kind::Friction, marked, units, words);
     check("tau = a * tanh(velocity / w) + b * velocity", torque, "");
@@ -150,7 +150,7 @@ fn units_that_contradict_each_other_are_told_where_they_do() {
 }
 
 #[test]
-fn units_that_nobody_can_judge_are_believed() {
+fn unknown_units_are_accepted() {
     check_units(Kind::Friction, "tau = a * tanh(velocity / 0.3)", ["Nm", "1", "1"], "");
     check_units(Kind::Friction, "§tau = a * velocity", ["furlong", "1", "1"], "[furlong] is none");
     check_units(Kind::Friction, "§tau = a * sign(velocity)", ["mNm", "1", "1"], "not converted");

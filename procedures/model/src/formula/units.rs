@@ -1,7 +1,7 @@
-//! Whether the units of a formula fit together.
+//! Consistency of the units of a formula.
 //!
-//! A unit is the exponents of five base units; angles have none. A number without a unit may stand for a quantity that
-//! nobody named, so what contains one is not judged.
+//! A unit consists of the exponents of five base units; angles have none. A number without a unit may represent any
+//! quantity, so that an expression with such a number is not checked.
 
 use crate::formula::expression::{Expression, What};
 use crate::formula::fault::Mistake;
@@ -35,11 +35,11 @@ const KNOWN: &[(&str, Unit)] = &[
     ("V", Unit([1.0, 2.0, -3.0, -1.0, 0.0])),
 ];
 
-/// The first place where units contradict each other: in a joint that turns, and in one that slides.
+/// The first position of contradicting units: for a rotating joint, and for a sliding joint.
 ///
-/// `whole` is what stands right of the equals sign of `text`, `units` those of the parameters.
+/// `whole` is the right-hand side of `text`, `units` those of the parameters.
 pub fn check(kind: Kind, text: &str, whole: &Expression, units: &[&str]) -> [Option<Mistake>; 2] {
-    // A column that only its owner knows has whatever unit it has.
+    // The unit of an unknown column can be any.
     let names_other = whole.any(&mut |what| matches!(what, What::Signal(Signal::Column(_))));
     let is_foreign = |unit: &&&str| unit.trim() != "1" && read(unit).is_none() && !names_other;
     if let Some(foreign) = units.iter().find(is_foreign) {
@@ -51,7 +51,7 @@ pub fn check(kind: Kind, text: &str, whole: &Expression, units: &[&str]) -> [Opt
     [false, true].map(|slides| Check { kind, text, units: &units, slides }.whole(whole).err())
 }
 
-/// `None` for what is no SI unit known here, and for 1, which is what a parameter has whose unit was left out.
+/// `None` for unknown units, and for 1, which is the default of a parameter without a unit.
 fn read(text: &str) -> Option<Unit> {
     let mut spelled = text.trim().replace('·', "*").replace("°C", "K").replace('⁻', "^-");
     for (digit, written) in [('²', "2"), ('³', "3"), ('¹', "1"), ('⁴', "4")] {
@@ -89,7 +89,7 @@ impl Unit {
 }
 
 impl std::fmt::Display for Unit {
-    /// With forces and torques in place of masses.
+    /// With forces and torques instead of masses.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let [kg, m, s, a, k] = self.0;
         let is_torque = m == 2.0 * kg;
@@ -116,11 +116,11 @@ struct Check<'c> {
     kind: Kind,
     text: &'c str,
     units: &'c [Option<Unit>],
-    /// Metres and newtons take the place of radians and newton metres.
+    /// Metres and newtons replace radians and newton metres.
     slides: bool,
 }
 
-/// `None` where nobody can tell.
+/// `None` if the unit is unknown.
 type Found = Result<Option<Unit>, Mistake>;
 
 impl Check<'_> {
@@ -150,7 +150,7 @@ impl Check<'_> {
                     return Ok(unit_of(column).and_then(read));
                 }
                 let named = signals(self.kind).iter().find(|s| s.signal == *signal);
-                // One that is a plain number by its nature is none that somebody forgot.
+                // A signal with the unit 1 is dimensionless, not a signal without a unit.
                 Ok(named.and_then(|s| if s.unit == "1" { Some(PLAIN) } else { self.signal(s.unit) }))
             }
             What::Negate(a) => self.of(a),
@@ -188,7 +188,7 @@ impl Check<'_> {
         }
     }
 
-    /// The unit that two terms have in common.
+    /// The common unit of two terms.
     fn alike(&self, a: &Expression, b: &Expression) -> Found {
         match (self.of(a)?, self.of(b)?) {
             (Some(first), Some(second)) if first != second => {
@@ -200,5 +200,5 @@ impl Check<'_> {
     }
 }
 
-/// What to do about it.
+/// Advice for the user.
 const CURE: &str = ": look at the units of the parameters (a radian counts as 1)";

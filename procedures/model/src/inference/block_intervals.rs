@@ -1,5 +1,5 @@
-//! Parameters of a model that is judged sample by sample, with 95 % intervals: leave one block out, and other corners of the
-//! filter.
+//! Parameters of a model that is judged sample by sample, with 95 % intervals from a delete-block jackknife and from
+//! other filter corners.
 
 use crate::effect::ShapeSearch;
 use crate::inference::parameter_state::{self, Intervals, Slot};
@@ -13,17 +13,17 @@ use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::sync::Arc;
 
-/// Half of a 95 % interval in standard deviations over corners.
+/// Half width of a 95 % interval in standard deviations over the filter corners.
 const OF_CORNERS: f64 = 2.05;
 
 /// Parameters of the terms with 95 % intervals.
 ///
-/// The half width is the largest one of a jackknife over blocks at each corner of the filter, with Student's t, combined with the
-/// scatter of the estimate over the corners. What a parameter of shape may be lies between its neighbours on the
-/// grid.
+/// The half width combines two parts: the largest jackknife interval over blocks (Student's t) of all filter corners,
+/// and the scatter of the estimate over the corners. The interval of a nonlinear parameter reaches to its neighbours
+/// on the grid.
 pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
     let solution = Solution::of(model)?;
-    let replicates = factors_without(&solution);
+    let replicates = coefficients_without(&solution);
     let blocks = replicates.len() as f64;
     let t = StudentsT::new(0.0, 1.0, blocks - 1.0).map_or(2.0, |law| law.inverse_cdf(0.975));
     let others: Vec<(Vec<f64>, Vec<f64>)> = model
@@ -32,13 +32,14 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
         .par_iter()
         .filter_map(|problem| {
             let other = Solution::of(&at_corner(model, problem))?;
-            Some((other.factors.clone(), other.standard_errors()))
+            Some((other.coefficients.clone(), other.standard_errors()))
         })
         .collect();
     let own = solution.standard_errors();
     let half_width = |k: usize| {
         let error = others.iter().map(|(_, errors)| errors[k]).fold(own[k], f64::max);
-        let estimates: Vec<f64> = std::iter::once(solution.factors[k]).chain(others.iter().map(|o| o.0[k])).collect();
+        let estimates: Vec<f64> =
+            std::iter::once(solution.coefficients[k]).chain(others.iter().map(|o| o.0[k])).collect();
         (t * error).hypot(OF_CORNERS * deviation(&estimates))
     };
     let mut parameters = Vec::new();
@@ -48,7 +49,7 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
         for name in &term.form.linear {
             let k = names.len();
             names.push(format!("{}.{name}", info.id));
-            let (value, half) = (solution.factors[k], half_width(k));
+            let (value, half) = (solution.coefficients[k], half_width(k));
             let slot = Slot {
                 effect: info.id,
                 name,
@@ -81,13 +82,13 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
     Some(Intervals { parameters, trade_offs: trade_offs(&replicates, &names) })
 }
 
-/// Factors of the effects without each block in turn.
-fn factors_without(solution: &Solution) -> Vec<Vec<f64>> {
-    let size = solution.factors.len();
+/// Coefficients of the effects, refitted without each block in turn.
+fn coefficients_without(solution: &Solution) -> Vec<Vec<f64>> {
+    let size = solution.coefficients.len();
     solution.ridge.replicates().map(|all| all[..size].to_vec()).collect()
 }
 
-/// The same model at another corner of the filter.
+/// The same model at another filter corner.
 fn at_corner<'p>(model: &LinearModel<'p>, problem: &'p Problem) -> LinearModel<'p> {
     let mut other = LinearModel::new(problem);
     for effect in &model.offsets {
@@ -110,7 +111,7 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt()
 }
 
-/// Parameters of the shape of a term.
+/// Nonlinear parameters of a term.
 fn shapes(term: &Term, motion: Motion) -> Vec<Parameter> {
     let info = term.effect.info();
     let of = |(k, shape): (usize, &crate::effect::Shape)| {

@@ -1,4 +1,5 @@
-//! The moment of a jump: nothing is linear in it, so its interval is the stretch of moments that fit nearly as well.
+//! The interval of a changepoint. The model is not differentiable in it, so that the interval contains all moments
+//! that fit nearly as well.
 
 use crate::linear::basis::dot;
 use crate::regression::linear_model::{LinearModel, Term};
@@ -7,10 +8,11 @@ use crate::signal::Signal;
 /// 95 % point of the likelihood ratio of a change point (Hansen 2000, table 1).
 const RATIO_95: f64 = 7.35;
 
-/// Rows that are tried on either side.
+/// Tested rows on each side.
 const FARTHEST: usize = 400;
 
-/// Moments whose squared error is not above the best by more than the noise allows. At least the rows beside the jump.
+/// Moments whose squared error exceeds the minimum by no more than the noise allows. The interval includes at least
+/// the rows next to the changepoint.
 pub fn interval(terms: &LinearModel, residual: &[f64], term: usize, shape: usize) -> [f64; 2] {
     let times = terms.problem.reduce.apply(terms.problem.view.get(Signal::Time).to_vec());
     let best = terms.terms[term].shape[shape];
@@ -30,7 +32,7 @@ pub fn interval(terms: &LinearModel, residual: &[f64], term: usize, shape: usize
     [earlier.copied().unwrap_or(first), later.copied().unwrap_or(last)]
 }
 
-/// Variance of the residual as a sum of many rows sees it: an AR(1) with its lag-one correlation.
+/// Long-run variance of the residual: an AR(1) process with its lag-one correlation.
 fn long_run_variance(residual: &[f64]) -> f64 {
     let square = dot(residual, residual);
     if square == 0.0 {

@@ -1,4 +1,5 @@
-//! What moves as the temperature does in a run: what is said of one of them may be the other's doing.
+//! Confounding with temperature: signals that change with the temperature in a run can be the cause of a temperature
+//! effect.
 
 use crate::linear::basis::dot;
 use crate::preprocess::Prepared;
@@ -6,10 +7,10 @@ use crate::signal::Signal;
 use crate::thresholds::{COLUMN_CORRELATION, TRADE_OFF_CORRELATION};
 use crate::{Effect, OwnEffect};
 
-/// The column of the effects that are asked about.
+/// The column of the temperature effects.
 const TEMPERATURE: &str = "temperature_c";
 
-/// What else the change with temperature that an effect tells of could be, in sentences.
+/// Alternative causes of a temperature effect, in sentences.
 pub fn instead(effect: &dyn Effect, prepared: &Prepared) -> Vec<String> {
     if !is_of_temperature(effect) {
         return Vec::new();
@@ -25,7 +26,7 @@ pub fn instead(effect: &dyn Effect, prepared: &Prepared) -> Vec<String> {
     columns.chain(time).collect()
 }
 
-/// The same change over time instead of over temperature, as a formula, where this run does not tell them apart.
+/// The same effect over time instead of temperature, as a formula, if this run cannot distinguish them.
 pub fn over_time(effect: &dyn Effect, prepared: &Prepared) -> Option<OwnEffect> {
     drift(prepared)?;
     OwnEffect::inline(prepared.kind, formula_over_time(effect.info().id)?).ok()
@@ -49,7 +50,7 @@ fn drift(prepared: &Prepared) -> Option<f64> {
     correlation(Signal::Time, prepared).filter(|r| r.abs() > TRADE_OFF_CORRELATION)
 }
 
-/// With the temperature, over the points that are judged. `None` where one of them never changes.
+/// Correlation with the temperature at the points. `None` if one of the two is constant.
 fn correlation(signal: Signal, prepared: &Prepared) -> Option<f64> {
     let problem = &prepared.main;
     let about_mean = |signal| -> Option<Vec<f64>> {

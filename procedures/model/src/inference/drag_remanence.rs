@@ -1,4 +1,5 @@
-//! What a brake holds at rest after a fall of its current is drag and remanence together, and a model gives it to the drag.
+//! The drag torque of a brake and its remanence are confounded: a brake at rest after a fall of its current holds
+//! both, and the model assigns all of it to the drag.
 
 use crate::regression::linear_model::LinearModel;
 use crate::report::fit::Parameter;
@@ -6,11 +7,11 @@ use crate::signal::{Signal, Signals};
 use crate::view::View;
 use crate::words::figure;
 
-/// A current below this share of the largest is none.
+/// A current below this share of the largest one counts as zero.
 const NONE: f64 = 0.02;
 
-/// Opens the drag beside a hysteresis down to what the brake holds while it remembers nothing: as it was measured before the
-/// first current, or as the hysteresis tells it.
+/// Extends the interval of the drag to the torque of a demagnetised brake: measured before the first current, or
+/// predicted by the hysteresis effect.
 pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
     let Some(hysteresis) = terms.terms.iter().position(|t| t.id() == "hysteresis") else { return };
     let Some(drag) = parameters.iter_mut().find(|p| p.effect == "drag") else { return };
@@ -18,8 +19,8 @@ pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
     let empty = fresh.unwrap_or_else(|| {
         let term = &terms.terms[hysteresis];
         let whole = term.effect.columns(term.form.name, &term.shape, &demagnetised());
-        let factors = &terms.linear().factors[hysteresis];
-        drag.value + whole.iter().zip(factors).map(|(column, factor)| column[0] * factor).sum::<f64>()
+        let coefficients = &terms.linear().coefficients[hysteresis];
+        drag.value + whole.iter().zip(coefficients).map(|(column, coefficient)| column[0] * coefficient).sum::<f64>()
     });
     let empty = empty.max(0.0);
     if (drag.ci95[0]..=drag.ci95[1]).contains(&empty) {
@@ -37,7 +38,7 @@ pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
     });
 }
 
-/// Torque before the first current of a recording that begins without any memory.
+/// Torque before the first current of a recording that starts demagnetised.
 fn fresh(terms: &LinearModel) -> Option<f64> {
     let view = &terms.problem.view;
     let current = view.get(Signal::Current);
@@ -51,7 +52,7 @@ fn fresh(terms: &LinearModel) -> Option<f64> {
     (!held.is_empty()).then(|| held.iter().sum::<f64>() / held.len() as f64)
 }
 
-/// One moment without current and without anything remembered.
+/// A single sample without current and without loading history.
 fn demagnetised() -> View {
     let mut none = Signals::new(1);
     none.set(Signal::Current, vec![0.0]);

@@ -1,4 +1,4 @@
-//! What a fit reports of a model that is judged sample by sample: presliding and the nuisance terms.
+//! Results of a fit that is judged sample by sample: presliding, and the nuisance terms of the form error.
 
 use crate::effects;
 use crate::regression::linear_model::LinearModel;
@@ -8,7 +8,8 @@ use crate::report::fit::{FormErrorTerm, Parameter, ParameterState, Term};
 use crate::words::{figure, percent};
 use jointbench_instrument::Kind;
 
-/// Contacts that bend, as one of the library's forms, of the dry friction that they turn: the direction of all friction is theirs.
+/// Presliding as one form of the library, applied to the dry friction. It is no additive term: it replaces the
+/// direction signal of all friction terms.
 pub fn presliding(model: &TwoStageModel, parameters: &[Parameter]) -> Option<(Term, Vec<Parameter>)> {
     let is_in = model.effects.iter().any(|e| e == PRESLIDING) && !model.hidden.iter().any(|h| h.effect == PRESLIDING);
     let bristles = model.prepared.about.bristles.as_ref().filter(|_| is_in)?;
@@ -50,23 +51,23 @@ pub struct Nuisance {
 pub fn nuisance(model: &LinearModel, unit: &str) -> Option<Nuisance> {
     let (solution, form_error) = (Solution::of(model)?, model.problem.form_error.as_deref()?);
     let mut terms = Vec::new();
-    for (at, factor) in &solution.error {
+    for (at, coefficient) in &solution.error {
         let column = &form_error.columns[*at];
         let place = form_error.columns[..*at].iter().filter(|other| other.lives == column.lives).count();
         terms.push(FormErrorTerm {
             name: column.lives.name().into(),
             form: String::new(),
             shape: vec![place as f64],
-            linear: vec![*factor],
+            linear: vec![*coefficient],
         });
     }
-    let mut factors = solution.relatives.iter();
+    let mut coefficients = solution.relatives.iter();
     for relative in model.relatives.iter() {
         terms.push(FormErrorTerm {
             name: relative.effect.info().id.into(),
             form: relative.form.name.into(),
             shape: relative.shape.clone(),
-            linear: factors.by_ref().take(relative.columns.len()).copied().collect(),
+            linear: coefficients.by_ref().take(relative.columns.len()).copied().collect(),
         });
     }
     let sum = solution.form_error(model);

@@ -1,15 +1,14 @@
-//! The number of waves in a turn, where the run saw a part of a turn only: numbers beside the one that was found may explain
-//! it as well.
+//! The order of a wave over a partial turn: neighbouring orders may explain the data equally well.
 
 use crate::effect::ShapeSearch;
-use crate::preprocess::independent_blocks::pieces;
+use crate::preprocess::independent_blocks::independent_blocks;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState};
 
-/// So many standard deviations of what they lose from piece to piece part two numbers.
+/// Two orders are distinguished if their loss difference exceeds this number of standard errors over the blocks.
 const APART: f64 = 2.0;
 
-/// Opens the numbers of waves that a run over a part of a turn does not decide, and with them the factors.
+/// Extends the interval of an order that a partial turn does not determine, and the intervals of its coefficients.
 pub fn open(terms: &LinearModel, residual: &[f64], parameters: &mut [Parameter]) {
     for (i, term) in terms.terms.iter().enumerate() {
         let Some(turns) = term.effect.wave().map(|angle| terms.problem.view.turns(angle)).filter(|t| *t < 1.0) else {
@@ -28,7 +27,7 @@ pub fn open(terms: &LinearModel, residual: &[f64], parameters: &mut [Parameter])
                         p.ci95[0], p.ci95[1]
                     ));
                 } else if let Some(at) = term.form.linear.iter().position(|name| *name == p.name) {
-                    let sizes = alike.iter().map(|(_, factors)| factors[at]);
+                    let sizes = alike.iter().map(|(_, coefficients)| coefficients[at]);
                     p.ci95 = sizes.fold(p.ci95, |[low, high], size| [low.min(size), high.max(size)]);
                 }
             }
@@ -36,11 +35,11 @@ pub fn open(terms: &LinearModel, residual: &[f64], parameters: &mut [Parameter])
     }
 }
 
-/// Other numbers next to the one that was found with which the model is as good, in order, each with its factors.
+/// Other orders with which the model is as good, in rising order, each with its coefficients.
 fn alike(terms: &LinearModel, residual: &[f64], term: usize, shape: usize) -> Vec<(f64, Vec<f64>)> {
     let Term { effect, form, shape: found, .. } = &terms.terms[term];
     let bounds = form.shape[shape];
-    let (piece, count) = pieces(terms.problem, terms.columns().len());
+    let (block, count) = independent_blocks(terms.problem, terms.columns().len());
     let other = |order: f64| {
         let mut orders = found.clone();
         orders[shape] = order;
@@ -48,13 +47,13 @@ fn alike(terms: &LinearModel, residual: &[f64], term: usize, shape: usize) -> Ve
         trial.terms[term] = Term::new(*effect, form.clone(), orders, terms.problem);
         let linear = trial.linear();
         let mut loss = vec![0.0; count];
-        for ((piece, own), other) in piece.iter().zip(residual).zip(&linear.residual) {
-            loss[*piece] += other * other - own * own;
+        for ((block, own), other) in block.iter().zip(residual).zip(&linear.residual) {
+            loss[*block] += other * other - own * own;
         }
         let mean = loss.iter().sum::<f64>() / count as f64;
         let square: f64 = loss.iter().map(|l| (l - mean).powi(2)).sum();
         let scatter = (square / (count.max(2) - 1) as f64 / count as f64).sqrt();
-        (mean < APART * scatter).then(|| (order, linear.factors[term].clone()))
+        (mean < APART * scatter).then(|| (order, linear.coefficients[term].clone()))
     };
     let free = |order: &f64| (bounds.min..=bounds.max).contains(order) && !found.contains(order);
     let way = |step: f64| (1..).map(move |k| found[shape] + step * f64::from(k)).take_while(free).map_while(other);

@@ -1,4 +1,5 @@
-//! Parameters with intervals that survive autocorrelation and segment scatter: a jackknife over independent pieces.
+//! Parameters with intervals that are robust against autocorrelation and segment scatter, by a jackknife over
+//! independent blocks.
 
 use crate::inference::block_intervals;
 use crate::inference::parameter_state::{Intervals, Slot};
@@ -8,7 +9,7 @@ use crate::thresholds::TRADE_OFF_CORRELATION;
 use crate::effect::ShapeSearch;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::gram::BlockGrams;
-use crate::preprocess::independent_blocks::pieces;
+use crate::preprocess::independent_blocks::independent_blocks;
 use crate::regression::linear_model::LinearModel;
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use jointbench_instrument::Motion;
@@ -16,31 +17,31 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Parameters of the terms with 95 % intervals.
 ///
-/// Delete-one-piece jackknife of the linearised model about the full estimate (CV3 of MacKinnon, Nielsen, Webb 2023),
-/// with Student's t at the number of pieces that a parameter really rests on: a Stribeck speed is decided by the few
-/// slowest segments, however many fast ones there are (Carter, Schnepel, Steigerwald 2017).
+/// Delete-one-block jackknife of the linearised model about the full estimate (CV3 of MacKinnon, Nielsen, Webb 2023).
+/// Student's t uses the effective number of blocks of each parameter: only the few slowest segments determine a
+/// Stribeck speed, independent of the number of fast ones (Carter, Schnepel, Steigerwald 2017).
 pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
     if let Some(found) = block_intervals::intervals(terms, motion) {
         return found;
     }
     let linear = terms.linear();
-    let slopes = terms.slopes(&linear.factors);
+    let slopes = terms.slopes(&linear.coefficients);
     let mut columns = terms.columns();
     columns.extend(slopes.iter().map(|s| s.2.as_slice()));
-    let slots = slots(terms, &linear.factors, &slopes, motion);
+    let slots = slots(terms, &linear.coefficients, &slopes, motion);
     let p = columns.len();
-    let (piece, count) = pieces(terms.problem, p);
-    let grams = BlockGrams::new(&columns, &linear.residual, &piece, count);
+    let (block, count) = independent_blocks(terms.problem, p);
+    let grams = BlockGrams::new(&columns, &linear.residual, &block, count);
     let spd = Cholesky::new(&grams.total().0, p, 0.0);
     let replicates = grams.jackknife();
     let groups = replicates.len().max(2) as f64;
-    // The replicates are steps from the full estimate, which the residual holds at zero.
+    // The replicates are steps from the full estimate, because the Gram matrices are built with the residual.
     let covariance = |a: usize, b: usize| (groups - 1.0) / groups * replicates.iter().map(|r| r[a] * r[b]).sum::<f64>();
     let variance: Vec<f64> = (0..p).map(|k| covariance(k, k)).collect();
     let active = active(&grams);
     let mut parameters = Vec::new();
     for (k, slot) in slots.iter().enumerate() {
-        let freedom = (resting_pieces(&grams, &active, &spd, k) - 1.0).max(1.0);
+        let freedom = (effective_blocks(&grams, &active, &spd, k) - 1.0).max(1.0);
         let t = StudentsT::new(0.0, 1.0, freedom).map_or(2.0, |t| t.inverse_cdf(0.975));
         let reach = if spd.is_dependent(k) { f64::INFINITY } else { t * variance[k].sqrt() };
         let ci95 = match slot.shape {
@@ -81,7 +82,7 @@ pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
 
 fn slots<'a>(
     terms: &'a LinearModel,
-    factors: &[Vec<f64>],
+    coefficients: &[Vec<f64>],
     slopes: &[(usize, usize, Vec<f64>)],
     motion: Motion,
 ) -> Vec<Slot<'a>> {
@@ -92,9 +93,9 @@ fn slots<'a>(
         Slot { effect: info.id, name, unit: motion.label(info.unit(name)), value, possible, shape }
     };
     let mut slots = Vec::new();
-    for (i, factors) in factors.iter().enumerate() {
+    for (i, coefficients) in coefficients.iter().enumerate() {
         let names = &terms.terms[i].form.linear;
-        slots.extend(names.iter().zip(factors).map(|(name, value)| slot(i, name, *value, None)));
+        slots.extend(names.iter().zip(coefficients).map(|(name, value)| slot(i, name, *value, None)));
     }
     for (i, k, _) in slopes {
         let shape = terms.terms[*i].form.shape[*k];
@@ -103,15 +104,15 @@ fn slots<'a>(
     slots
 }
 
-/// Columns that are not zero throughout a piece: of an offset for each power-up one.
+/// Columns that are not zero throughout a block. Of the offsets for each power-up, a block has only one.
 fn active(grams: &BlockGrams) -> Vec<Vec<usize>> {
     let p = grams.columns;
     (0..grams.groups).map(|g| (0..p).filter(|a| grams.xx(g)[a * p + a] > 0.0).collect()).collect()
 }
 
-/// How many equal pieces would decide a parameter as well as these unequal ones: (Σ w)²/Σ w² with the share w of each
-/// piece in the parameter's variance.
-fn resting_pieces(grams: &BlockGrams, active: &[Vec<usize>], spd: &Cholesky, k: usize) -> f64 {
+/// Effective number of blocks of a parameter: the number of equal blocks with the same accuracy, (Σ w)²/Σ w², where w
+/// is the share of each block in the variance of the parameter.
+fn effective_blocks(grams: &BlockGrams, active: &[Vec<usize>], spd: &Cholesky, k: usize) -> f64 {
     let p = grams.columns;
     let mut unit = vec![0.0; p];
     unit[k] = 1.0;
@@ -126,7 +127,7 @@ fn resting_pieces(grams: &BlockGrams, active: &[Vec<usize>], spd: &Cholesky, k: 
     if squares > 0.0 { weights.iter().sum::<f64>().powi(2) / squares } else { 1.0 }
 }
 
-/// Whole numbers as they were found, and moments of jumps with their intervals.
+/// Integer parameters as found, and changepoints with their intervals.
 fn found(terms: &LinearModel, residual: &[f64], motion: Motion) -> Vec<Parameter> {
     let mut out = Vec::new();
     for (i, term) in terms.terms.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! How well a fitted model knows its parameters, and where it holds.
+//! Inference: intervals and states of parameters, confounding, and the range of validity.
 
 pub(crate) mod block_intervals;
 pub(crate) mod changepoint;

@@ -1,11 +1,11 @@
-//! What an interval means, said plainly.
+//! The state of a parameter, derived from its interval.
 
 use crate::effect::{Shape, ShapeSearch};
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use crate::thresholds::WIDE_INTERVAL;
 use crate::words::figure;
 
-/// What a fit knows of its parameters.
+/// Parameters of a fit with their intervals and trade-offs.
 pub struct Intervals {
     pub parameters: Vec<Parameter>,
     pub trade_offs: Vec<TradeOff>,
@@ -17,16 +17,16 @@ pub struct Slot<'a> {
     pub name: &'a str,
     pub unit: String,
     pub value: f64,
-    /// What is physically possible for a factor.
+    /// Physical bounds of a coefficient.
     pub possible: (f64, f64),
-    /// `None` for a factor.
+    /// `None` for a coefficient.
     pub shape: Option<Shape<'a>>,
 }
 
 const MAY_BE_ZERO: &str = "not identified by this run: it may be zero";
 
-/// A factor that is known to be small beside another one of its effect is known, zero or not: it is the phase of a wave, or a
-/// coefficient of a curve.
+/// A coefficient that is significantly smaller than another one of its effect is identified, even if it may be zero:
+/// it is the phase of a wave, or a coefficient of a curve.
 pub fn know_the_small(parameters: &mut [Parameter]) {
     let known: Vec<(String, String, f64)> = parameters
         .iter()
@@ -41,7 +41,7 @@ pub fn know_the_small(parameters: &mut [Parameter]) {
     }
 }
 
-/// State of a parameter, with words where it is not well determined.
+/// State of a parameter, with a note if it is not well determined.
 pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option<String>) {
     let nothing =
         || (ParameterState::Unidentified, Some("not identified by this run: its data does not depend on it".into()));
@@ -86,8 +86,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_small_factor_beside_a_large_one_of_its_effect_is_known() {
-        let factor = |effect: &str, value: f64, ci95: [f64; 2]| {
+    fn a_small_coefficient_of_an_effect_with_a_large_one_is_identified() {
+        let coefficient = |effect: &str, value: f64, ci95: [f64; 2]| {
             let is_zero = ci95[0] < 0.0 && ci95[1] > 0.0;
             Parameter {
                 effect: effect.into(),
@@ -100,10 +100,10 @@ mod tests {
             }
         };
         let mut all = vec![
-            factor("gravity", 1e-2, [0.9e-2, 1.1e-2]),
-            factor("gravity", 1e-5, [-1e-4, 1.2e-4]),
-            factor("gravity", 1e-3, [-2e-2, 2.2e-2]),
-            factor("drift", 1e-5, [-1e-4, 1.2e-4]),
+            coefficient("gravity", 1e-2, [0.9e-2, 1.1e-2]),
+            coefficient("gravity", 1e-5, [-1e-4, 1.2e-4]),
+            coefficient("gravity", 1e-3, [-2e-2, 2.2e-2]),
+            coefficient("drift", 1e-5, [-1e-4, 1.2e-4]),
         ];
         know_the_small(&mut all);
         assert_eq!(all.iter().map(|p| p.note.is_none()).collect::<Vec<_>>(), [true, true, false, false]);

@@ -1,4 +1,4 @@
-//! Where a fit holds, and what lies beyond.
+//! Range of validity of a fit, and the conditions of another run that exceed it.
 
 use crate::formula::signals::NamedSignal;
 use crate::preprocess::Prepared;
@@ -13,7 +13,7 @@ impl Scope {
     pub(crate) fn of(prepared: &Prepared, own: &[OwnEffect]) -> Self {
         let view = &prepared.main.view;
         let range = |s: &NamedSignal| {
-            // Settled motion has no acceleration: what needs one was fitted to the ramps.
+            // Steady-state motion has no acceleration; effects of acceleration were fitted to the ramps.
             let of_ramps = matches!(s.signal, Signal::Acceleration | Signal::Jerk);
             let ramps = prepared.moving.as_ref().filter(|_| of_ramps).and_then(|m| m.view.find(s.signal));
             let values = view.find(s.signal)?.iter().chain(ramps.into_iter().flatten());
@@ -33,13 +33,13 @@ impl Scope {
         }
     }
 
-    /// What the error of a fit on another run does not say by itself, in sentences.
+    /// Limitations of the error of a fit on another run, in sentences.
     pub(crate) fn notes(&self, fit: &Fit, prepared: &Prepared) -> Vec<String> {
         let effects = fit.effects.iter().filter_map(|id| self.other_columns(fit, id, prepared));
         effects.chain(self.other_constants(prepared)).chain(self.left_by(prepared, &fit.own)).collect()
     }
 
-    /// An effect that this run cannot show though the fitted one could, or the other way round.
+    /// An effect that this run cannot show but the fitted run could, or the reverse.
     fn other_columns(&self, fit: &Fit, id: &str, prepared: &Prepared) -> Option<String> {
         let effect = find_with_own(fit.kind, &fit.own, id).ok()?;
         if !effect.is_offset() {
@@ -61,7 +61,7 @@ impl Scope {
         }
     }
 
-    /// Facts of the set-up that are not those of the fitted run.
+    /// Constants of the set-up that differ from those of the fitted run.
     fn other_constants(&self, prepared: &Prepared) -> Vec<String> {
         let here = |name: &str| prepared.constants.iter().find(|c| c.name == name).map(|c| c.value);
         let differ = |a: f64, b: f64| (a - b).abs() > 1e-9 * a.abs().max(b.abs());
@@ -81,12 +81,12 @@ impl Scope {
         self.constants.iter().filter_map(say).collect()
     }
 
-    /// The signals of another run that leave the ranges of this fit, in sentences: there the model is an extrapolation.
+    /// Signals of another run that exceed the ranges of this fit, in sentences: there the model extrapolates.
     fn left_by(&self, prepared: &Prepared, own: &[OwnEffect]) -> Vec<String> {
         let named = signals_with(prepared.kind, own);
         let say = |range: &SignalRange| {
             let signal = named.iter().find(|s| s.name == range.name)?.signal;
-            // Every run has its own moments, an angle goes round, and the torque of the drive is what is predicted.
+            // Time differs between runs, angles are periodic, and the drive torque is the response.
             let other = [Signal::Time, Signal::Repeat, Signal::Position, Signal::Link, Signal::Drive].contains(&signal);
             let values = prepared.main.view.find(signal).filter(|_| !other)?;
             let scale = if signal == Signal::Load { self.load_scale } else { 1.0 };
@@ -108,7 +108,8 @@ impl Scope {
     }
 }
 
-/// What smoothing took off the load, rms; samples outside of every leg stay as they are.
+/// RMS of the noise that smoothing removed from the load. Samples outside of legs are not smoothed, so that they do
+/// not count.
 fn noise(view: &View) -> Option<f64> {
     let smooth = view.samples.find(Signal::Load)?;
     let off = view.felt.as_ref()?.iter().zip(smooth).map(|(felt, smooth)| felt - smooth).filter(|off| *off != 0.0);

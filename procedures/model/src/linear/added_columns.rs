@@ -1,4 +1,5 @@
-//! Candidate columns for a blocked ridge regression: their explained error in the whole run and in each block that was left out.
+//! Candidate columns added to a blocked ridge regression: their error reduction in the whole run and in each left-out
+//! block.
 
 use crate::linear::basis::dot;
 use crate::linear::blocked_ridge::{BlockedRidge, FREE, Fold, Sums, times};
@@ -8,18 +9,19 @@ use std::ops::Range;
 /// Products of columns with each other and with the response.
 type Normal = (Vec<f64>, Vec<f64>);
 
-/// Candidate columns projected out of a base, as sums of products: for the fit without each block, and for that block.
+/// Candidate columns orthogonalized against a base, as sums of products: for the fit without each block, and for that
+/// block.
 pub struct Added {
     pub size: usize,
-    /// Products of what the columns have of their own with themselves and with the response.
+    /// Products of the orthogonalized columns with themselves and with the response.
     own: Vec<f64>,
     side: Vec<f64>,
-    /// Share of the columns that is their own.
+    /// Tolerance: share of the columns that is orthogonal to the base.
     pub visible: f64,
-    /// The same without each block, and of that block alone.
+    /// The same without each block, and for that block alone.
     without: Vec<Normal>,
-    held_out: Vec<Normal>,
-    /// The same of each block, projected by the whole run.
+    validation_losses: Vec<Normal>,
+    /// The same for each block, orthogonalized by the fit of the whole run.
     within: Vec<Normal>,
     diagonal: Vec<f64>,
 }
@@ -35,9 +37,9 @@ impl Added {
         sums.iter().for_each(|s| all.add(s, 1.0));
         let solved =
             |fold: &Fold, of: &Products| -> Vec<Vec<f64>> { of.jb.iter().map(|jb| times(&fold.inverse, jb)).collect() };
-        // In the whole: of what is left of the columns, with a base that is held near zero only in part.
+        // In the whole run: from the residual of the columns, because the penalty shrinks only a part of the base.
         let along = solved(&ridge.whole, &all);
-        let (own, side) = all.projected(&along, &ridge.whole.factors);
+        let (own, side) = all.projected(&along, &ridge.whole.coefficients);
         let diagonal: Vec<f64> = (0..k).map(|a| all.jj[a * k + a]).collect();
         let visible = (0..k).map(|a| own[a * k + a] / diagonal[a].max(f64::MIN_POSITIVE)).fold(f64::INFINITY, f64::min);
         let mut out = Self {
@@ -46,48 +48,48 @@ impl Added {
             side,
             visible,
             without: Vec::with_capacity(sums.len()),
-            held_out: Vec::with_capacity(sums.len()),
+            validation_losses: Vec::with_capacity(sums.len()),
             within: Vec::with_capacity(sums.len()),
             diagonal,
         };
         for ((part, each), fold) in sums.iter().zip(&ridge.each).zip(&ridge.folds) {
             let rest = all.without(part);
             let of_fold = solved(fold, &rest);
-            out.without.push(rest.projected(&of_fold, &fold.factors));
-            out.held_out.push(part.left(each, &of_fold, &fold.factors));
-            out.within.push(part.left(each, &along, &ridge.whole.factors));
+            out.without.push(rest.projected(&of_fold, &fold.coefficients));
+            out.validation_losses.push(part.left(each, &of_fold, &fold.coefficients));
+            out.within.push(part.left(each, &along, &ridge.whole.coefficients));
         }
         out
     }
 
-    /// Factors in the whole run.
-    pub fn factors(&self) -> Vec<f64> {
+    /// Coefficients in the whole run.
+    pub fn coefficients(&self) -> Vec<f64> {
         Cholesky::new(&self.own, self.size, 1e-12).solve(&self.side)
     }
 
-    /// Weighted squared error that the columns take off in the whole run.
+    /// Weighted squared error that the columns explain in the whole run.
     pub fn taken(&self) -> f64 {
-        dot(&self.factors(), &self.side)
+        dot(&self.coefficients(), &self.side)
     }
 
-    /// Squared size of what each column has of its own.
+    /// Squared norm of the orthogonal part of each column.
     pub fn squares(&self) -> impl Iterator<Item = f64> {
         (0..self.size).map(|a| self.own[a * self.size + a])
     }
 
-    /// How sure the factors are not zero: the Wald statistic with the scatter of whole blocks under the alternative.
+    /// Wald statistic of the coefficients, with the scatter of whole blocks under the alternative.
     pub fn wald(&self) -> f64 {
-        let covariance = self.scatter(&self.factors());
+        let covariance = self.scatter(&self.coefficients());
         let white = Cholesky::new(&covariance, self.size, 1e-12).whiten(&self.side);
         dot(&white, &white)
     }
 
     /// Covariance of the products of the columns with the residual for these coefficients.
-    pub fn scatter(&self, factors: &[f64]) -> Vec<f64> {
+    pub fn scatter(&self, coefficients: &[f64]) -> Vec<f64> {
         let k = self.size;
         let mut covariance = vec![0.0; k * k];
         for (own, side) in &self.within {
-            let left: Vec<f64> = side.iter().zip(times(own, factors)).map(|(s, t)| s - t).collect();
+            let left: Vec<f64> = side.iter().zip(times(own, coefficients)).map(|(s, t)| s - t).collect();
             (0..k * k).for_each(|at| covariance[at] += left[at / k] * left[at % k]);
         }
         let groups = self.within.len() as f64;
@@ -95,28 +97,29 @@ impl Added {
         covariance
     }
 
-    /// What the columns take off each held-out block with factors that the others decide, and what they take off those.
-    /// `strength` holds the factors near zero; factors of which `allows` says no are zero.
+    /// Reduction of the squared error in each left-out block, with coefficients fitted to the other blocks, and the
+    /// reduction in those. `strength` is a ridge penalty; coefficients that `allows` rejects are zero.
     pub fn gains(&self, strength: f64, allows: impl Fn(&[f64]) -> bool) -> Vec<Gain> {
         let k = self.size;
         let gain = |((own, side), (there, side_there)): (&Normal, &Normal)| {
             let mut own = own.clone();
             (0..k).for_each(|a| own[a * k + a] += (strength + FREE) * self.diagonal[a]);
-            let factors = Cholesky::new(&own, k, 1e-12).solve(side);
-            if !allows(&factors) {
-                return Gain { held_out: 0.0, fitted: 0.0 };
+            let coefficients = Cholesky::new(&own, k, 1e-12).solve(side);
+            if !allows(&coefficients) {
+                return Gain { validation_losses: 0.0, fitted: 0.0 };
             }
-            let held_out = 2.0 * dot(&factors, side_there) - dot(&factors, &times(there, &factors));
-            Gain { held_out, fitted: dot(&factors, side) }
+            let validation_losses =
+                2.0 * dot(&coefficients, side_there) - dot(&coefficients, &times(there, &coefficients));
+            Gain { validation_losses, fitted: dot(&coefficients, side) }
         };
-        self.without.iter().zip(&self.held_out).map(gain).collect()
+        self.without.iter().zip(&self.validation_losses).map(gain).collect()
     }
 }
 
-/// What a candidate takes off one block, and off the rest that chose its factors.
+/// Reduction of the squared error in one block, and in the other blocks that the coefficients were fitted to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gain {
-    pub held_out: f64,
+    pub validation_losses: f64,
     pub fitted: f64,
 }
 
@@ -164,24 +167,26 @@ impl Products {
         rest
     }
 
-    /// What the columns have of their own beside a base with these factors for them and for the response.
-    fn projected(&self, along: &[Vec<f64>], factors: &[f64]) -> Normal {
+    /// Products of the orthogonal part of the columns, with base coefficients `along` for the columns and `coefficients`
+    /// for the response.
+    fn projected(&self, along: &[Vec<f64>], coefficients: &[f64]) -> Normal {
         let k = along.len();
         let own = (0..k * k).map(|at| self.jj[at] - dot(&self.jb[at / k], &along[at % k])).collect();
-        let side = (0..k).map(|a| self.jy[a] - dot(&self.jb[a], factors)).collect();
+        let side = (0..k).map(|a| self.jy[a] - dot(&self.jb[a], coefficients)).collect();
         (own, side)
     }
 
-    /// The same over rows that had no part in these factors.
-    fn left(&self, base: &Sums, along: &[Vec<f64>], factors: &[f64]) -> Normal {
+    /// The same over rows that were left out of the fit of these coefficients.
+    fn left(&self, base: &Sums, along: &[Vec<f64>], coefficients: &[f64]) -> Normal {
         let k = along.len();
         let inner: Vec<Vec<f64>> = along.iter().map(|a| times(&base.bb, a)).collect();
         let own = (0..k * k).map(|at| {
             let (a, b) = (at / k, at % k);
             self.jj[at] - dot(&along[a], &self.jb[b]) - dot(&self.jb[a], &along[b]) + dot(&inner[a], &along[b])
         });
-        let side =
-            (0..k).map(|a| self.jy[a] - dot(&along[a], &base.by) - dot(&self.jb[a], factors) + dot(&inner[a], factors));
+        let side = (0..k).map(|a| {
+            self.jy[a] - dot(&along[a], &base.by) - dot(&self.jb[a], coefficients) + dot(&inner[a], coefficients)
+        });
         (own.collect(), side.collect())
     }
 }
@@ -207,9 +212,9 @@ mod tests {
         let single: Vec<f32> = other.iter().map(|v| *v as f32).collect();
         let added = Added::new(&alone, &[single]);
         for ((gain, was), is) in added.gains(0.0, |_| true).iter().zip(&alone.losses).zip(&both.losses) {
-            assert!((was - gain.held_out - is).abs() < 1e-4 * was, "{was} {gain:?} {is}");
+            assert!((was - gain.validation_losses - is).abs() < 1e-4 * was, "{was} {gain:?} {is}");
         }
-        assert!((added.factors()[0] - both.factors()[1]).abs() < 1e-5);
+        assert!((added.coefficients()[0] - both.coefficients()[1]).abs() < 1e-5);
         assert!(added.wald() > 100.0);
     }
 }

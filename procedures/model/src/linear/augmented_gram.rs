@@ -1,18 +1,18 @@
-//! Gram matrices of a model with each of several others beside it.
+//! Gram matrices of a model with each of several candidates added.
 
 use crate::linear::basis::dot;
 use crate::linear::gram::BlockGrams;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Sums of products over each group of rows. Those of the others among each other nobody asks for: they are not there.
+/// Sums of products over each group of rows. Products between different candidates are not computed.
 pub struct AugmentedGrams {
     /// For each group the lower triangle of Σ xxᵀ, row-major, of all columns and the response.
     sums: Vec<Vec<f64>>,
-    /// Columns of the model, after which the response comes.
+    /// Number of columns of the model; the response follows them.
     model: usize,
     all: usize,
-    /// Columns of each of the others.
+    /// Columns of each candidate.
     others: Vec<Range<usize>>,
     rows: Vec<usize>,
 }
@@ -27,7 +27,7 @@ impl AugmentedGrams {
         groups: usize,
     ) -> Self {
         let mut columns: Vec<&[f64]> = model.iter().copied().chain([y]).collect();
-        // The first of the columns that are held against one, beside those of the model.
+        // The first column that is multiplied with each column, in addition to those of the model.
         let mut first = vec![0; columns.len()];
         let mut places = Vec::new();
         for other in others {
@@ -59,7 +59,7 @@ impl AugmentedGrams {
         }
     }
 
-    /// Of the model with one of the others.
+    /// Gram matrices of the model with one of the candidates.
     pub fn grams(&self, other: usize) -> BlockGrams {
         let columns: Vec<usize> = (0..self.model).chain(self.others[other].clone()).collect();
         let product = |sums: &[f64], a: usize, b: usize| sums[a.max(b) * self.all + a.min(b)];
@@ -82,15 +82,15 @@ impl BlockGrams {
     }
 }
 
-/// Rows whose columns stay in the cache while every pair of them is summed.
+/// Rows whose columns stay in the cache while all pairs are summed.
 const TILE: usize = 256;
 
-/// What is asked of the lower triangle of Σ xxᵀ over some rows, added to a row-major matrix.
-fn add_products(columns: &[&[f64]], is_asked: impl Fn(usize, usize) -> bool, rows: Range<usize>, sums: &mut [f64]) {
+/// Adds the requested entries of the lower triangle of Σ xxᵀ over some rows to a row-major matrix.
+fn add_products(columns: &[&[f64]], is_needed: impl Fn(usize, usize) -> bool, rows: Range<usize>, sums: &mut [f64]) {
     for start in rows.clone().step_by(TILE) {
         let tile = start..(start + TILE).min(rows.end);
         for (a, x) in columns.iter().enumerate() {
-            for b in (0..=a).filter(|b| is_asked(a, *b)) {
+            for b in (0..=a).filter(|b| is_needed(a, *b)) {
                 sums[a * columns.len() + b] += dot(&x[tile.clone()], &columns[b][tile.clone()]);
             }
         }
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn beside_each_other_they_are_what_they_are_alone() {
+    fn joint_and_separate_products_are_equal() {
         let column = |k: usize| (0..700).map(|i| (0.3 * (k + 1) as f64 * i as f64).sin() + 0.1 * k as f64).collect();
         let all: Vec<Vec<f64>> = (0..6).map(column).collect();
         let group: Vec<usize> = (0..700).map(|i| [0, 2, 1, 0][i / 175]).collect();

@@ -8,16 +8,16 @@ pub struct Basis {
     vectors: Vec<Vec<f64>>,
 }
 
-/// A column is taken as dependent on the others where less than this share of its square is left.
+/// A column with a smaller remaining share of its square counts as linearly dependent.
 const DEPENDENT: f64 = 1e-10;
 
-/// Where more than this share of a column's square is left, rounding has left nothing of the others in it.
+/// With a larger remaining share, rounding errors are negligible and one pass is sufficient.
 const CLEAN: f64 = 0.5;
 
-/// Σ ab, in double precision whatever the numbers are kept in.
+/// Σ ab in double precision, for inputs of either precision.
 #[multiversion(targets("x86_64+avx512f+avx512dq", "x86_64+avx2"))]
 pub fn dot<A: Into<f64> + Copy, B: Into<f64> + Copy>(a: &[A], b: &[B]) -> f64 {
-    // Eight sums that do not wait for each other let the compiler use whole registers.
+    // Eight independent sums let the compiler use whole registers.
     let mut sums = [0.0; 8];
     let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
     let rest: f64 = a8.remainder().iter().zip(b8.remainder()).map(|(x, y)| (*x).into() * (*y).into()).sum();
@@ -42,7 +42,8 @@ impl Basis {
         &self.vectors
     }
 
-    /// Adds what is new in a column. Returns the share of its square that is new; nothing is added where that is none.
+    /// Adds the orthogonal part of a column. Returns its share of the column's square; a dependent column is not
+    /// added.
     pub fn push(&mut self, column: &[f64]) -> f64 {
         let before = dot(column, column);
         if before == 0.0 {
@@ -51,7 +52,8 @@ impl Basis {
         let mut rest = column.to_vec();
         self.project_out(&mut rest);
         let mut after = dot(&rest, &rest);
-        // Twice is enough (Kahan, Parlett): the second pass removes what rounding left in the first, where that took most.
+        // Twice is enough (Kahan, Parlett): the second pass removes the rounding errors of the first, if that removed
+        // most of the column.
         if after < CLEAN * before {
             self.project_out(&mut rest);
             after = dot(&rest, &rest);
@@ -65,7 +67,7 @@ impl Basis {
         share
     }
 
-    /// Removes from a column what the basis explains.
+    /// Removes from a column the part that the basis explains.
     pub fn project_out(&self, column: &mut [f64]) {
         for q in &self.vectors {
             let share = dot(q, column);
@@ -73,7 +75,7 @@ impl Basis {
         }
     }
 
-    /// The column without what the basis explains.
+    /// The column without the part that the basis explains.
     pub fn rest(&self, column: &[f64]) -> Vec<f64> {
         let mut rest = column.to_vec();
         self.project_out(&mut rest);

@@ -1,22 +1,22 @@
-//! A base of columns projected out of a response, over the whole run and without each of its blocks in turn.
+//! Ridge regression of a response on a base of columns, over the whole run and without each of its blocks in turn.
 //!
-//! Rows are touched once: everything that follows is made of sums of products over blocks.
+//! The rows are read once; all results follow from sums of products over blocks.
 
 use crate::linear::basis::dot;
 use crate::linear::cholesky::Cholesky;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Strengths that are tried for columns that are held near zero, as shares of the rows.
+/// Tested ridge strengths, as shares of the rows.
 const RIDGES: [f64; 7] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
-/// What keeps the others solvable.
+/// Small penalty that keeps the other columns solvable.
 pub(in crate::linear) const FREE: f64 = 1e-9;
 
 /// A column of the base.
 #[derive(Clone, Copy)]
 pub struct BaseColumn<'a> {
     pub values: &'a [f64],
-    /// Size by which it is held near zero.
+    /// Scale of the ridge penalty.
     pub scale: f64,
     pub shrinks: bool,
 }
@@ -31,10 +31,10 @@ pub(in crate::linear) struct Sums {
 
 /// The base without one block.
 pub(in crate::linear) struct Fold {
-    /// Inverse of the products of the base: a base is solved for hundreds of columns.
+    /// Inverse of the Gram matrix of the base, because each base is solved for hundreds of columns.
     pub inverse: Vec<f64>,
-    /// Factors of the base for the response.
-    pub factors: Vec<f64>,
+    /// Coefficients of the base for the response.
+    pub coefficients: Vec<f64>,
 }
 
 /// Ridge regression of a response on a base of columns, solved without each block in turn.
@@ -45,18 +45,18 @@ pub struct BlockedRidge {
     pub(in crate::linear) base: Vec<Vec<f64>>,
     scale: Vec<f64>,
     pub(in crate::linear) response: Vec<f64>,
-    /// Share of the rows by which each column is held near zero.
+    /// Penalty of each column as a share of the rows.
     held: Vec<f64>,
     pub(in crate::linear) each: Vec<Sums>,
     pub(in crate::linear) folds: Vec<Fold>,
     pub(in crate::linear) whole: Fold,
-    /// Strength of what is held near zero, as a share of the rows.
+    /// Ridge strength as a share of the rows.
     pub strength: f64,
-    /// Held-out weighted squared error of each block.
+    /// Weighted squared validation error of each block.
     pub losses: Vec<f64>,
 }
 
-/// A base of columns projected out of a response over some of its rows.
+/// Regression of a response on a base of columns over some of its rows.
 pub struct Outside {
     rows: Vec<usize>,
     base: Vec<Vec<f64>>,
@@ -71,15 +71,15 @@ impl Outside {
         dot(&self.left, &self.left)
     }
 
-    /// Coefficients of columns added to the base, and the weighted squared error that they take off. `None` where a column has less
-    /// than this share of its own.
+    /// Coefficients of columns added to the base, and the weighted squared error that they explain. `None` if the
+    /// tolerance of a column is below `visible`.
     pub fn added(&self, columns: &[impl AsRef<[f32]>], visible: f64) -> Option<(Vec<f64>, f64)> {
         let weighted = |c: &[f32]| self.rows.iter().zip(&self.weight).map(|(row, w)| f64::from(c[*row]) * w).collect();
         let rest = |column: Vec<f64>| {
             let mut own = column.clone();
             let side: Vec<f64> = self.base.iter().map(|b| dot(b, &own)).collect();
-            for (base, factor) in self.base.iter().zip(times(&self.inverse, &side)) {
-                own.iter_mut().zip(base).for_each(|(o, b)| *o -= factor * b);
+            for (base, coefficient) in self.base.iter().zip(times(&self.inverse, &side)) {
+                own.iter_mut().zip(base).for_each(|(o, b)| *o -= coefficient * b);
             }
             (dot(&own, &own) > visible * dot(&column, &column)).then_some(own)
         };
@@ -87,9 +87,9 @@ impl Outside {
         let k = own.len();
         let products: Vec<f64> = (0..k * k).map(|at| dot(&own[at / k], &own[at % k])).collect();
         let side: Vec<f64> = own.iter().map(|own| dot(own, &self.left)).collect();
-        let factors = Cholesky::new(&products, k, 1e-12).solve(&side);
-        let taken = dot(&factors, &side);
-        Some((factors, taken))
+        let coefficients = Cholesky::new(&products, k, 1e-12).solve(&side);
+        let taken = dot(&coefficients, &side);
+        Some((coefficients, taken))
     }
 }
 
@@ -104,7 +104,7 @@ pub fn ranges(block: &[usize]) -> Vec<Range<usize>> {
 }
 
 impl BlockedRidge {
-    /// `strength`: the strength, or the one of [`RIDGES`] that predicts held-out blocks best.
+    /// `strength`: the ridge strength, or the one of [`RIDGES`] with the smallest validation error.
     pub fn new(
         columns: &[BaseColumn],
         response: &[f64],
@@ -128,7 +128,7 @@ impl BlockedRidge {
         let shrinks = columns.iter().any(|c| c.shrinks);
         let loss = |strength: f64| -> f64 {
             let penalty = penalty(strength);
-            each.par_iter().map(|sums| sums.loss(&all.without(sums).factors(&penalty))).sum()
+            each.par_iter().map(|sums| sums.loss(&all.without(sums).coefficients(&penalty))).sum()
         };
         let strength = strength.unwrap_or_else(|| {
             let tried = RIDGES.iter().filter(|_| shrinks).map(|strength| (*strength, loss(*strength)));
@@ -136,7 +136,7 @@ impl BlockedRidge {
         });
         let penalty = penalty(strength);
         let folds: Vec<Fold> = each.par_iter().map(|sums| all.without(sums).fold(&penalty)).collect();
-        let losses = each.iter().zip(&folds).map(|(sums, fold)| sums.loss(&fold.factors)).collect();
+        let losses = each.iter().zip(&folds).map(|(sums, fold)| sums.loss(&fold.coefficients)).collect();
         let whole = all.fold(&penalty);
         let held = penalty.iter().map(|penalty| penalty / n).collect();
         Self { blocks, weight: weight.to_vec(), base, scale, response, held, each, folds, whole, strength, losses }
@@ -146,17 +146,17 @@ impl BlockedRidge {
         self.losses.iter().sum()
     }
 
-    /// Factors of the columns as they were given, over all rows.
-    pub fn factors(&self) -> Vec<f64> {
-        self.whole.factors.iter().zip(&self.scale).map(|(f, s)| f / s).collect()
+    /// Coefficients of the original columns, over all rows.
+    pub fn coefficients(&self) -> Vec<f64> {
+        self.whole.coefficients.iter().zip(&self.scale).map(|(f, s)| f / s).collect()
     }
 
-    /// The same without each block in turn.
+    /// Coefficients without each block in turn.
     pub fn replicates(&self) -> impl Iterator<Item = Vec<f64>> {
-        self.folds.iter().map(|fold| fold.factors.iter().zip(&self.scale).map(|(f, s)| f / s).collect())
+        self.folds.iter().map(|fold| fold.coefficients.iter().zip(&self.scale).map(|(f, s)| f / s).collect())
     }
 
-    /// The same base on the rows that are not `near` alone. `None` where there are fewer of them than columns.
+    /// The same base on only the rows that are not `near` a reversal. `None` if there are fewer of them than columns.
     pub fn outside(&self, near: &[bool]) -> Option<Outside> {
         let rows: Vec<usize> = (0..self.response.len()).filter(|row| near.get(*row) == Some(&false)).collect();
         if rows.len() <= self.base.len() {
@@ -168,8 +168,8 @@ impl BlockedRidge {
         let sums = Sums::of(&base, &left, &(0..rows.len()));
         let penalty: Vec<f64> = self.held.iter().map(|share| share * rows.len() as f64).collect();
         let fold = sums.fold(&penalty);
-        for (base, factor) in base.iter().zip(&fold.factors) {
-            left.iter_mut().zip(base).for_each(|(e, b)| *e -= factor * b);
+        for (base, coefficient) in base.iter().zip(&fold.coefficients) {
+            left.iter_mut().zip(base).for_each(|(e, b)| *e -= coefficient * b);
         }
         Some(Outside { rows, base, weight, inverse: fold.inverse, left })
     }
@@ -201,29 +201,29 @@ impl Sums {
         rest
     }
 
-    fn factored(&self, penalty: &[f64]) -> Cholesky {
+    fn factorized(&self, penalty: &[f64]) -> Cholesky {
         let p = penalty.len();
         let mut matrix = self.bb.clone();
         penalty.iter().enumerate().for_each(|(a, penalty)| matrix[a * p + a] += penalty);
         Cholesky::new(&matrix, p, 0.0)
     }
 
-    fn factors(&self, penalty: &[f64]) -> Vec<f64> {
-        self.factored(penalty).solve(&self.by)
+    fn coefficients(&self, penalty: &[f64]) -> Vec<f64> {
+        self.factorized(penalty).solve(&self.by)
     }
 
     fn fold(&self, penalty: &[f64]) -> Fold {
-        let factored = self.factored(penalty);
-        Fold { factors: factored.solve(&self.by), inverse: factored.inverse() }
+        let factorized = self.factorized(penalty);
+        Fold { coefficients: factorized.solve(&self.by), inverse: factorized.inverse() }
     }
 
-    /// Squared error with these factors.
-    fn loss(&self, factors: &[f64]) -> f64 {
-        (self.yy - 2.0 * dot(factors, &self.by) + dot(factors, &times(&self.bb, factors))).max(0.0)
+    /// Squared error with these coefficients.
+    fn loss(&self, coefficients: &[f64]) -> f64 {
+        (self.yy - 2.0 * dot(coefficients, &self.by) + dot(coefficients, &times(&self.bb, coefficients))).max(0.0)
     }
 }
 
-/// Factors of columns for a response over all rows alone.
+/// Ridge coefficients of columns for a response, over all rows only.
 pub fn fitted(columns: &[BaseColumn], response: &[f64], weight: &[f64], strength: f64) -> Vec<f64> {
     let weighted =
         |values: &[f64], by: f64| -> Vec<f64> { values.iter().zip(weight).map(|(v, w)| v * w / by).collect() };
@@ -232,7 +232,7 @@ pub fn fitted(columns: &[BaseColumn], response: &[f64], weight: &[f64], strength
     let n = response.len() as f64;
     let sums = Sums::of(&base, &weighted(response, 1.0), &(0..response.len()));
     let penalty: Vec<f64> = columns.iter().map(|c| if c.shrinks { strength } else { FREE } * n).collect();
-    sums.factors(&penalty).iter().zip(columns).map(|(f, c)| f / scale(c)).collect()
+    sums.coefficients(&penalty).iter().zip(columns).map(|(f, c)| f / scale(c)).collect()
 }
 
 /// A symmetric matrix times a vector.

@@ -2,10 +2,10 @@
 
 use crate::linear::basis::dot;
 
-/// Longer rows are multiplied in whole registers.
+/// Longer rows are multiplied with whole registers.
 const LONG: usize = 32;
 
-/// Symmetric positive definite system, factored on scaled columns. A column that depends on others is left at zero.
+/// Symmetric positive definite system, factorized on scaled columns. A dependent column gets the coefficient zero.
 #[derive(Debug, Clone)]
 pub struct Cholesky {
     n: usize,
@@ -18,11 +18,12 @@ pub struct Cholesky {
 impl Cholesky {
     /// Cholesky of a row-major matrix after scaling its diagonal to one. `ridge` is added to the scaled diagonal.
     pub fn new(matrix: &[f64], n: usize, ridge: f64) -> Self {
-        Self::shown(matrix, n, ridge, &vec![0.0; n])
+        Self::with_min_pivot(matrix, n, ridge, &vec![0.0; n])
     }
 
-    /// The same, where a column is left at zero as well that has less than so much of its own beside those before it, squared.
-    pub fn shown(matrix: &[f64], n: usize, ridge: f64, least: &[f64]) -> Self {
+    /// The same, where a column also gets zero if its squared orthogonal part (given the columns before it) is less
+    /// than `least`.
+    pub fn with_min_pivot(matrix: &[f64], n: usize, ridge: f64, least: &[f64]) -> Self {
         let scale: Vec<f64> =
             (0..n).map(|i| if matrix[i * n + i] > 0.0 { matrix[i * n + i].sqrt().recip() } else { 0.0 }).collect();
         let mut l = vec![0.0; n * n];
@@ -57,7 +58,7 @@ impl Cholesky {
         Self { n, l, scale, dead }
     }
 
-    /// The inverse of the matrix, row by row; columns that depend on others are zero in it.
+    /// The inverse of the matrix, row by row, with zeros for dependent columns.
     pub fn inverse(&self) -> Vec<f64> {
         let n = self.n;
         // Rows of the inverse of L.
@@ -65,8 +66,8 @@ impl Cholesky {
         for i in (0..n).filter(|i| !self.dead[*i]) {
             let mut row = vec![0.0; i + 1];
             for k in (0..i).filter(|k| !self.dead[*k]) {
-                let factor = self.l[i * n + k];
-                row.iter_mut().zip(&lower[k * n..=k * n + k]).for_each(|(r, l)| *r -= factor * l);
+                let entry = self.l[i * n + k];
+                row.iter_mut().zip(&lower[k * n..=k * n + k]).for_each(|(r, l)| *r -= entry * l);
             }
             row[i] += 1.0;
             row.iter().enumerate().for_each(|(j, r)| lower[i * n + j] = r / self.l[i * n + i]);
@@ -74,9 +75,9 @@ impl Cholesky {
         let mut inverse = vec![0.0; n * n];
         for k in 0..n {
             for i in 0..=k {
-                let factor = lower[k * n + i];
+                let entry = lower[k * n + i];
                 let row = &lower[k * n..=k * n + k];
-                inverse[i * n..=i * n + k].iter_mut().zip(row).for_each(|(sum, l)| *sum += factor * l);
+                inverse[i * n..=i * n + k].iter_mut().zip(row).for_each(|(sum, l)| *sum += entry * l);
             }
         }
         (0..n * n).for_each(|at| inverse[at] *= self.scale[at / n] * self.scale[at % n]);
@@ -87,13 +88,13 @@ impl Cholesky {
         self.dead[i]
     }
 
-    /// What each column has of its own beside those before it, squared.
+    /// Squared orthogonal part of each column, given the columns before it.
     pub fn own(&self) -> impl Iterator<Item = f64> {
         let square = |i: usize| if self.dead[i] { 0.0 } else { (self.l[i * self.n + i] / self.scale[i]).powi(2) };
         (0..self.n).map(square)
     }
 
-    /// L⁻¹·D·b: what makes the squared length of the result bᵀA⁻¹b.
+    /// L⁻¹·D·b, whose squared norm is bᵀA⁻¹b.
     pub fn whiten(&self, b: &[f64]) -> Vec<f64> {
         let n = self.n;
         let mut x = vec![0.0; n];
@@ -128,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_inverse_solves_as_the_factors_do() {
+    fn an_inverse_solves_as_the_cholesky_factor_does() {
         let n = 40;
         let column = |a: usize| -> Vec<f64> {
             (0..90).map(|i| ((a * 37 + i * 13) as f64 * 0.7).sin() + 0.1 * a as f64).collect()
@@ -138,8 +139,8 @@ mod tests {
             .map(|at| dot(&columns[at / n], &columns[at % n]) + if at / n == at % n { 1.0 } else { 0.0 })
             .collect();
         let side: Vec<f64> = (0..n).map(|a| (a as f64).cos()).collect();
-        let factored = Cholesky::new(&gram, n, 0.0);
-        let (solved, inverse) = (factored.solve(&side), factored.inverse());
+        let factorized = Cholesky::new(&gram, n, 0.0);
+        let (solved, inverse) = (factorized.solve(&side), factorized.inverse());
         for (row, x) in inverse.chunks(n).zip(solved) {
             assert!((dot(row, &side) - x).abs() < 1e-9 * x.abs().max(1.0));
         }

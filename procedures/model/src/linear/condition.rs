@@ -1,19 +1,21 @@
-//! Whether the columns of the fit that is shown are determined: QR on scaled columns, and the singular values of R.
+//! Whether the columns of the reported fit are linearly independent: QR of scaled columns, and the singular values of
+//! R.
 
 use crate::linear::basis::dot;
 use nalgebra::DMatrix;
 
-/// How well the factors of columns are determined.
+/// How well the coefficients of columns are determined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
     /// Ratio of the largest to the smallest singular value of the scaled columns.
     pub number: f64,
-    /// A column that is a sum of others, with the strongest of them, where the condition is beyond use.
+    /// A linearly dependent column, and the column that contributes most to the dependence, if the condition number
+    /// is too large.
     pub dependent: Option<(usize, usize)>,
 }
 
-/// Every least squares solution is silently wrong on exactly dependent columns of different size; the condition of the
-/// scaled ones tells.
+/// Largest usable condition number. Least squares on exactly dependent columns of different size is wrong without a
+/// warning, and the condition number of the scaled columns detects it.
 const WORST: f64 = 1e9;
 
 /// Cost O(rows·columns²).
@@ -23,20 +25,20 @@ pub fn condition(columns: &[&[f64]]) -> Condition {
         return Condition { number: 1.0, dependent: None };
     }
     let norm: Vec<f64> = columns.iter().map(|c| dot(c, c).sqrt()).collect();
-    // A column beyond the range of numbers is none; the decomposition would never end on it.
+    // A column with an infinite norm counts as zero; the decomposition would not terminate on it.
     let counts: Vec<bool> = norm.iter().map(|norm| *norm > 0.0 && norm.is_finite()).collect();
-    // Rows of zeros change no singular value, and there are never fewer rows than columns.
+    // Rows of zeros do not change singular values and guarantee at least as many rows as columns.
     let scaled = DMatrix::from_fn(n.max(p), p, |i, j| if i < n && counts[j] { columns[j][i] / norm[j] } else { 0.0 });
     let svd = scaled.qr().unpack_r().svd(false, true);
     let (largest, smallest) = (svd.singular_values[0], svd.singular_values[p - 1]);
     let number = if smallest > 0.0 { largest / smallest } else { f64::INFINITY };
     let vanishing = svd.v_t.filter(|_| number > WORST).map(|v| v.row(p - 1).into_owned());
     let dependent = vanishing.map(|weights| {
-        // The combination that vanishes: its two largest entries are the culprits.
+        // The two largest entries of the vanishing combination identify the dependent columns.
         let mut order: Vec<usize> = (0..p).collect();
         order.sort_by(|a, b| weights[*b].abs().total_cmp(&weights[*a].abs()));
         let a = order[0];
-        // A column of zeros vanishes by itself.
+        // A column of zeros is dependent by itself.
         let b = order.get(1).copied().filter(|b| weights[*b].abs() > 1e-9).unwrap_or(a);
         (a.min(b), a.max(b))
     });

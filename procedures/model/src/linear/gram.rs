@@ -1,4 +1,4 @@
-//! Gram matrices of blocks: cross-validation, jackknife and sign flips are functions of these alone.
+//! Gram matrices of blocks, from which cross-validation, jackknife and sign flips are computed.
 
 use crate::linear::cholesky::Cholesky;
 use crate::thresholds::FOLD_COVERAGE;
@@ -28,7 +28,7 @@ impl BlockGrams {
         &self.xy[group * self.columns..(group + 1) * self.columns]
     }
 
-    /// Σ xxᵀ and Σ xy over some groups; one may come several times.
+    /// Σ xxᵀ and Σ xy over some groups; a group may occur several times.
     pub fn sum(&self, groups: impl IntoIterator<Item = usize>) -> (Vec<f64>, Vec<f64>) {
         let p = self.columns;
         let mut xx = vec![0.0; p * p];
@@ -44,8 +44,9 @@ impl BlockGrams {
         self.sum(0..self.groups)
     }
 
-    /// Squared error of each group when it is predicted from all others. What these hardly show of a column they do not predict.
-    pub fn held_out(&self) -> Vec<f64> {
+    /// Squared error of each group, predicted from all others. A column that the others hardly contain is not used
+    /// for the prediction.
+    pub fn validation_losses(&self) -> Vec<f64> {
         let p = self.columns;
         let (xx, xy) = self.total();
         let least: Vec<f64> = Cholesky::new(&xx, p, 1e-12).own().map(|own| FOLD_COVERAGE * own).collect();
@@ -53,11 +54,11 @@ impl BlockGrams {
             .map(|g| {
                 let rest: Vec<f64> = xx.iter().zip(self.xx(g)).map(|(a, b)| a - b).collect();
                 let side: Vec<f64> = xy.iter().zip(self.xy(g)).map(|(a, b)| a - b).collect();
-                let factors = Cholesky::shown(&rest, p, 1e-12, &least).solve(&side);
+                let coefficients = Cholesky::with_min_pivot(&rest, p, 1e-12, &least).solve(&side);
                 let mut loss = self.yy[g];
                 for a in 0..p {
-                    let inner: f64 = (0..p).map(|b| self.xx(g)[a * p + b] * factors[b]).sum();
-                    loss += factors[a] * (inner - 2.0 * self.xy(g)[a]);
+                    let inner: f64 = (0..p).map(|b| self.xx(g)[a * p + b] * coefficients[b]).sum();
+                    loss += coefficients[a] * (inner - 2.0 * self.xy(g)[a]);
                 }
                 loss.max(0.0)
             })
@@ -93,20 +94,20 @@ mod tests {
 
     #[test]
     fn what_only_one_group_shows_the_others_do_not_predict() {
-        // The second column leaves the line in the third group only, but for noise.
+        // The second column differs from the first in the third group only, except for noise.
         let x: Vec<f64> = (0..12).map(|i| f64::from(i % 4) - 1.0).collect();
         let play: Vec<f64> =
             (0..12).map(|i| x[i] + if i >= 8 { x[i].powi(2) } else { 0.02 * (i as f64 * 2.3).sin() }).collect();
         let y: Vec<f64> = (0..12).map(|i| x[i] + 0.1 * (i as f64 * 1.7).sin()).collect();
         let group: Vec<usize> = (0..12).map(|i| i / 4).collect();
-        let of = |columns: &[&[f64]]| BlockGrams::new(columns, &y, &group, 3).held_out();
+        let of = |columns: &[&[f64]]| BlockGrams::new(columns, &y, &group, 3).validation_losses();
         let (with, without) = (of(&[&x, &play]), of(&[&x]));
         assert!((with[2] - without[2]).abs() < 1e-9, "{with:?} {without:?}");
         assert!((with[0] - without[0]).abs() > 1e-6, "where the third group is known, the column counts");
     }
 
     #[test]
-    fn held_out_error_is_that_of_a_refit() {
+    fn validation_error_is_that_of_a_refit() {
         let x: Vec<f64> = (0..12).map(|i| f64::from(i) * 0.3 - 1.0).collect();
         let y: Vec<f64> = x.iter().enumerate().map(|(i, x)| 2.0 * x + (i as f64 * 1.7).sin()).collect();
         let group: Vec<usize> = (0..12).map(|i| i / 4).collect();
@@ -117,7 +118,7 @@ mod tests {
         };
         let b = slope(&|i| i / 4 != 1);
         let loss: f64 = (4..8).map(|i| (y[i] - b * x[i]).powi(2)).sum();
-        assert!((grams.held_out()[1] - loss).abs() < 1e-9);
+        assert!((grams.validation_losses()[1] - loss).abs() < 1e-9);
         assert!((grams.jackknife()[1][0] - b).abs() < 1e-9);
     }
 }

@@ -1,5 +1,5 @@
-//! Linear least squares: an orthonormal basis for selection, Gram matrices of blocks for everything that is repeated
-//! many times, and the condition of the columns by QR for the fit that is shown.
+//! Linear least squares: an orthonormal basis for selection, Gram matrices of blocks for repeated fits, and the
+//! condition number of the columns by QR for the reported fit.
 
 pub(crate) mod added_columns;
 pub(crate) mod augmented_gram;

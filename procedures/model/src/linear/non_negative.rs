@@ -1,8 +1,8 @@
-//! Least squares with factors that cannot be negative.
+//! Least squares with non-negative coefficients.
 
 use crate::linear::cholesky::Cholesky;
 
-/// Factors x ≥ 0 that minimise xᵀ·gram·x − 2·sideᵀ·x (Lawson and Hanson 1974, ch. 23). `gram` is row-major.
+/// Coefficients x ≥ 0 that minimise xᵀ·gram·x − 2·sideᵀ·x (Lawson and Hanson 1974, ch. 23). `gram` is row-major.
 pub fn non_negative(gram: &[f64], side: &[f64]) -> Vec<f64> {
     let n = side.len();
     let slack = 1e-10 * side.iter().fold(0.0f64, |most, s| most.max(s.abs()));
@@ -12,7 +12,7 @@ pub fn non_negative(gram: &[f64], side: &[f64]) -> Vec<f64> {
         let rising = (0..n).filter(|i| !free[*i]).map(|i| (i, slope(i))).filter(|(_, s)| *s > slack);
         let Some((steepest, _)) = rising.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         free[steepest] = true;
-        // Each round frees none and binds at least one.
+        // Each round frees no coefficient and binds at least one.
         for _ in 0..=n {
             let wanted = among(gram, side, &free);
             let bound = (0..n).filter(|i| free[*i] && wanted[*i] <= 0.0);
@@ -31,7 +31,7 @@ pub fn non_negative(gram: &[f64], side: &[f64]) -> Vec<f64> {
     x
 }
 
-/// The solution with the bound factors at zero.
+/// The solution with the bound coefficients at zero.
 fn among(gram: &[f64], side: &[f64], free: &[bool]) -> Vec<f64> {
     let n = side.len();
     let kept: Vec<usize> = (0..n).filter(|i| free[*i]).collect();
@@ -48,8 +48,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_factor_that_wants_to_be_negative_is_zero() {
-        // Columns (1, 0), (1, 1) and the target (1, −1): alone the second would be −1.
+    fn a_coefficient_that_would_be_negative_is_zero() {
+        // Columns (1, 0), (1, 1) and the target (1, −1): the unconstrained second coefficient is −1.
         let x = non_negative(&[1.0, 1.0, 1.0, 2.0], &[1.0, 0.0]);
         assert!((x[0] - 1.0).abs() < 1e-6 && x[1] == 0.0, "{x:?}");
         let x = non_negative(&[1.0, 1.0, 1.0, 2.0], &[3.0, 4.0]);

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// The samples of a run in model quantities.
 pub struct Source {
     pub signals: Signals,
-    /// What the model predicts.
+    /// The response.
     pub target: Arc<Vec<f64>>,
     pub time_s: Vec<f64>,
     pub step_s: f64,
@@ -24,15 +24,15 @@ pub struct Source {
     pub cutoff_hz: f64,
     pub segment: Option<Vec<i64>>,
     pub repeat: Option<Vec<i64>>,
-    /// The velocity came from the position.
+    /// The velocity was derived from the position.
     pub derived_velocity: bool,
     pub constants: Constants,
 }
 
-/// Speeds this near to a kept one, as a share of it, are the same.
+/// Speeds within this share of the kept speed count as equal.
 const EVEN: f64 = 0.05;
 
-/// The middle one of the speeds that most of all lie near together.
+/// Median of the largest group of nearly equal speeds.
 fn usual(mut speeds: Vec<f64>) -> f64 {
     speeds.sort_unstable_by(f64::total_cmp);
     let near = |low: usize| speeds.partition_point(|v| *v <= speeds[low] * (1.0 + EVEN) / (1.0 - EVEN)) - low;
@@ -40,17 +40,18 @@ fn usual(mut speeds: Vec<f64>) -> f64 {
     low.map_or(0.0, |low| speeds[low + near(low) / 2])
 }
 
-/// Which samples become rows, and what they have in common.
+/// The samples that become rows, with their groups and conditions.
 pub struct Layout<'a> {
     pub chunks: Vec<Range<usize>>,
-    /// Stretch of consecutive rows.
+    /// Number of the stretch of consecutive rows.
     pub group: Vec<usize>,
     pub condition: Vec<usize>,
-    /// Rows since the stretch began, where repeats can be compared.
+    /// Rows since the start of the stretch, if repeats can be compared.
     pub phase: Option<Vec<usize>>,
-    /// Constant speed: what is measured as acceleration is noise, unless the motion wavers.
+    /// Constant speed: the measured acceleration is noise, except for a residual acceleration.
     pub settled: bool,
-    /// Signals in which stretches of one condition must agree to be repeats; none where the condition says all.
+    /// Signals that must agree between stretches of one condition to count as repeats. Empty if the condition is
+    /// sufficient.
     pub inputs: &'a [Same],
 }
 
@@ -59,7 +60,7 @@ impl Source {
         ((chunk_s / self.step_s).round() as usize).max(1)
     }
 
-    /// Segments, as numbered or as found: stretches of one direction.
+    /// Segments as numbered, otherwise stretches of one direction.
     pub fn legs(&self) -> Vec<Range<usize>> {
         let legs = match &self.segment {
             Some(segment) => segments::stretches(segment),
@@ -68,14 +69,14 @@ impl Source {
         legs.into_iter().flat_map(|leg| self.within_runs(leg)).collect()
     }
 
-    /// A leg at one speed without the ramps at its ends, and after the first as long again, in which its motion dies down:
-    /// the flanks are still being changed there, whatever the sign of the motion says. A leg that never keeps a speed
-    /// stays whole.
+    /// The part of a leg at constant speed. It excludes the ramps at both ends, and after the first ramp the same
+    /// time again until the motion has settled: the gear flanks still change there. A leg without a constant speed is
+    /// returned whole.
     pub fn even_part(&self, leg: &Range<usize>, chunk: usize) -> Range<usize> {
-        /// Of a sine's half wave 0.28 lie so near together.
+        /// Least share of a leg at constant speed. On the half wave of a sine, 0.28 of the speeds are nearly equal.
         const KEEPS: f64 = 0.4;
         let Some(velocity) = self.signals.find(Signal::Velocity) else { return leg.clone() };
-        // A model's file may ask for means over more than there is.
+        // A model file may demand chunks that are longer than the leg.
         let chunk = chunk.min(leg.len()).max(1);
         let means: Vec<f64> =
             velocity[leg.clone()].chunks(chunk).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
@@ -91,8 +92,8 @@ impl Source {
         }
     }
 
-    /// The samples of some chunks, with all turning points in between: a way between two of these is one straight step to
-    /// every memory that does not ask how long it took.
+    /// The samples of some chunks, and all turning points between them. The states of rate-independent hysteresis
+    /// operators depend only on the turning points.
     pub fn around(&self, chunks: Vec<Range<usize>>) -> (Source, Vec<Range<usize>>) {
         let direction = self.signals.find(Signal::Direction).unwrap_or_default();
         let mut kept = vec![false; self.time_s.len()];
@@ -120,7 +121,7 @@ impl Source {
         (source, moved)
     }
 
-    /// No leg goes on in the next run.
+    /// Splits a leg at the ends of runs.
     fn within_runs(&self, leg: Range<usize>) -> Vec<Range<usize>> {
         let inside = self.runs.iter().copied().filter(|s| leg.start < *s && *s < leg.end);
         let edges: Vec<usize> = std::iter::once(leg.start).chain(inside).chain([leg.end]).collect();
@@ -128,7 +129,7 @@ impl Source {
     }
 }
 
-/// The means of target and signals over chunks, as a problem.
+/// The means of response and signals over chunks, as a problem.
 pub fn problem(samples: &Source, layout: Layout) -> Problem {
     let Layout { chunks, group, condition, phase, settled, inputs } = layout;
     let mean = |values: &[f64]| -> Vec<f64> {
@@ -144,15 +145,15 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         points.set(Signal::Acceleration, wavering);
     }
     if settled && let Some(velocity) = points.find(Signal::Velocity) {
-        // The sign of the filtered velocity rings after a hard reversal, far into a slow plateau.
+        // The sign of the filtered velocity rings after a fast reversal, far into a slow dwell.
         let direction = velocity.iter().map(|v| v.signum()).collect();
         points.set(Signal::Direction, direction);
     }
     let target = mean(&samples.target);
     let (block, blocks) = blocks::blocks(&group, 48);
-    let held_out = if settled { blocks::held_out(&condition, &group) } else { &condition };
-    let (mut fold, folds) = blocks::folds(held_out, &block, 10);
-    // What a brake remembers of its largest current no smaller loop tells.
+    let left_out_unit = if settled { blocks::left_out_unit(&condition, &group) } else { &condition };
+    let (mut fold, folds) = blocks::folds(left_out_unit, &block, 10);
+    // The remanence of a brake after its largest current cannot be predicted from smaller loops.
     if let Some(current) = points.find(Signal::Current) {
         blocks::share_edges(&mut fold, folds, &group, current);
     }
@@ -164,7 +165,7 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         Some(_) => first(&samples.segment),
         None => group.iter().map(|g| *g as i64).collect(),
     };
-    // Numbered legs of one condition are repeats of each other, whatever the repeats are called.
+    // Numbered legs of one condition are repeats of each other, independent of the numbers of the repeats.
     let of: Vec<i64> = match inputs.is_empty() || samples.segment.is_none() {
         true => repeat.clone(),
         false => group.iter().map(|g| *g as i64).collect(),

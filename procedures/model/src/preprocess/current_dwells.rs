@@ -1,12 +1,13 @@
-//! Currents that go in steps: while one changes, its reading, the coil and the torque are each at another moment.
+//! Currents in steps: during a change, the readings of current and torque and the coil current belong to different
+//! moments.
 
-/// A current that holds changes from chunk to chunk by less than this share of its usual step, or by no more than this
-/// multiple of what it does most of the time.
+/// A constant current changes between chunks by less than this share of its usual step, or by less than this multiple
+/// of its median change.
 const CHANGES: f64 = 0.01;
 const NOISE: f64 = 5.0;
 
-/// For each chunk of `n` samples whether the current holds there, and did so a little before and after. Empty where the
-/// current does not go in steps.
+/// For each chunk of `n` samples: whether the current is constant there and in a margin before and after. Empty if
+/// the current has no steps.
 pub fn held(current: &[f64], n: usize) -> Vec<bool> {
     let means: Vec<f64> = current.chunks(n).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
     let steps: Vec<f64> = means.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
@@ -14,7 +15,7 @@ pub fn held(current: &[f64], n: usize) -> Vec<bool> {
     sorted.sort_by(f64::total_cmp);
     let usual = sorted.get(sorted.len() * 9 / 10).copied().unwrap_or(0.0);
     let noise = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
-    // Where it moves all the time, what it does most of the time is no noise.
+    // If the current changes all the time, its median change is no noise.
     if usual == 0.0 || noise > 0.1 * usual {
         return Vec::new();
     }
@@ -28,7 +29,7 @@ pub fn held(current: &[f64], n: usize) -> Vec<bool> {
     held
 }
 
-/// Samples for which one reading stands, where the current changes.
+/// Samples for which one reading is repeated while the current changes.
 fn freshness(current: &[f64]) -> usize {
     let mut lengths: Vec<usize> = current.chunk_by(|a, b| a == b).map(<[f64]>::len).collect();
     lengths.sort_unstable();
@@ -39,7 +40,7 @@ fn freshness(current: &[f64]) -> usize {
 mod tests {
     use super::*;
 
-    /// Every 100 samples a step to which the current creeps, read every tenth sample.
+    /// A step every 100 samples with exponential settling, read every tenth sample.
     fn steps() -> Vec<f64> {
         let current = |i: usize| {
             let since = (i % 100) as f64;
@@ -49,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_and_what_lies_beside_it_is_left_out() {
+    fn a_change_and_its_surroundings_are_omitted() {
         let held = held(&steps(), 4);
         let kept: Vec<usize> = (0..25).filter(|k| held[25 * 5 + k]).collect();
         assert!(kept.first().is_some_and(|k| (8..20).contains(k)), "{kept:?}");

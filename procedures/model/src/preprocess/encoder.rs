@@ -1,4 +1,4 @@
-//! Encoder runs: the wrapped difference of a test encoder to a reference.
+//! Encoder runs: the wrapped difference of a test encoder and a reference.
 
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::replicates::Same;
@@ -10,7 +10,7 @@ use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
 use std::f64::consts::{PI, TAU};
 
-/// Short, so that errors inside one pole pair survive at slow speed.
+/// Short, so that errors within one pole pair are not averaged out at slow speed.
 const CHUNK_S: f64 = 0.01;
 
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
@@ -63,9 +63,9 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     sweeps::prepare(run, source, CHUNK_S, &inputs, options)
 }
 
-/// test − reference, wrapped about its own middle, so that no sample is torn from the others at ±π.
+/// test − reference, wrapped about its circular mean, so that no sample is separated from the others at ±π.
 ///
-/// The alignment rule of the thesis on joint test benches, eq. 4.1–4.3, with the circular mean as the middle.
+/// The alignment rule of the thesis on joint test benches, eq. 4.1–4.3, with the circular mean as the centre.
 fn difference(test: &[f64], reference: &[f64]) -> Vec<f64> {
     let raw = || test.iter().zip(reference).map(|(t, r)| t - r);
     let (sin, cos) = raw().fold((0.0, 0.0), |(s, c), d| (s + d.sin(), c + d.cos()));

@@ -1,7 +1,7 @@
-//! Zero-phase filters: forwards and backwards, so that nothing is delayed against anything else.
+//! Zero-phase filters: applied forwards and backwards, so that no signal is delayed against another one.
 //!
-//! Analogue prototypes and bilinear transform after Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 7; as
-//! second-order sections, because a transfer function of order 8 loses its digits.
+//! Analogue prototypes and bilinear transform after Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 7.
+//! They are second-order sections, because a transfer function of order 8 is numerically inaccurate.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ struct Section {
     a: [f64; 2],
 }
 
-/// Columns that are filtered side by side.
+/// Columns that are filtered together.
 pub const ABREAST: usize = 4;
 
 /// A low-pass filter, to be applied in both directions.
@@ -74,7 +74,8 @@ impl LowPass {
         columns.chunks(ABREAST).flat_map(some).collect()
     }
 
-    /// A sample has to wait for the one before it: columns that go side by side do not wait for each other.
+    /// Each sample depends on the one before it. Several columns are filtered together to use the processor's
+    /// pipelines.
     fn abreast<const N: usize>(&self, columns: [&[f64]; N], pad: usize) -> [Vec<f64>; N] {
         let n = columns.iter().map(|c| c.len()).min().unwrap_or(0);
         if n < 2 {
@@ -95,7 +96,7 @@ impl LowPass {
 
     /// One pass from rest at the first value.
     fn one_way<const N: usize>(&self, x: &mut [[f64; N]]) {
-        // Pairs of sections at once: the second works on one sample while the first is at the next.
+        // Two sections at once: the second processes one sample while the first is at the next.
         for pair in self.sections.chunks(2) {
             match pair {
                 [first, second] => pass([*first, *second], x),

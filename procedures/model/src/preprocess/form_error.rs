@@ -1,18 +1,19 @@
-//! Where the error of a formula lives: columns that stand beside every model of a run that is judged sample by sample.
+//! Form error: nuisance columns in every model of a run that is judged sample by sample.
 //!
-//! A formula is right but for a few percent, and what it is wrong by follows its own axes: the way since a reversal, the lag
-//! of sensors and a gear that bends. Beside these columns an effect has to explain what no error of the others could be.
+//! A formula has an error of a few percent, which depends on known quantities: displacement since a reversal, sensor
+//! delay and torsion of the gear. With these nuisance columns an effect has to explain more than the form error of
+//! the others could.
 
-/// What a column stands for.
+/// The quantity that a form-error column depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lives {
-    /// In the way since a reversal: one element that remembers, without the direction of the model.
+    /// Displacement since a reversal: one hysteresis element minus the direction of the model.
     Bristle,
-    /// In the change of the jerk: a gear that bends between motor and link.
+    /// Rate of change of the jerk: torsion of the gear between motor and link.
     Snap,
-    /// In the jerk: torque and motion that are not of one moment.
+    /// Jerk: a time shift between torque and motion.
     Jerk,
-    /// In the change of the load: a torque sensor that lags.
+    /// Rate of change of the load: a delay of the torque sensor.
     LoadRate,
 }
 
@@ -26,7 +27,7 @@ impl Lives {
         }
     }
 
-    /// Its factor is held near zero: such columns are many and resemble the model.
+    /// Whether the ridge penalty shrinks the coefficient: such columns are many and resemble the model.
     pub fn shrinks(self) -> bool {
         self == Lives::Bristle
     }
@@ -37,22 +38,22 @@ impl Lives {
 pub struct ErrorColumn {
     pub lives: Lives,
     pub values: Vec<f64>,
-    /// Its size, by which it is held near zero.
+    /// RMS of the column, which scales the ridge penalty.
     pub scale: f64,
 }
 
-/// The columns of a problem, and how its rows are weighed.
+/// The form-error columns of a problem, and the quantities that determine its weights.
 #[derive(Debug, Clone)]
 pub struct FormError {
     pub columns: Vec<ErrorColumn>,
     /// Time to the nearest reversal or rest at the rows [s].
     pub turn_s: Vec<f64>,
-    /// The filter carries a reversal over this time [s].
+    /// Time over which the filter spreads a reversal [s].
     pub near_s: f64,
-    /// Sizes of acceleration and jerk at the rows: where they are large a model errs more.
+    /// Absolute acceleration and jerk at the rows: a model has a larger error where they are large.
     pub swift: [Vec<f64>; 2],
-    /// Step from row to row [s].
+    /// Time step from row to row [s].
     pub row_s: f64,
-    /// Step of the run's own samples [s].
+    /// Time step of the original samples [s].
     pub sample_s: f64,
 }

@@ -1,9 +1,10 @@
-//! A joint of which one side is held, so that it twists and does not turn.
+//! Joints with one side clamped, which twist but do not turn.
 
 use jointbench_instrument::{Kind, RunTable};
 
-/// The turns of the link where one side of the joint is held. A joint that turns moves farther than it twists, on both sides:
-/// of one that is held the twist is the motion of the other side, and no function of that motion explains it.
+/// The turns of the link, if one side of the joint is clamped. A free joint moves farther than it twists, on both
+/// sides. In a clamped joint the twist equals the motion of the other side, so that no function of that motion may
+/// explain it.
 pub fn held_turns(twist: &[f64], link: &[f64]) -> Option<f64> {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
@@ -14,7 +15,8 @@ pub fn held_turns(twist: &[f64], link: &[f64]) -> Option<f64> {
     (of_link.min(of_motor) < range(&mut twist.iter().copied())).then_some(of_link / std::f64::consts::TAU)
 }
 
-/// One side of a joint is held: its motion has nothing to do with that of the other one, which goes with the torque.
+/// Whether one side of the joint is clamped: the motions of both sides are unrelated, and the twist follows the
+/// torque.
 pub fn is_held(run: &RunTable) -> bool {
     const MOST: f64 = 0.5;
     let Some(gear) = run.meta().gear_ratio.filter(|_| run.kind() == Kind::Stiffness) else { return false };

@@ -1,18 +1,19 @@
-//! Pieces of a run that may be called independent: what intervals and bands count.
+//! Independent blocks of a run, which intervals and bands are based on.
 
 use crate::preprocess::Problem;
 
-/// Below this many segments a run is cut into blocks instead: too few pieces have no scatter of their own.
+/// With fewer segments than these, shorter blocks are used: few blocks do not estimate a scatter.
 const FEWEST: usize = 8;
 
-/// The piece of every row, and how many there are.
+/// The block of every row, and the number of blocks.
 ///
-/// Whole segments, because an offset or a tilt that differs from segment to segment is shared by all rows of one, and
-/// half a segment is no new evidence. Blocks where there are not enough segments for `columns` parameters.
-pub fn pieces(problem: &Problem, columns: usize) -> (Vec<usize>, usize) {
-    let piece = legs(problem);
-    let count = piece.last().map_or(0, |last| last + 1);
-    if count >= FEWEST.max(2 * columns) { (piece, count) } else { (problem.block.clone(), problem.blocks) }
+/// Whole segments, because an offset or tilt that differs between segments is common to all rows of one segment, so
+/// that half a segment is no independent evidence. Shorter blocks if there are too few segments for `columns`
+/// parameters.
+pub fn independent_blocks(problem: &Problem, columns: usize) -> (Vec<usize>, usize) {
+    let leg_of_row = legs(problem);
+    let count = leg_of_row.last().map_or(0, |last| last + 1);
+    if count >= FEWEST.max(2 * columns) { (leg_of_row, count) } else { (problem.block.clone(), problem.blocks) }
 }
 
 /// The leg of every row: consecutive rows of one segment and repeat.

@@ -1,4 +1,4 @@
-//! What a brake or a gear still remembers of the time before the run.
+//! Loading history of a brake or gear before the run.
 
 use crate::hysteresis_operators;
 use crate::linear::basis::{Basis, dot};
@@ -6,15 +6,16 @@ use crate::preprocess::{Problem, median};
 use crate::signal::Signal;
 use crate::view::Start;
 
-/// Stops that stand for any hysteresis, evenly up to half of the range: what reaches farther never slips.
+/// Stop operators that represent any hysteresis, evenly spaced up to half of the range; larger ones never slip.
 const STOPS: usize = 8;
-/// So much of the squared error that any curve and hysteresis leave has to go with the past.
+/// Least share of the squared error that the history has to explain, given any curve and hysteresis.
 const WORTH: f64 = 0.1;
-/// Rows by which it is judged.
+/// Number of rows for this test.
 const ROWS: usize = 2000;
 
-/// Finds for each recording the value from which the signal came back before it began, as the beginning tells it: a memory
-/// that is taken as empty and is not makes all of the first branch look like structure. True where one is found.
+/// Finds for each recording the last extreme of the signal before its start, from the torque at the beginning.
+/// Without it, a wrong initial hysteresis state makes the whole first branch look like structure. Returns whether one
+/// is found.
 pub fn find(problem: &mut Problem, signal: Signal) -> bool {
     let Some(values) = problem.view.find(signal) else { return false };
     let values = values.to_vec();
@@ -23,7 +24,7 @@ pub fn find(problem: &mut Problem, signal: Signal) -> bool {
     if !hysteresis_operators::turns(&values, 0.2 * reach) {
         return false;
     }
-    // The way of the signal: where each recording begins, and then row by row.
+    // The path of the signal: the start of each recording, then row by row.
     let samples = problem.view.samples.find(signal).unwrap_or_default();
     let begins: Vec<usize> = problem.view.starts.iter().map(|s| s.at).collect();
     let row = |start: usize| problem.view.chunks.partition_point(|chunk| chunk.start < start);
@@ -40,9 +41,9 @@ pub fn find(problem: &mut Problem, signal: Signal) -> bool {
     let others = [Signal::Velocity, Signal::Temperature].into_iter().filter_map(|s| problem.view.find(s));
     let scaled = others.flat_map(|other| {
         let middle = median(other.iter().copied());
-        let beside: Vec<f64> = other.iter().map(|o| o - middle).collect();
-        let product = beside.iter().zip(&values).map(|(o, v)| o * v).collect();
-        [beside, product]
+        let centred: Vec<f64> = other.iter().map(|o| o - middle).collect();
+        let product = centred.iter().zip(&values).map(|(o, v)| o * v).collect();
+        [centred, product]
     });
     let fixed: Vec<Vec<f64>> = curves.chain(scaled).map(thin).collect();
     let fixed = Basis::of(&fixed);
@@ -60,7 +61,7 @@ pub fn find(problem: &mut Problem, signal: Signal) -> bool {
     for i in 0..starts.len() {
         let empty = best;
         let pasts = [-2.0, -1.5, 1.5, 2.0].into_iter().chain((-8..=8).map(|k| f64::from(k) / 8.0));
-        // Where a signal has one sign only it had that before.
+        // A signal with one sign is assumed to have had the same sign before.
         let (low, high) = (2.0 * ends.0.min(0.0), 2.0 * ends.1.max(0.0));
         for past in pasts.map(|share| share * peak).filter(|past| (low..=high).contains(past)) {
             let mut trial = starts.clone();

@@ -1,15 +1,16 @@
-//! Repeats of a brake at one current are the same where it came there on the same way.
+//! Repeats of a brake at one current are replicates only with the same loading history.
 
 use crate::hysteresis_operators;
 use crate::preprocess::Problem;
 use crate::signal::Signal;
 
-/// Dry contacts that stand for any hysteresis, evenly up to half of the range: what reaches farther never slips.
+/// Stop operators that represent any hysteresis, evenly spaced up to half of the range; larger ones never slip.
 const CONTACTS: usize = 8;
-/// Share of the largest current by which what they remember may differ.
+/// Largest difference of their states, as a share of the largest current.
 const SAME: f64 = 0.03;
 
-/// Parts the replicate pairs that do not remember the same: a current in loops of different size has torques of its own in each.
+/// Marks replicate pairs with different hysteresis states: a current in loops of different size has a different
+/// torque in each.
 pub fn part(problem: &mut Problem) {
     let view = &problem.view;
     let current = view.get(Signal::Current);
@@ -19,7 +20,7 @@ pub fn part(problem: &mut Problem) {
     for contact in 1..=CONTACTS {
         let reach = (ends.1 - ends.0) / 2.0 * contact as f64 / CONTACTS as f64;
         let bent = view.average(hysteresis_operators::stop(samples, reach, &view.starts));
-        // Its other end follows the current and never goes farther than that.
+        // The other end of a stop operator follows the current and cannot move farther than the current does.
         let end: Vec<f64> = current.iter().zip(&bent).map(|(current, bent)| current - reach * bent).collect();
         let differ = |a: usize, b: usize| (end[a] - end[b]).abs() > allowed + (current[a] - current[b]).abs();
         problem.different_history.extend(problem.replicate_pairs.iter().filter(|(a, b)| differ(*a, *b)));

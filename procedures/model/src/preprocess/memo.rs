@@ -1,14 +1,14 @@
-//! What was worked out of a problem last, by name: a report asks for the same solution again and again.
+//! Cache of the latest results of a problem, by name: a report needs the same solution several times.
 
 use std::any::Any;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// So many are kept.
+/// Number of cached results.
 const KEPT: usize = 6;
 
 type Entry = (String, Arc<dyn Any + Send + Sync>);
 
-/// A copy shares what is known.
+/// Copies share the cache.
 #[derive(Clone, Default)]
 pub struct Memo(Arc<Mutex<Vec<Entry>>>);
 
@@ -19,7 +19,7 @@ impl std::fmt::Debug for Memo {
 }
 
 impl Memo {
-    /// What has this name, made where it is not known.
+    /// The cached result of this name, computed if it is missing.
     pub fn of<T: Any + Send + Sync>(&self, name: String, make: impl FnOnce() -> T) -> Arc<T> {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let known = lock().iter().find(|(known, _)| *known == name).map(|(_, value)| value.clone());

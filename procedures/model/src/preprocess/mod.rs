@@ -1,4 +1,4 @@
-//! From a run table to problems: response and view at points, cut into blocks that can be called independent.
+//! Preprocessing of a run table to problems: response and signals at points, divided into independent blocks.
 
 pub(crate) mod brake;
 pub(crate) mod checks;
@@ -36,39 +36,40 @@ use jointbench_instrument::{Kind, Motion, RunTable};
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// What a model is judged on: the response at points with the signals that may explain it.
+/// The data that a model is fitted to and judged on: the response at points with the signals that may explain it.
 #[derive(Debug, Clone)]
 pub struct Problem {
     pub view: View,
     /// The response at the rows.
     pub target: Vec<f64>,
-    /// The response at the samples of the view, where rows are means over these; else nothing.
+    /// The response at the samples of the view if rows are means over samples, otherwise empty.
     pub sampled: Arc<Vec<f64>>,
-    /// Columns at points become columns at rows in the way in which the target did.
+    /// Converts columns at points to columns at rows, in the same way as the response.
     pub reduce: Reduce,
-    /// Piece of the run to which a row belongs, from 0: long enough to be called independent of the others.
+    /// Block of each row, numbered from 0: long enough to be independent of the others.
     pub block: Vec<usize>,
     pub blocks: usize,
-    /// Rows that are predicted together from all others: the repeats of one condition.
+    /// Fold of each row: rows that all others predict together, the repeats of one condition.
     pub fold: Vec<usize>,
     pub folds: usize,
-    /// Rows that should be equal but for noise: the same condition and phase in another repeat.
+    /// Pairs of rows that differ only by noise: the same condition and phase in another repeat.
     pub replicate_pairs: Vec<(usize, usize)>,
-    /// Those of them that came there on different ways: equal only where a model knows the ways.
+    /// Replicate pairs with a different loading history: equal only for a model with hysteresis.
     pub different_history: HashSet<(usize, usize)>,
-    /// Those that pass other angles of the link, where repeats begin at others: what depends on the angle is not equal in them.
+    /// Replicate pairs at different link angles, if repeats start at different angles: effects of the angle differ
+    /// between them.
     pub different_angle: HashSet<(usize, usize)>,
-    /// Why there are none, where repeats are different motions.
+    /// Why there are no replicate pairs, if repeats are different motions.
     pub unlike: Option<Unlike>,
     pub segment: Vec<i64>,
     pub repeat: Vec<i64>,
-    /// Speed and load are constant within a block: what they seem to change there is their sensors' noise.
+    /// Speed and load are constant within a block, so that their changes there are sensor noise.
     pub settled: bool,
-    /// Nuisance columns for the form error, of a run that is judged sample by sample.
+    /// Nuisance columns for the form error, for a run that is judged sample by sample.
     pub form_error: Option<Arc<FormError>>,
-    /// The same run at other corners of its filter: what they differ by nobody knows better.
+    /// The same run at other filter corners: the difference between them is an uncertainty of the estimate.
     pub bandwidths: Vec<Problem>,
-    /// Solutions of models of it that were asked for last.
+    /// Solutions of recently fitted models.
     pub(crate) memo: Memo,
 }
 
@@ -78,12 +79,12 @@ impl Problem {
     }
 }
 
-/// How columns at points become columns at rows.
+/// Conversion of columns at points to columns at rows.
 #[derive(Debug, Clone)]
 pub enum Reduce {
     /// Points are rows.
     Same,
-    /// Every recording is filtered, its ends continued by `pad` samples, and some samples are kept.
+    /// Every recording is filtered, with its ends extended by `pad` samples, and some samples are kept.
     Pick { filter: LowPass, pad: usize, rows: Arc<[usize]>, starts: Arc<[usize]> },
 }
 
@@ -108,43 +109,43 @@ impl Reduce {
     }
 }
 
-/// Squares of larger numbers, and sums of these, are none any more.
+/// Sums of squares of larger numbers would overflow.
 const LARGEST: f64 = 1e100;
 
-/// Fewer samples tell nothing.
+/// Fewer samples are not evaluated.
 const SHORTEST: usize = 16;
 
-/// A run, ready for every fit and every test.
+/// A preprocessed run, for every fit and test.
 #[derive(Debug, Clone)]
 pub struct Prepared {
     pub kind: Kind,
     pub motion: Motion,
-    /// Effects that the run's facts take for granted.
+    /// Effects that the test conditions of the run imply.
     pub baseline: Vec<String>,
-    /// What most effects are judged on.
+    /// The problem for most effects.
     pub main: Problem,
-    /// The same with a direction that bends before it slips: beside an effect of such contacts.
+    /// The same with a presliding direction, for models with that effect.
     pub bristled: Option<Problem>,
-    /// Ramps and reversals, where the main problem holds settled motion only.
+    /// Ramps and reversals, if the main problem contains only steady-state motion.
     pub moving: Option<Problem>,
-    /// The slow part of the same: what came before a reversal matters there.
+    /// The slow part of these, where the loading history before a reversal matters.
     pub memory: Option<Problem>,
-    /// Factor from the load as the models see it to the column of the run table.
+    /// Factor from the load in model quantities to the column of the run table.
     pub load_scale: f64,
-    /// Facts of the set-up that made signals or the response of the columns.
+    /// Constants of the set-up that were used to compute signals or the response.
     pub constants: Vec<GivenConstant>,
     /// Columns that contradict each other, in sentences.
     pub clashes: DataErrors,
-    /// What the facts lack or have wrong, in sentences.
+    /// Missing or wrong test conditions, in sentences.
     pub doubts: Vec<String>,
     pub about: Preparation,
 }
 
-/// The effect beside which the direction bends.
+/// The effect that replaces the direction by a presliding state.
 pub(crate) const BENDS: &str = "presliding";
 
 impl Prepared {
-    /// Judged on one problem, with nothing wrong in the columns and the facts.
+    /// A run with one problem, without data errors.
     fn of(run: &RunTable, main: Problem, about: Preparation) -> Self {
         let meta = run.meta();
         Self {
@@ -163,13 +164,13 @@ impl Prepared {
         }
     }
 
-    /// What a model of these effects is judged on.
+    /// The problem that a model of these effects is judged on.
     pub fn judged(&self, effects: &[String]) -> &Problem {
         let bends = effects.iter().any(|effect| effect == BENDS);
         self.bristled.as_ref().filter(|_| bends).unwrap_or(&self.main)
     }
 
-    /// Effects that the main problem can judge: of settled motion those alone that show there.
+    /// Regimes that the main problem can judge: steady-state means show only steady-state effects.
     pub fn regimes(&self) -> &'static [Regime] {
         match self.about.residual {
             ResidualKind::PlateauMean => &[Regime::SteadyState],
@@ -177,7 +178,7 @@ impl Prepared {
         }
     }
 
-    /// The column that a signal was, for people.
+    /// Column name of a signal for users.
     pub fn column_name(&self, signal: Signal) -> &'static str {
         match (signal, self.kind) {
             (Signal::Time, _) => "time_s",
@@ -201,7 +202,7 @@ impl Prepared {
         }
     }
 
-    /// Factor from a signal as the models see it to its column.
+    /// Factor from a signal in model quantities to its column.
     pub fn column_scale(&self, signal: Signal) -> f64 {
         if signal == Signal::Load { self.load_scale } else { 1.0 }
     }
@@ -221,7 +222,8 @@ impl Prepared {
     }
 }
 
-/// What a run's columns and facts contradict or lack, each in a sentence: to be told before anything is fitted.
+/// Contradictions and missing facts of a run's columns and test conditions, each in a sentence, to be reported before
+/// a fit.
 pub fn attention(run: &RunTable) -> Vec<String> {
     match run.len() < SHORTEST {
         true => Vec::new(),
@@ -229,12 +231,12 @@ pub fn attention(run: &RunTable) -> Vec<String> {
     }
 }
 
-/// Prepares a run. Deterministic; cost linear in the rows.
+/// Preprocesses a run. Deterministic, with a cost linear in the rows.
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
     prepare_with(run, options, None)
 }
 
-/// The same with bristles that another run has told.
+/// The same with the presliding elements of another run.
 pub(crate) fn prepare_with(
     run: &RunTable,
     options: &Options,
@@ -262,13 +264,13 @@ pub(crate) fn prepare_with(
     }
 }
 
-/// Nothing but rounding changes: a channel that was not connected.
+/// Whether only rounding changes the values: a channel that was not connected.
 fn is_constant(values: &[f64]) -> bool {
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     high - low <= 1e-9 * high.abs().max(low.abs())
 }
 
-/// Facts that a run of the kind is read with.
+/// Constants that are used to read a run of the kind.
 fn constants(run: &RunTable) -> Vec<GivenConstant> {
     let meta = run.meta();
     let count = |name, number: Option<u32>| (name, number.map(f64::from));
@@ -285,7 +287,7 @@ fn constants(run: &RunTable) -> Vec<GivenConstant> {
     read.into_iter().filter_map(given).collect()
 }
 
-/// Corner of the low-pass filter: what was asked for, or a tenth of the rate.
+/// Corner frequency of the low-pass filter: from the options, or a tenth of the rate.
 fn cutoff_hz(options: &Options, step_s: f64) -> Result<f64, ModelError> {
     let highest_hz = 0.45 / step_s;
     match options.cutoff_hz {
@@ -298,10 +300,10 @@ fn cutoff_hz(options: &Options, step_s: f64) -> Result<f64, ModelError> {
     }
 }
 
-/// So many samples, evenly spread, tell what is usual in a run.
+/// Number of evenly spread samples that determine the typical values of a run.
 const TELLING: usize = 65_536;
 
-/// The middle value of the step from sample to sample.
+/// The median time step between samples.
 fn sample_s(time_s: &[f64]) -> f64 {
     median(time_s.windows(2).step_by(time_s.len().div_ceil(TELLING)).map(|w| w[1] - w[0]))
 }

@@ -1,23 +1,24 @@
-//! What settled motion accelerates all the same: a slow step over teeth wavers about its speed, and behind a ramp the drive
-//! still creeps towards it.
+//! Residual acceleration of steady-state motion: a slow step over gear teeth oscillates about its speed, and after a
+//! ramp the drive still approaches its speed.
 
 use crate::linear::basis::dot;
 use crate::preprocess::design::segments;
 use crate::preprocess::median;
 use std::ops::Range;
 
-/// The speed at the edge of a chunk is the slope of the position over about so long.
+/// The speed at the edge of a chunk is the slope of the position over about this time [s].
 const EDGE_S: f64 = 0.004;
-/// So well it follows the slopes beside it, of no common sample, where the motion itself wavers.
+/// Least correlation with neighbouring slopes that have no sample in common, if the motion itself oscillates.
 const FOLLOWS: f64 = 0.9;
-/// Fewer chunks of a stretch follow by accident.
+/// In fewer chunks of a stretch the correlation is accidental.
 const FEWEST: usize = 10;
-/// Beyond so many times their scatter the slopes of no common sample tell of one motion.
+/// Slopes without a common sample are significant beyond this multiple of their scatter.
 const CLEAR: f64 = 3.0;
 
-/// Mean acceleration over every chunk: in stretches (`group`) in which the motion wavers of all of them, in the others of those that
-/// clearly accelerate. Else it is zero: it would be the noise of the position. From the position, since the velocity of a drive is late: over a chunk the speeds at both
-/// its ends say it all.
+/// Mean acceleration over every chunk. In a stretch (`group`) with oscillating motion it is computed for all chunks,
+/// in other stretches only for chunks with a significant acceleration. Otherwise it is zero, because it would be the
+/// noise of the position. It is derived from the position, because the velocity of a drive is delayed. The speeds at
+/// both ends of a chunk give its mean acceleration.
 pub fn accelerations(
     time_s: &[f64],
     position: &[f64],
@@ -32,22 +33,22 @@ pub fn accelerations(
         let lasts_s = time_s.get(to)? - time_s[from];
         (lasts_s < (2 * half) as f64 * step_s).then(|| (position[to] - position[from]) / lasts_s)
     };
-    // The mean of the slopes `apart` samples before and behind an edge.
+    // Mean of the slopes `apart` samples before and after an edge.
     let around = |edge: usize, apart: isize| Some((speed(edge, -apart)? + speed(edge, apart)?) / 2.0);
     let of = |apart: isize| -> Vec<f64> {
         let change = |c: &Range<usize>| Some(around(c.end, apart)? - around(c.start, apart)?);
         chunks.iter().map(|c| change(c).unwrap_or(0.0) / (c.len() as f64 * step_s)).collect()
     };
-    let (mut at_edges, beside) = (of(0), [of(2 * half as isize), of(2 * half as isize + 1)]);
+    let (mut at_edges, neighbours) = (of(0), [of(2 * half as isize), of(2 * half as isize + 1)]);
     for stretch in segments::stretches(group) {
-        // A wave is in step with what is beside it, or turned over.
+        // An oscillation is in phase with its neighbours, or in antiphase.
         let wavers =
-            beside.iter().any(|b| correlation(&at_edges[stretch.clone()], &b[stretch.clone()]).abs() > FOLLOWS);
+            neighbours.iter().any(|b| correlation(&at_edges[stretch.clone()], &b[stretch.clone()]).abs() > FOLLOWS);
         if stretch.len() < FEWEST || !wavers {
-            let told = at_edges[stretch.clone()].iter().zip(&beside[0][stretch.clone()]);
-            let scatter = median(told.map(|(at, beside)| (*at - beside).abs()));
-            for (at, beside) in at_edges[stretch.clone()].iter_mut().zip(&beside[0][stretch]) {
-                if at.abs().min(beside.abs()) <= CLEAR * scatter || at.signum() != beside.signum() {
+            let pairs = at_edges[stretch.clone()].iter().zip(&neighbours[0][stretch.clone()]);
+            let scatter = median(pairs.map(|(at, neighbours)| (*at - neighbours).abs()));
+            for (at, neighbours) in at_edges[stretch.clone()].iter_mut().zip(&neighbours[0][stretch]) {
+                if at.abs().min(neighbours.abs()) <= CLEAR * scatter || at.signum() != neighbours.signum() {
                     *at = 0.0;
                 }
             }
@@ -56,7 +57,7 @@ pub fn accelerations(
     at_edges
 }
 
-/// About zero.
+/// Correlation about zero.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
     dot(a, b) / (dot(a, a) * dot(b, b)).sqrt().max(f64::MIN_POSITIVE)
 }
@@ -74,14 +75,14 @@ mod tests {
         (0..50).map(|k| 4 + 10 * k..14 + 10 * k).collect()
     }
 
-    /// Found of a motion at 250 Hz, with an encoder of 14 bits.
+    /// Result for a motion at 250 Hz, with an encoder of 14 bits.
     fn found_of(position: impl Fn(f64) -> f64) -> Vec<f64> {
         let time_s: Vec<f64> = (0..510).map(|i| f64::from(i) * 0.004).collect();
         let position: Vec<f64> = time_s.iter().map(|t| count(position(*t))).collect();
         accelerations(&time_s, &position, 0.004, &chunks(), &[0; 50])
     }
 
-    /// Found and exact, of a speed of 10 rad/s that wavers by so much so fast.
+    /// Found and exact acceleration for a speed of 10 rad/s with an oscillation of this amplitude and frequency.
     fn found(wave_rad_s: f64, w: f64) -> (Vec<f64>, Vec<f64>) {
         let speed = |sample: usize| wave_rad_s * (w * (sample as f64 - 0.5) * 0.004).sin();
         let exact = chunks().iter().map(|c| (speed(c.end) - speed(c.start)) / 0.04).collect();
@@ -99,7 +100,7 @@ mod tests {
 
     #[test]
     fn what_creeps_towards_its_speed_accelerates_as_long_as_that_shows() {
-        // 3 % of 100 rad/s are left, and fall off in 80 ms.
+        // 3 % of 100 rad/s remain and decay with 80 ms.
         let found = found_of(|t| 100.0 * t + 3.0 * 0.08 * (-t / 0.08).exp());
         let exact = |k: usize| {
             3.0 * ((-(0.014 + 0.04 * k as f64) / 0.08).exp() - (-(0.054 + 0.04 * k as f64) / 0.08).exp()) / 0.04

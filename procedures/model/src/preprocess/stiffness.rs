@@ -75,8 +75,8 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     source.signals.set(Signal::Load, smooth);
     let inputs = [Signal::Velocity, Signal::Load].map(Same::Value);
     let mut prepared = sweeps::prepare(run, source, CHUNK_S, &inputs, options)?;
-    // The legs of a held joint are those of its torque, which may go in steps within one: what remembers is fed with the smooth
-    // torque, all else goes by what was measured.
+    // The legs of a clamped joint are those of its torque, which may have steps within a leg. Hysteresis operators
+    // use the smoothed torque, all other terms the measured torque.
     if held_turns.is_some() {
         let measured = prepared.main.view.average(torque.to_vec());
         prepared.main.view.points.set(Signal::Load, measured);
@@ -89,10 +89,10 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     Ok(prepared)
 }
 
-/// The step in which an encoder counts [rad], a power of two in a turn: the readings lie on its multiples, and the torque that
-/// moves the angle does not stop there. Zero where no step shows.
+/// The count of an encoder [rad], a power of two in a turn: the readings are multiples of it, while the torque that
+/// moves the angle is continuous. Zero if no count is detected.
 fn encoder_step(angle: &[f64], torque: &[f64]) -> f64 {
-    /// Of readings on multiples with a noise of a fifth of a step, and of angles that lie anywhere.
+    /// Resultant length of readings on multiples with a noise of a fifth of a count, and of arbitrary angles.
     const ON: f64 = 0.5;
     const ANYWHERE: f64 = 0.25;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
@@ -112,14 +112,14 @@ fn encoder_step(angle: &[f64], torque: &[f64]) -> f64 {
         let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
         high - low
     };
-    let goes = range(&moved);
+    let travel = range(&moved);
     let mut steps =
-        (8..=24).map(|bits| std::f64::consts::TAU / f64::from(1u32 << bits)).filter(|step| 2.0 * step < goes);
+        (8..=24).map(|bits| std::f64::consts::TAU / f64::from(1u32 << bits)).filter(|step| 2.0 * step < travel);
     let is_counted = |step: &f64| on_multiples(angle, *step) > ON && on_multiples(&moved, *step) < ANYWHERE;
     steps.find(is_counted).unwrap_or(0.0)
 }
 
-/// The motion of a joint that turns. True where its velocity came from the position.
+/// Sets the motion signals of a joint that turns. Returns whether the velocity was derived from the position.
 fn motion(signals: &mut Signals, run: &RunTable, cutoff_hz: f64, step_s: f64) -> bool {
     let column = |name: &str| run.column(name).unwrap_or_default();
     let (time_s, link) = (column("time_s"), column("link_position_rad"));
@@ -141,8 +141,8 @@ fn motion(signals: &mut Signals, run: &RunTable, cutoff_hz: f64, step_s: f64) ->
     measured.is_none()
 }
 
-/// Takes off each repeat's mean beside that of all, where these lie farther apart than everything that happens within the repeats,
-/// and tells how far.
+/// Subtracts a separate zero of each repeat if the zeros differ by more than the variation within the repeats.
+/// Returns their RMS difference.
 fn own_zeros(twist: &mut [f64], repeat: &[i64]) -> Option<f64> {
     let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
     let all = mean(twist);
@@ -161,12 +161,12 @@ fn own_zeros(twist: &mut [f64], repeat: &[i64]) -> Option<f64> {
     })
 }
 
-/// Most Chebyshev polynomials of one stretch.
+/// Numbers of Chebyshev polynomials to choose from.
 const ORDERS: [usize; 5] = [3, 5, 8, 11, 15];
 
-/// The torque of a leg without its sensor's noise, which would feed hysteresis and sign terms; a filter across the reversal would
-/// blur what those terms live from. One smooth curve where it leaves nothing but noise, else one for each half of the leg, and
-/// the torque as it was measured where no curve follows it.
+/// The torque of a leg without sensor noise, which would disturb hysteresis and sign terms. A filter across the
+/// reversal would blur exactly what these terms depend on. One smooth curve if it leaves only noise, otherwise one
+/// for each half of the leg. The measured torque is kept if no curve follows it.
 fn smooth_leg(values: &[f64]) -> Vec<f64> {
     let Some(curve) = curve(values) else { return values.to_vec() };
     let left: Vec<f64> = values.iter().zip(&curve).map(|(v, c)| v - c).collect();
@@ -177,7 +177,7 @@ fn smooth_leg(values: &[f64]) -> Vec<f64> {
     [smooth_leg(early), smooth_leg(late)].concat()
 }
 
-/// Neighbours resemble each other no more than those of white noise do by chance (von Neumann 1941).
+/// Whether neighbours correlate no more than in white noise (von Neumann 1941).
 fn is_noise(left: &[f64]) -> bool {
     const CHANCE: f64 = 3.0;
     let square: f64 = left.iter().map(|v| v * v).sum();
@@ -185,8 +185,8 @@ fn is_noise(left: &[f64]) -> bool {
     next <= CHANCE * square / (left.len() as f64).sqrt()
 }
 
-/// Chebyshev polynomials of the square root of the time since the stretch began, which follow a fast beginning and a slow end,
-/// as many as it asks for (Schwarz 1978). `None` for a stretch too short for any.
+/// Chebyshev polynomials of the square root of the time since the start of the stretch, which follow a fast beginning
+/// and a slow end. Their number is chosen by the BIC (Schwarz 1978). `None` for a stretch that is too short.
 fn curve(values: &[f64]) -> Option<Vec<f64>> {
     let n = values.len();
     let most = (n / 12).min(ORDERS[ORDERS.len() - 1]);
@@ -209,8 +209,8 @@ fn curve(values: &[f64]) -> Option<Vec<f64>> {
                 (0..p).for_each(|b| gram[a * p + b] += t[a] * t[b]);
             }
         }
-        let factors = Cholesky::new(&gram, p, 0.0).solve(&side);
-        let fit: Vec<f64> = all.iter().map(|t| t.iter().zip(&factors).map(|(t, f)| t * f).sum()).collect();
+        let coefficients = Cholesky::new(&gram, p, 0.0).solve(&side);
+        let fit: Vec<f64> = all.iter().map(|t| t.iter().zip(&coefficients).map(|(t, f)| t * f).sum()).collect();
         let sse: f64 = fit.iter().zip(values).map(|(f, v)| (f - v).powi(2)).sum();
         (n as f64 * sse.max(1e-300).ln() + p as f64 * (n as f64).ln(), fit)
     };
@@ -223,13 +223,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zeros_that_lie_apart_are_taken_off_and_a_creep_is_not() {
+    fn distant_zeros_are_subtracted_and_a_creep_is_not() {
         let twist = |i: usize| 1e-3 * (i as f64 * 0.1).sin();
         let repeat: Vec<i64> = (0..900).map(|i| i / 300).collect();
         let moved = |zeros: [f64; 3]| -> Vec<f64> { (0..900).map(|i| twist(i) + zeros[i / 300]).collect() };
         let mut apart = moved([2e-3, -1e-3, -1e-3]);
-        let told = own_zeros(&mut apart, &repeat).unwrap();
-        assert!((told - 2f64.sqrt() * 1e-3).abs() < 5e-5, "{told}");
+        let reported = own_zeros(&mut apart, &repeat).unwrap();
+        assert!((reported - 2f64.sqrt() * 1e-3).abs() < 5e-5, "{reported}");
         let level = |r: usize| apart[300 * r..300 * (r + 1)].iter().sum::<f64>() / 300.0;
         assert!((level(0) - level(1)).abs() < 1e-9 && (level(1) - level(2)).abs() < 1e-9);
         let creep = moved([0.0, 2e-4, 3e-4]);

@@ -1,4 +1,4 @@
-//! Runs in legs without plateaus: every sample counts, averaged over short chunks.
+//! Runs in legs without steady states: every sample counts, averaged over short chunks.
 
 use crate::hysteresis_operators;
 use crate::linear::Basis;
@@ -12,7 +12,7 @@ use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Kind, RunTable};
 use std::ops::Range;
 
-/// Of a run of more chunks than these some are taken: what it says, it says in few of them.
+/// Largest number of rows; of a longer run only every n-th chunk is used.
 const MOST_ROWS: usize = 12_000;
 
 pub fn prepare(
@@ -37,7 +37,7 @@ pub fn prepare(
             (Kind::Brake, Some(current)) => current_dwells::held(&current[leg.clone()], n),
             _ => Vec::new(),
         };
-        // One of several and not their mean, which would blur a short wave.
+        // One chunk of several, not their mean, which would attenuate a short wave.
         for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n * thin).enumerate() {
             if held.get(k * thin) == Some(&false) {
                 continue;
@@ -83,9 +83,9 @@ pub fn prepare(
     Ok(Prepared { clashes, doubts, ..Prepared::of(run, main, about) })
 }
 
-/// What is remembered of the time before the run, in a sentence.
+/// A loading history before the run, in a sentence.
 fn past(main: &mut Problem, kind: Kind) -> Option<String> {
-    let (signal, told) = match kind {
+    let (signal, message) = match kind {
         Kind::Brake => (
             Signal::Current,
             "the brake still remembered an earlier current when the run began, which is taken into account; demagnetise it \
@@ -98,10 +98,10 @@ fn past(main: &mut Problem, kind: Kind) -> Option<String> {
         ),
         Kind::Friction | Kind::Encoder => return None,
     };
-    initial_hysteresis_state::find(main, signal).then(|| told.into())
+    initial_hysteresis_state::find(main, signal).then(|| message.into())
 }
 
-/// Legs that start and end alike are repeats of one condition.
+/// Legs with the same start and end values are repeats of one condition.
 fn conditions(samples: &Source, legs: &[Range<usize>], inputs: &[Same]) -> Vec<usize> {
     let mut keys: Vec<Vec<usize>> = vec![Vec::new(); legs.len()];
     for same in inputs {
@@ -128,7 +128,7 @@ fn conditions(samples: &Source, legs: &[Range<usize>], inputs: &[Same]) -> Vec<u
     keys.iter().map(|k| known.binary_search(k).unwrap_or(0)).collect()
 }
 
-/// The torque as the current and its history explain it: what speed and temperature may scale as a whole.
+/// The torque as explained by the current and its history, which speed and temperature may scale as a whole.
 pub fn brake_torque_of_current(problem: &Problem) -> Vec<f64> {
     let view = &problem.view;
     let current = view.samples.find(Signal::Current).unwrap_or_default();

@@ -1,9 +1,9 @@
-//! Columns that the models do not know: axes of residual maps, and signals of users' formulas.
+//! Unknown columns: axes of residual maps, and signals of user formulas.
 
 use crate::signal::{Signal, Signals};
 use jointbench_instrument::RunTable;
 
-/// Keeps the columns of a run that nobody knows.
+/// Keeps the columns of a run that no model uses.
 pub fn keep(signals: &mut Signals, run: &RunTable) {
     let kind = run.kind();
     let is_known =

@@ -1,4 +1,5 @@
-//! Every effect that the model does not have, in every form, at every starting point of its shape.
+//! Candidate regressors: every effect that is not in the model, in every form, at every grid point of its nonlinear
+//! parameters.
 
 use crate::ModelSpec;
 use crate::effect::{Columns, Effect, Form, Regime};
@@ -10,12 +11,13 @@ use jointbench_instrument::Kind;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// An effect in one form at one shape.
+/// An effect in one form at one grid point.
 pub struct Regressor<'e> {
     pub effect: &'e dyn Effect,
     pub form: Arc<Form<'e>>,
     pub shape: Vec<f64>,
-    /// In single precision: they are many, and choose only where to look closer.
+    /// In single precision to save memory: there are many candidates, and they only select what is computed in full
+    /// precision.
     pub columns: Vec<Vec<f32>>,
 }
 
@@ -31,20 +33,20 @@ impl<'e> Regressor<'e> {
 
 pub struct CandidateSet<'e> {
     pub kind: Kind,
-    /// Every effect of the kind, in the order of the contract.
+    /// Every effect of the kind, in the order of the library.
     pub effects: Vec<&'e dyn Effect>,
     pub candidates: Vec<Regressor<'e>>,
     pub invisible: Vec<Invisible>,
 }
 
 impl<'e> CandidateSet<'e> {
-    /// All candidates of the stages that this problem can judge.
+    /// All candidates of the regimes that this problem can judge.
     pub fn new(spec: &'e ModelSpec, problem: &Problem, regimes: &[Regime]) -> Self {
         Self::of(spec, problem, regimes, |_| true)
     }
 
-    /// Only what it takes to lay these effects out: their own forms, and those of all where one of these may get another
-    /// part, which is held against all.
+    /// Only the candidates that the canonical fit of these effects needs: their own forms. All effects are included
+    /// if one of these can get an additional component, because a component competes with every other effect.
     pub fn for_layout(spec: &'e ModelSpec, problem: &Problem, regimes: &[Regime], effects: &[&str]) -> Self {
         let is_in = |effect: &dyn Effect| effects.contains(&effect.info().id);
         let grows = |effect: &dyn Effect| effect.forms(&problem.view).iter().any(|f| effect.extended(f).is_some());

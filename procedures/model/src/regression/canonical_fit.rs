@@ -1,4 +1,4 @@
-//! How a set of effects becomes a model: in one way only, whatever order they came together in.
+//! Canonical fit: a set of effects gives the same model, independent of the order in which they were added.
 
 use crate::Options;
 use crate::effect::Effect;
@@ -10,45 +10,46 @@ use crate::regression::partial_regression::PartialRegression;
 use crate::thresholds::BETTER_FORM;
 use rayon::prelude::*;
 
-/// How often the forms are chosen again, each beside all others.
+/// How many times the forms are reselected, each together with all other effects.
 const PASSES: usize = 3;
 
-/// Lays effects out on the problem of `bare`: those of one form first, then always the one that explains most.
-pub fn lay<'p>(
+/// Fits effects to the problem of `bare`: effects with a single form first, then repeatedly the effect that explains
+/// most.
+pub fn fit_canonical<'p>(
     bare: &LinearModel<'p>,
     effects: &[&str],
     library: &CandidateSet<'p>,
     options: &Options,
 ) -> LinearModel<'p> {
-    let mut laid = LinearModel { terms: Vec::new(), ..bare.clone() };
+    let mut model = LinearModel { terms: Vec::new(), ..bare.clone() };
     let wanted = library.effects.iter().copied().filter(|e| effects.contains(&e.info().id));
-    let (fixed, mut open): (Vec<_>, Vec<_>) = wanted.partition(|e| is_fixed(*e, laid.problem));
-    fixed.into_iter().for_each(|effect| enter(&mut laid, effect));
+    let (fixed, mut open): (Vec<_>, Vec<_>) = wanted.partition(|e| is_fixed(*e, model.problem));
+    fixed.into_iter().for_each(|effect| enter(&mut model, effect));
     while !open.is_empty() {
-        let ground = PartialRegression::of(&laid);
+        let ground = PartialRegression::of(&model);
         let best: Vec<Vec<(f64, &Regressor)>> = open.iter().map(|e| best_of_forms(*e, library, &ground)).collect();
         let share = |forms: &Vec<(f64, &Regressor)>| forms.iter().map(|f| f.0).fold(0.0, f64::max);
         let most = best.iter().map(share).enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |most| most.0);
         open.remove(most);
-        let terms = best[most].iter().map(|(_, candidate)| candidate.term(laid.problem)).collect();
-        laid.terms.extend(choose(terms, &ground, laid.problem));
-        laid.refine();
+        let terms = best[most].iter().map(|(_, candidate)| candidate.term(model.problem)).collect();
+        model.terms.extend(choose(terms, &ground, model.problem));
+        model.refine();
     }
     for _ in 0..PASSES {
-        if !reselect_forms(&mut laid, library) {
+        if !reselect_forms(&mut model, library) {
             break;
         }
     }
-    extend(&mut laid, library, options);
-    laid
+    extend(&mut model, library, options);
+    model
 }
 
-/// There is nothing to choose about the effect.
+/// Whether the effect has only one form and one grid point.
 fn is_fixed(effect: &dyn Effect, problem: &Problem) -> bool {
     matches!(&effect.forms(&problem.view)[..], [form] if form.grid.len() == 1)
 }
 
-/// The shape of each form of an effect that explains most of what is left, with its share.
+/// The best grid point of each form of an effect, with its partial R².
 fn best_of_forms<'l, 'p>(
     effect: &dyn Effect,
     library: &'l CandidateSet<'p>,
@@ -66,7 +67,7 @@ fn best_of_forms<'l, 'p>(
     best
 }
 
-/// Enters an effect in the form that explains most of what is left, each form at its own best shape.
+/// Adds an effect in the form that explains most of the residual, each form at its best grid point.
 pub fn enter<'p>(terms: &mut LinearModel<'p>, effect: &'p dyn Effect) {
     let problem: &Problem = terms.problem;
     let forms = effect.forms(&problem.view);
@@ -86,15 +87,15 @@ pub fn enter<'p>(terms: &mut LinearModel<'p>, effect: &'p dyn Effect) {
     terms.terms.extend(choose(best, &ground, problem));
 }
 
-/// The form that explains most, a longer one only where it is worth it. What is physically impossible is chosen only where
-/// nothing else is possible.
+/// The form that explains most. A form with more parameters has to explain sufficiently more. A physically impossible
+/// form is chosen only if no form is possible.
 fn choose<'p>(mut forms: Vec<Term<'p>>, ground: &PartialRegression, problem: &Problem) -> Option<Term<'p>> {
     forms.sort_by_key(Term::size);
     let polished = |term: Term<'p>| {
         let mut term = [term];
         let sse = varpro(&mut term, &ground.basis, &ground.residual, problem);
         let [term] = term;
-        (term.allows(&ground.own(&term.columns).factors()), sse, term)
+        (term.allows(&ground.own(&term.columns).coefficients()), sse, term)
     };
     let forms: Vec<(bool, f64, Term<'p>)> = forms.into_par_iter().map(polished).collect();
     let mut chosen: Option<(bool, f64, Term<'p>)> = None;

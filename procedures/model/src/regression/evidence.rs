@@ -1,4 +1,5 @@
-//! What speaks for an effect: what it takes off data that had no part in choosing its form and its factors.
+//! Evidence for an effect: the reduction of the validation error, on data that was not used to choose its form and
+//! coefficients.
 
 use crate::effect::Regime;
 use crate::linear::added_columns::{Added, Gain};
@@ -9,23 +10,23 @@ use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
-/// A candidate with less than this share of its own looks like the model.
+/// A candidate with a smaller tolerance (1 − R² on the model) is collinear with the model.
 pub const LEAST_VISIBLE: f64 = 1e-5;
 
-/// The rule of one standard error (Breiman and others 1984, ch. 3).
+/// One-standard-error rule (Breiman and others 1984, ch. 3).
 pub const ONE_ERROR: f64 = 1.0;
 
-/// The evidence for one effect beside a model.
+/// The evidence for one candidate effect.
 pub struct Evidence<'l, 'p> {
     /// The form that explains most of the whole run.
     pub best: &'l Regressor<'p>,
-    /// Share of the held-out squared error that the effect takes away.
+    /// Error reduction: share of the squared validation error that the effect explains.
     pub gain: f64,
-    /// The gain in its standard errors over blocks.
+    /// The error reduction in units of its standard error over blocks.
     pub errors: f64,
-    /// How often chance would bring any form of the library as far.
+    /// p-value, corrected for all forms of the library (Bonferroni).
     pub p_value: f64,
-    /// Held-out squared error of each block with the effect.
+    /// Squared validation error of each block with the effect.
     pub losses: Vec<f64>,
     /// It takes the practical share of the error outside reversals too.
     pub shows_outside: bool,
@@ -36,24 +37,24 @@ impl Evidence<'_, '_> {
         self.best.id()
     }
 
-    /// The least share of the error to take. At reversals alone an effect competes with the form error of the model: there it has
-    /// to explain most of the residual.
+    /// The minimum error reduction. Form error concentrates at reversals: a candidate that shows only there has to explain most of
+    /// the residual.
     pub fn least_share(&self) -> f64 {
         if self.shows_outside { DECISION_SHARE } else { UNMISTAKABLE_SHARE }
     }
 
-    /// It takes more than the least share, significantly, and by more than the scatter of its gain.
+    /// Whether the reduction exceeds the minimum share, is significant, and exceeds its standard error.
     pub fn passes(&self, alpha: f64) -> bool {
         self.gain > self.least_share() && self.p_value < alpha && self.errors > ONE_ERROR
     }
 }
 
-/// One form beside the base.
+/// Result of one form added to the base model.
 enum Tried<'l, 'p> {
     Judged(Trial<'l, 'p>),
-    /// It does not show where it has to, or no factor of it is possible.
+    /// It does not show outside reversals, or its coefficients are physically impossible.
     Rejected,
-    /// It looks like the base.
+    /// It is collinear with the base model.
     Hidden(&'l Regressor<'p>),
 }
 
@@ -65,11 +66,11 @@ struct Trial<'l, 'p> {
     shows_outside: bool,
 }
 
-/// The evidence for each effect of the candidates, the one that takes most first, and the forms that the base hides. `forms`: how
-/// many were tried in all.
+/// The evidence for each candidate effect, by decreasing error reduction, and the forms that are collinear with the
+/// base model. `forms` is the number of tested forms.
 ///
-/// An effect shows outside reversals and rests where it takes the practical share on the rows that are not `near` one too, with the
-/// model fitted to these rows alone. An effect of steady state has to. A form that differs from the model at reversals only does not.
+/// A candidate shows outside reversals and rests if it reaches the practical share on the rows that are not `near` one, with the
+/// model fitted to these rows alone. A steady-state effect has to; a form that differs from the model only at reversals does not.
 pub fn evidence<'l, 'p>(
     ridge: &BlockedRidge,
     candidates: &[&'l Regressor<'p>],
@@ -96,18 +97,18 @@ pub fn evidence<'l, 'p>(
 
 fn attempt<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Option<&Outside>) -> Tried<'l, 'p> {
     let Some(added) = visible(ridge, form) else { return Tried::Hidden(form) };
-    let is_possible = |factors: &[f64]| allows(form.effect, &form.form, factors);
-    if !is_possible(&added.factors()) {
+    let is_possible = |coefficients: &[f64]| allows(form.effect, &form.form, coefficients);
+    if !is_possible(&added.coefficients()) {
         return Tried::Rejected;
     }
-    let is_settled = form.effect.regime() == Regime::SteadyState;
+    let is_steady = form.effect.regime() == Regime::SteadyState;
     let shows_outside = match outside.map(|outside| (outside.left(), outside.added(&form.columns, LEAST_VISIBLE))) {
-        None => is_settled,
-        Some((_, None)) if is_settled => return Tried::Hidden(form),
+        None => is_steady,
+        Some((_, None)) if is_steady => return Tried::Hidden(form),
         Some((_, None)) => false,
-        Some((left, Some((factors, taken)))) => is_possible(&factors) && taken > DECISION_SHARE * left,
+        Some((left, Some((coefficients, taken)))) => is_possible(&coefficients) && taken > DECISION_SHARE * left,
     };
-    if is_settled && !shows_outside {
+    if is_steady && !shows_outside {
         return Tried::Rejected;
     }
     let chance = chance(added.wald(), added.size, ridge.blocks.len());
@@ -115,18 +116,18 @@ fn attempt<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Optio
     Tried::Judged(Trial { form, taken: added.taken(), gains, chance, shows_outside })
 }
 
-/// What a form would add, where it is none of what the model has.
+/// The regression with this form added, unless the form is collinear with the model.
 pub fn visible(ridge: &BlockedRidge, form: &Regressor) -> Option<Added> {
     let added = Added::new(ridge, &form.columns);
     (added.visible > LEAST_VISIBLE).then_some(added)
 }
 
-/// The form is chosen by the rest for every block that it is judged on.
+/// The form for each block is chosen on the other blocks, so that the choice does not bias the validation error.
 fn of_effect<'l, 'p>(ridge: &BlockedRidge, trials: &[Trial<'l, 'p>], forms: usize) -> Option<Evidence<'l, 'p>> {
     let best = trials.iter().max_by(|a, b| a.taken.total_cmp(&b.taken))?;
     let of_block = |block: usize| {
         let chosen = trials.iter().map(|t| t.gains[block]).max_by(|a, b| a.fitted.total_cmp(&b.fitted));
-        chosen.map_or(0.0, |gain| gain.held_out)
+        chosen.map_or(0.0, |gain| gain.validation_losses)
     };
     let gains: Vec<f64> = (0..ridge.blocks.len()).map(of_block).collect();
     Some(Evidence {
@@ -139,7 +140,7 @@ fn of_effect<'l, 'p>(ridge: &BlockedRidge, trials: &[Trial<'l, 'p>], forms: usiz
     })
 }
 
-/// A mean in its standard errors.
+/// A mean in units of its standard error.
 pub fn errors(values: &[f64]) -> f64 {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -147,12 +148,12 @@ pub fn errors(values: &[f64]) -> f64 {
     mean / (square / (n - 1.0) / n).sqrt().max(f64::MIN_POSITIVE)
 }
 
-/// How often chance alone makes a Wald statistic of so many factors that large, with the scatter of so many blocks: Student's
-/// t, or Hotelling's T² for several factors.
-pub fn chance(wald: f64, factors: usize, blocks: usize) -> f64 {
-    let (k, g) = (factors as f64, blocks as f64);
+/// p-value of a Wald statistic with this number of coefficients, estimated from this number of blocks: Student's t
+/// for one coefficient, Hotelling's T² for several.
+pub fn chance(wald: f64, coefficients: usize, blocks: usize) -> f64 {
+    let (k, g) = (coefficients as f64, blocks as f64);
     let none = |law: Result<f64, _>| law.unwrap_or(1.0);
-    match factors {
+    match coefficients {
         1 => none(StudentsT::new(0.0, 1.0, g - 1.0).map(|law| 2.0 * law.sf(wald.max(0.0).sqrt()))),
         _ => {
             let law = FisherSnedecor::new(k, (g - k).max(1.0));

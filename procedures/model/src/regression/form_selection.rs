@@ -1,4 +1,4 @@
-//! Second thoughts about the forms of the effects that are in the model.
+//! Reselects the forms of the effects in the model.
 
 use crate::Options;
 use crate::effect::ShapeSearch;
@@ -9,8 +9,8 @@ use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
 use crate::thresholds::{BETTER_FORM, COMPONENT_OWN_SHARE};
 
-/// Gives an effect of several parts another one, as long as no effect that is not in the model explains more of the same, and
-/// it passes the same tests.
+/// Adds a component to an effect that is a sum of components, while it passes the same tests as a new effect and no
+/// other effect explains the same share better.
 pub fn extend<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p>, options: &Options) {
     for at in 0..terms.terms.len() {
         while let Some(longer) = one_more(terms, at, library, options) {
@@ -20,7 +20,7 @@ pub fn extend<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p>, optio
     }
 }
 
-/// The term with the part that explains most, where that is worth it.
+/// The term with the component that explains most, if that component is significant.
 fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, options: &Options) -> Option<Term<'p>> {
     let term = &terms.terms[at];
     let (part, form) = term.effect.extended(&term.form)?;
@@ -38,13 +38,13 @@ fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, 
             _ => {}
         }
     }
-    // What explains more is added first, unless it explains something else.
+    // A candidate that explains more is added first, unless it explains something else.
     let instead = |other: &Regressor| {
-        let mut beside = ground.basis.clone();
+        let mut with_other = ground.basis.clone();
         for column in &other.term(terms.problem).columns {
-            beside.push(column);
+            with_other.push(column);
         }
-        let left = PartialRegression::new(beside.clone(), beside.rest(&ground.residual), terms.problem);
+        let left = PartialRegression::new(with_other.clone(), with_other.rest(&ground.residual), terms.problem);
         left.own(&part.columns).share * left.energy < COMPONENT_OWN_SHARE * share_of_part * ground.energy
     };
     let is_weak = share_of_part < options.practical_share || others.into_iter().any(|(_, other)| instead(other));
@@ -55,11 +55,11 @@ fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, 
     let longer = Term::new(term.effect, form, shape, terms.problem);
     let mut with = terms.clone();
     with.terms[at] = longer.clone();
-    longer.allows(&with.linear().factors[at]).then_some(longer)
+    longer.allows(&with.linear().coefficients[at]).then_some(longer)
 }
 
-/// Asks of every effect with several forms, or with an order that was found beside fewer effects, whether another one
-/// fits better beside the effects that came in since. Says whether one does.
+/// Reselects the form or the order of each effect, given all other effects of the model. Returns whether a form
+/// changed. A form was chosen with fewer effects in the model and may not be the best any more.
 pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p>) -> bool {
     let mut changed = false;
     for i in 0..terms.terms.len() {
@@ -90,12 +90,12 @@ pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p
         let mut best = sse(&term);
         for trial in forms.into_iter().filter_map(start).chain(two_parts(&same, &ground, terms.problem)) {
             let trial = sse(&trial);
-            // Beside an equally long form it stays; a shorter one may be a little worse.
+            // An equally long form has to be better by a margin; a shorter form may be a little worse.
             let more = match trial.1.size() as f64 - best.1.size() as f64 {
                 0.0 => 1.0,
                 more => more,
             };
-            let possible = trial.1.allows(&ground.own(&trial.1.columns).factors());
+            let possible = trial.1.allows(&ground.own(&trial.1.columns).coefficients());
             if possible && trial.0 < best.0 * (1.0 - BETTER_FORM * more) {
                 best = trial;
             }
@@ -109,8 +109,8 @@ pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p
     changed
 }
 
-/// The two parts of one kind that explain most together, where an effect is a sum of such parts. Two dry contacts look
-/// like one that yields little by little, and no third part added to that would make them out.
+/// The two components that explain most together, for an effect that is a sum of components. Two dry contacts look
+/// like one contact with gradual slip, and a third component added to that does not separate them.
 fn two_parts<'p>(same: &[&Regressor<'p>], ground: &PartialRegression, problem: &Problem) -> Option<Term<'p>> {
     let smooth = |c: &&&Regressor| c.form.shape.iter().all(|s| s.is_smooth());
     let extends = |c: &&Regressor<'p>| c.effect.extended(&c.form).filter(|(part, _)| *part == c.form.name);
@@ -120,7 +120,7 @@ fn two_parts<'p>(same: &[&Regressor<'p>], ground: &PartialRegression, problem: &
     for (i, one) in parts.iter().enumerate() {
         for other in &parts[..i] {
             let own = ground.own(&[&other.columns[..], &one.columns].concat());
-            if best.as_ref().is_none_or(|b| own.share > b.0) && allows(one.effect, &form, &own.factors()) {
+            if best.as_ref().is_none_or(|b| own.share > b.0) && allows(one.effect, &form, &own.coefficients()) {
                 best = Some((own.share, [&other.shape[..], &one.shape].concat()));
             }
         }

@@ -1,4 +1,4 @@
-//! The form of an effect with a memory that explains most of what the rest of a model leaves around reversals.
+//! The form of a hysteresis effect that explains most of the residual around reversals.
 
 use crate::ModelSpec;
 use crate::effect::Regime;
@@ -8,7 +8,7 @@ use crate::regression::candidates::CandidateSet;
 use crate::regression::linear_model::{LinearModel, Term, varpro};
 use crate::regression::partial_regression::PartialRegression;
 
-/// What the rest of the model leaves around reversals, and the effects with a memory that may explain it.
+/// The residual of the model around reversals, and the hysteresis candidates.
 pub struct Reversals<'p> {
     pub problem: &'p Problem,
     pub ground: PartialRegression,
@@ -16,7 +16,7 @@ pub struct Reversals<'p> {
 }
 
 impl<'p> Reversals<'p> {
-    /// `given` is what the rest of the model predicts at the rows of `problem`.
+    /// `given` is the prediction of the rest of the model at the rows of `problem`.
     pub fn new(problem: &'p Problem, given: Vec<f64>, spec: &'p ModelSpec, wanted: impl Fn(&str) -> bool) -> Self {
         let mut terms = LinearModel::new(problem);
         terms.given = given;
@@ -25,7 +25,7 @@ impl<'p> Reversals<'p> {
         Self { problem, ground: PartialRegression::new(Basis::default(), terms.response(), problem), library }
     }
 
-    /// The effect in the form that explains most, and its share.
+    /// The effect in the form that explains most, and its partial R².
     pub fn best(&self) -> Option<(Term<'p>, f64)> {
         let shares = self.library.candidates.iter().map(|c| self.ground.own(&c.columns).share);
         let (best, _) = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -36,7 +36,7 @@ impl<'p> Reversals<'p> {
     }
 }
 
-/// A memory effect of the model in its best form. `None` where there is nothing to choose it by.
+/// A hysteresis effect of the model in its best form. `None` without data to choose it by.
 pub fn form_of<'p>(problem: &'p Problem, given: Vec<f64>, spec: &'p ModelSpec, id: &str) -> Option<Term<'p>> {
     Some(Reversals::new(problem, given, spec, |other| other == id).best()?.0)
 }

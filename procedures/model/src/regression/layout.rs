@@ -1,4 +1,5 @@
-//! A set of effects as a model of a run that is judged sample by sample: one model, in whatever order they came together.
+//! Canonical model of a run that is judged sample by sample: the same set of effects gives the same model,
+//! independent of their order.
 
 use crate::effect::Effect;
 use crate::regression::candidates::{CandidateSet, Regressor};
@@ -9,9 +10,14 @@ use crate::thresholds::DECISION_SHARE;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Lays effects out beside what `bare` takes as given: those of one form first, then always the one that explains most. The
-/// other forms of an effect stand beside it, held near zero: no grid is too coarse then.
-pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &CandidateSet<'p>) -> LinearModel<'p> {
+/// Fits effects in addition to the offset terms of `bare`: effects with a single form first, then repeatedly the
+/// effect that explains most. The other forms of an effect are added with a ridge penalty, so that the grid need not
+/// be fine.
+pub fn fit_canonical<'p>(
+    bare: &LinearModel<'p>,
+    effects: &[&'p dyn Effect],
+    library: &CandidateSet<'p>,
+) -> LinearModel<'p> {
     let problem = bare.problem;
     let mut model = LinearModel { terms: Vec::new(), relatives: Arc::default(), ..bare.clone() };
     let forms_of = |effect: &dyn Effect| -> Vec<&Regressor<'p>> {
@@ -27,7 +33,7 @@ pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &Can
     }
     while !open.is_empty() {
         let best: Vec<(f64, usize)> = match Solution::of(&model) {
-            Some(solution) => open.iter().map(|forms| most_telling(&solution, forms)).collect(),
+            Some(solution) => open.iter().map(|forms| best_form(&solution, forms)).collect(),
             None => open.iter().map(|_| (0.0, 0)).collect(),
         };
         let most = (0..open.len()).max_by(|a, b| best[*a].0.total_cmp(&best[*b].0)).unwrap_or(0);
@@ -40,14 +46,14 @@ pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &Can
         let relatives = model.relatives.iter().cloned().chain(others).collect();
         model.relatives = Arc::new(relatives);
     }
-    // In the order of the library, whichever came first.
+    // In the order of the library, independent of the order of entry.
     let place = |term: &Term| library.effects.iter().position(|effect| effect.info().id == term.id());
     model.terms.sort_by_key(place);
     model
 }
 
-/// Gives an effect of several like parts, which entered last with one, those that take enough of held-out data as well: they are
-/// a matter of its form, as which shape it has. Returns its parts.
+/// Adds components to the last entered effect, if it is a sum of components, while they reduce the validation error
+/// sufficiently. Returns the components. Components belong to the form of the effect, like its nonlinear parameters.
 fn extend<'l, 'p>(
     model: &mut LinearModel<'p>,
     chosen: &'l Regressor<'p>,
@@ -61,7 +67,7 @@ fn extend<'l, 'p>(
         let judged = forms.par_iter().filter(|form| !parts.iter().any(|part| std::ptr::eq(*part, **form)));
         let judged = judged.filter_map(|form| {
             let added = visible(&solution.ridge, form)?;
-            let gains: Vec<f64> = added.gains(0.0, |_| true).iter().map(|gain| gain.held_out).collect();
+            let gains: Vec<f64> = added.gains(0.0, |_| true).iter().map(|gain| gain.validation_losses).collect();
             let gain: f64 = gains.iter().sum();
             (gain > DECISION_SHARE * solution.ridge.loss() && errors(&gains) > ONE_ERROR).then_some((gain, *form))
         });
@@ -74,11 +80,11 @@ fn extend<'l, 'p>(
     parts
 }
 
-/// The form that takes most of what a model leaves, and what it takes. What is physically possible comes first.
-fn most_telling(solution: &Solution, forms: &[&Regressor]) -> (f64, usize) {
+/// The form that explains most of the residual, and how much it explains. Physically possible forms are preferred.
+fn best_form(solution: &Solution, forms: &[&Regressor]) -> (f64, usize) {
     let taken = |form: &&Regressor| {
         let added = visible(&solution.ridge, form)?;
-        let possible = allows(form.effect, &form.form, &added.factors());
+        let possible = allows(form.effect, &form.form, &added.coefficients());
         Some((possible, added.taken()))
     };
     let taken: Vec<Option<(bool, f64)>> = forms.par_iter().map(taken).collect();

@@ -1,4 +1,4 @@
-//! Factors of a model, and the directions in which it can move.
+//! Coefficients of a model, and its tangent space.
 
 use crate::linear::basis::{Basis, dot};
 use crate::linear::cholesky::Cholesky;
@@ -6,7 +6,8 @@ use crate::regression::linear_model::{Linear, LinearModel, slopes};
 use crate::regression::solution::Solution;
 
 impl LinearModel<'_> {
-    /// The solution beside form error where the run is judged sample by sample, by least squares elsewhere.
+    /// The solution: ridge regression with form-error columns if the run is judged sample by sample, otherwise least
+    /// squares.
     pub fn linear(&self) -> Linear {
         if let Some(solution) = Solution::of(self) {
             return solution.linear(self);
@@ -27,21 +28,21 @@ impl LinearModel<'_> {
         let side: Vec<f64> = columns.iter().map(|c| dot(c, &explained)).collect();
         let flat = Cholesky::new(&gram, p, 0.0).solve(&side);
         let mut next = flat.into_iter();
-        let factors = self.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
+        let coefficients = self.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
         let sse = dot(&residual, &residual);
-        Linear { factors, residual, sse }
+        Linear { coefficients, residual, sse }
     }
 
-    /// Columns of the model and the directions in which its shape parameters would move it: what a new effect must
-    /// explain more than.
+    /// Tangent space: the columns of the model and its derivatives in the nonlinear parameters. A new effect has to
+    /// explain more than a shift of these parameters does.
     pub fn tangent(&self) -> Basis {
         let mut basis = Basis::of(self.terms.iter().flat_map(|t| &t.columns));
         if self.terms.iter().all(|t| t.free().next().is_none()) {
             return basis;
         }
         let linear = self.linear();
-        for (term, factors) in self.terms.iter().zip(&linear.factors) {
-            for slope in slopes(term, factors, self.problem) {
+        for (term, coefficients) in self.terms.iter().zip(&linear.coefficients) {
+            for slope in slopes(term, coefficients, self.problem) {
                 basis.push(&slope);
             }
         }

@@ -1,4 +1,4 @@
-//! A model at work: effects with their forms, shapes and columns at the rows of a problem.
+//! A model on one problem: effects with their forms, nonlinear parameters and columns at the rows.
 
 use crate::effect::{Columns, Effect, Form, ShapeSearch};
 use crate::linear::basis::{Basis, dot};
@@ -29,34 +29,34 @@ impl<'e> Term<'e> {
         self.effect.info().id
     }
 
-    /// Shape parameters that are refined continuously.
+    /// Nonlinear parameters that are refined continuously.
     pub(in crate::regression) fn free(&self) -> impl Iterator<Item = usize> {
         let free: Vec<usize> = (0..self.shape.len()).filter(|i| self.form.shape[*i].is_smooth()).collect();
         free.into_iter()
     }
 
-    /// A shape parameter that is refined, but for an exponent, lies at the edge of what the data can speak about.
+    /// Whether a refined nonlinear parameter other than an exponent lies at the bound of the identifiable range.
     pub fn is_at_edge(&self) -> bool {
         let sudden = self.effect.exponent_parameter();
         let mut slots = self.form.shape.iter().zip(&self.shape);
         slots.any(|(shape, value)| shape.is_smooth() && sudden != Some(shape.name) && shape.is_edge(*value))
     }
 
-    /// The factors are physically possible.
-    pub fn allows(&self, factors: &[f64]) -> bool {
-        allows(self.effect, &self.form, factors)
+    /// Whether the coefficients are physically possible.
+    pub fn allows(&self, coefficients: &[f64]) -> bool {
+        allows(self.effect, &self.form, coefficients)
     }
 
-    /// Number of parameters, linear and shape, that the data decides.
+    /// Number of free parameters, linear and nonlinear.
     pub fn size(&self) -> usize {
         self.columns.len() + self.form.shape.iter().filter(|s| s.min < s.max).count()
     }
 }
 
-/// Factors of an effect in this form that are physically possible.
-pub fn allows(effect: &dyn Effect, form: &Form, factors: &[f64]) -> bool {
+/// Whether these coefficients of an effect are physically possible.
+pub fn allows(effect: &dyn Effect, form: &Form, coefficients: &[f64]) -> bool {
     let info = effect.info();
-    form.linear.iter().zip(factors).all(|(name, value)| {
+    form.linear.iter().zip(coefficients).all(|(name, value)| {
         info.parameters.iter().find(|p| p.name == *name).is_none_or(|p| (p.min..=p.max).contains(value))
     })
 }
@@ -70,16 +70,16 @@ pub fn columns(effect: &dyn Effect, form: &str, shape: &[f64], problem: &Problem
 #[derive(Clone)]
 pub struct LinearModel<'p> {
     pub problem: &'p Problem,
-    /// Sum of what enters with a factor of one.
+    /// Sum of the offset terms, whose coefficient is one.
     pub given: Vec<f64>,
-    /// The effects that do.
+    /// Effects that are offset terms.
     pub offsets: Vec<&'p dyn Effect>,
     pub terms: Vec<Term<'p>>,
-    /// Other forms of the effects, where they stand beside the model.
+    /// Other forms of the effects, as nuisance columns.
     pub relatives: Arc<Vec<Relative<'p>>>,
 }
 
-/// A form of an effect beside the one that the model has.
+/// Another form of an effect than the one in the model.
 #[derive(Clone)]
 pub struct Relative<'e> {
     pub effect: &'e dyn Effect,
@@ -88,9 +88,9 @@ pub struct Relative<'e> {
     pub columns: Columns,
 }
 
-/// The least squares solution of a model: factors of every term's columns and what they leave.
+/// The solution of a model: coefficients of the columns of each term, and the residual.
 pub struct Linear {
-    pub factors: Vec<Vec<f64>>,
+    pub coefficients: Vec<Vec<f64>>,
     pub residual: Vec<f64>,
     pub sse: f64,
 }
@@ -110,7 +110,7 @@ impl<'p> LinearModel<'p> {
         self.terms.iter().any(|t| t.id() == id)
     }
 
-    /// The same without one effect.
+    /// The model without one effect.
     pub fn without(&self, id: &str) -> Self {
         let mut less = self.clone();
         less.terms.retain(|t| t.id() != id);
@@ -121,7 +121,7 @@ impl<'p> LinearModel<'p> {
         less
     }
 
-    /// The same without an effect that enters with a factor of one.
+    /// The model without an offset term.
     pub fn without_given(&self, effect: &dyn Effect) -> Self {
         let mut less = self.clone();
         for column in columns(effect, "linear", &[], self.problem) {
@@ -132,7 +132,7 @@ impl<'p> LinearModel<'p> {
         less
     }
 
-    /// The same with the shape of one effect held where it is.
+    /// The model with the nonlinear parameters of one effect fixed.
     pub fn held(&self, id: &str) -> Self {
         let mut held = self.clone();
         for term in held.terms.iter_mut().filter(|t| t.id() == id) {
@@ -143,7 +143,8 @@ impl<'p> LinearModel<'p> {
         held
     }
 
-    /// An error of this RMS is negligible beside what was measured. An encoder's own errors are what is measured.
+    /// Whether an error of this RMS is negligible relative to the measured signal. An encoder measurement consists of
+    /// the errors themselves.
     pub fn is_negligible(&self, rms: f64, kind: Kind) -> bool {
         let response = self.response();
         let mean = response.iter().sum::<f64>() / response.len() as f64;
@@ -151,7 +152,7 @@ impl<'p> LinearModel<'p> {
         kind != Kind::Encoder && rms < NEGLIGIBLE_RMS * spread
     }
 
-    /// The response without what is given.
+    /// The response minus the offset terms.
     pub fn response(&self) -> Vec<f64> {
         self.problem.target.iter().zip(&self.given).map(|(y, g)| y - g).collect()
     }
@@ -160,20 +161,21 @@ impl<'p> LinearModel<'p> {
         self.terms.iter().flat_map(|t| t.columns.iter().map(Vec::as_slice)).collect()
     }
 
-    /// Slopes of the model in every free shape parameter, term by term.
-    pub fn slopes(&self, factors: &[Vec<f64>]) -> Vec<(usize, usize, Vec<f64>)> {
+    /// Derivatives of the model in every free nonlinear parameter, term by term.
+    pub fn slopes(&self, coefficients: &[Vec<f64>]) -> Vec<(usize, usize, Vec<f64>)> {
         let mut out = Vec::new();
-        for (i, (term, factors)) in self.terms.iter().zip(factors).enumerate() {
-            out.extend(term.free().zip(slopes(term, factors, self.problem)).map(|(k, slope)| (i, k, slope)));
+        for (i, (term, coefficients)) in self.terms.iter().zip(coefficients).enumerate() {
+            out.extend(term.free().zip(slopes(term, coefficients, self.problem)).map(|(k, slope)| (i, k, slope)));
         }
         out
     }
 
-    /// Refines all shape parameters together. A coarse grid leaves a remainder that a second, false effect explains.
+    /// Refines all nonlinear parameters together. A coarse grid leaves a residual that a second, spurious effect
+    /// would explain.
     pub fn refine(&mut self) {
         let moves = |t: &Term| t.form.shape.iter().any(|s| s.search != ShapeSearch::Whole);
         let free: Vec<usize> = (0..self.terms.len()).filter(|i| moves(&self.terms[*i])).collect();
-        // Where other forms stand beside an effect its own need not move.
+        // With other forms as nuisance columns, the nonlinear parameters of the effect need no refinement.
         if free.is_empty() || self.problem.form_error.is_some() {
             return;
         }
@@ -188,11 +190,11 @@ impl<'p> LinearModel<'p> {
     }
 }
 
-/// ∂(Σ factor·column) by a step of each free shape parameter (see [`Shape::moved`]), by a central difference: what a column
-/// becomes as a row is linear, so that their sum becomes rows once.
+/// ∂(Σ coefficient·column) by a step of each free nonlinear parameter (see [`Shape::moved`]), by central differences.
+/// The reduction of columns to rows is linear, so that the sum is reduced only once.
 ///
 /// [`Shape::moved`]: crate::effect::Shape::moved
-pub(in crate::regression) fn slopes(term: &Term, factors: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
+pub(in crate::regression) fn slopes(term: &Term, coefficients: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
     const STEP: f64 = 1e-4;
     let slope = |k: usize| {
         let at = |sign: f64| {
@@ -202,7 +204,7 @@ pub(in crate::regression) fn slopes(term: &Term, factors: &[f64], problem: &Prob
         };
         let (up, down) = (at(1.0), at(-1.0));
         let mut slope = vec![0.0; up.first().map_or(0, Vec::len)];
-        for ((u, d), f) in up.iter().zip(&down).zip(factors) {
+        for ((u, d), f) in up.iter().zip(&down).zip(coefficients) {
             let scale = f / (2.0 * STEP);
             slope.iter_mut().zip(u.iter().zip(d)).for_each(|(s, (u, d))| *s += scale * (u - d));
         }
@@ -214,7 +216,7 @@ pub(in crate::regression) fn slopes(term: &Term, factors: &[f64], problem: &Prob
 
 struct Reduced {
     columns: Vec<Vec<f64>>,
-    factors: Vec<f64>,
+    coefficients: Vec<f64>,
     residual: Vec<f64>,
     sse: f64,
     spd: Cholesky,
@@ -232,16 +234,16 @@ fn reduce(terms: &[Term], basis: &Basis, rest: &[f64]) -> Reduced {
     }
     let spd = Cholesky::new(&gram, p, 1e-12);
     let side: Vec<f64> = columns.iter().map(|c| dot(c, rest)).collect();
-    let factors = spd.solve(&side);
+    let coefficients = spd.solve(&side);
     let mut residual = rest.to_vec();
-    for (c, f) in columns.iter().zip(&factors) {
+    for (c, f) in columns.iter().zip(&coefficients) {
         residual.iter_mut().zip(c).for_each(|(r, c)| *r -= f * c);
     }
     let sse = dot(&residual, &residual);
-    Reduced { columns, factors, residual, sse, spd }
+    Reduced { columns, coefficients, residual, sse, spd }
 }
 
-/// Narrows down moments of jumps: both neighbours at half the distance, again and again.
+/// Refines changepoints: tries both neighbours at a decreasing distance.
 fn narrow(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) -> Reduced {
     let mut best = reduce(terms, basis, rest);
     for i in 0..terms.len() {
@@ -271,7 +273,8 @@ fn narrow(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) ->
 }
 
 /// Variable projection with Kaufman's Jacobian (Golub, Pereyra 2003; Kaufman 1975) in a Levenberg–Marquardt loop over
-/// the steps of the shape parameters (in their logarithms, where they cannot be negative), held within their bounds.
+/// the nonlinear parameters. Parameters that cannot be negative are stepped in their logarithm. All stay within their
+/// bounds.
 pub fn varpro(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) -> f64 {
     let mut best = narrow(terms, basis, rest, problem);
     let index: Vec<(usize, usize)> =
@@ -282,10 +285,10 @@ pub fn varpro(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem
     let mut damping = 1e-3;
     for _ in 0..12 {
         let mut jacobian = Vec::new();
-        let mut next = best.factors.iter();
+        let mut next = best.coefficients.iter();
         for term in terms.iter() {
-            let factors: Vec<f64> = next.by_ref().take(term.columns.len()).copied().collect();
-            for slope in slopes(term, &factors, problem) {
+            let coefficients: Vec<f64> = next.by_ref().take(term.columns.len()).copied().collect();
+            for slope in slopes(term, &coefficients, problem) {
                 let mut slope = basis.rest(&slope);
                 let side: Vec<f64> = best.columns.iter().map(|c| dot(c, &slope)).collect();
                 for (c, f) in best.columns.iter().zip(best.spd.solve(&side)) {

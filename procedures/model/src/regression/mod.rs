@@ -1,4 +1,5 @@
-//! Models as sums of effects: candidates, their canonical fit to a run, and what each explains beside the others.
+//! Models as sums of effects: candidate regressors, canonical fits, and the part that each effect explains given the
+//! others.
 
 pub(crate) mod candidates;
 pub(crate) mod canonical_fit;

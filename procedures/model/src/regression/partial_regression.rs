@@ -1,5 +1,5 @@
-//! What a model leaves, and what a candidate would take of it: sums of products over the run and over its stretches.
-//! Nothing else is asked of a candidate's columns, so they are read and never copied.
+//! Partial regression of a candidate on the residual of a model (added-variable step), from sums of products over the
+//! run and over its blocks. Only products of a candidate's columns are needed, so that the columns are never copied.
 
 use crate::linear::basis::{Basis, dot};
 use crate::linear::cholesky::Cholesky;
@@ -9,33 +9,33 @@ use crate::stats::permutation_test::Score;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use std::ops::Range;
 
-/// A long run is turned over in groups of neighbouring blocks.
+/// A long run flips the signs of groups of neighbouring blocks together.
 const MOST_GROUPS: usize = 400;
 
-/// Where less than this share of a column is its own, the data cannot tell it from the model.
+/// A column with a smaller tolerance (1 − R² on the model) is collinear with the model.
 const LEAST_TOLERANCE: f64 = 1e-5;
 
-/// A residual beside the basis that left it.
+/// The residual of a model with the orthonormal basis of its tangent space.
 pub struct PartialRegression {
     pub basis: Basis,
     pub residual: Vec<f64>,
     /// Squared residual.
     pub energy: f64,
-    /// Rows that are turned over together.
+    /// Rows whose signs are flipped together.
     groups: Vec<Range<usize>>,
-    /// Products of each vector of the basis with the residual, group by group.
+    /// Products of each basis vector with the residual, for each group.
     shared: Vec<Vec<f64>>,
 }
 
-/// What the columns of a candidate are beside a basis (the added-variable step).
+/// Columns of a candidate, orthogonalized against a basis (the added-variable step).
 pub struct Orthogonalized {
-    /// Share of the squared residual that they explain.
+    /// Partial R²: share of the squared residual that the columns explain.
     pub share: f64,
-    /// Share of the squared columns that is their own: the rest looks like the model.
+    /// Tolerance: share of the squared columns that is orthogonal to the model.
     pub visible: f64,
-    /// Columns that have something of their own.
+    /// Columns that are not collinear with the model.
     kept: Vec<usize>,
-    /// Products with the vectors of the basis, column by column.
+    /// Products with the basis vectors, column by column.
     along: Vec<Vec<f64>>,
     gram: Vec<f64>,
     side: Vec<f64>,
@@ -92,7 +92,7 @@ impl PartialRegression {
         Orthogonalized { share, visible, kept, along, gram, side }
     }
 
-    /// Products of what each kept column has of its own with the residual, group by group.
+    /// Products of the orthogonal part of each kept column with the residual, for each group.
     pub fn sums<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], own: &Orthogonalized) -> Vec<Vec<f64>> {
         let of = |a: &usize| {
             let mut sums = products(&columns[*a], &self.residual, &self.groups);
@@ -104,11 +104,12 @@ impl PartialRegression {
         own.kept.iter().map(of).collect()
     }
 
-    /// The factor of a single column in standard errors of a jackknife over the groups, on the scale of a standard normal:
-    /// Student's t at the number of equal groups that would decide it as well as these do. `None` for several columns.
+    /// The coefficient of a single column in jackknife standard errors over the groups, converted to a standard
+    /// normal scale. Its Student's t has the degrees of freedom of the equivalent number of equal groups. `None` for
+    /// several columns.
     ///
-    /// A score's own scatter holds the effect itself. One that only few stretches can show would never get past it,
-    /// however clearly they do.
+    /// The scatter in a score includes the effect itself, so that an effect that only few blocks can show never
+    /// becomes significant by its score.
     pub fn jackknife_z(&self, columns: &[Vec<f64>]) -> Option<f64> {
         let [column] = columns else { return None };
         let rest = self.basis.rest(column);
@@ -118,7 +119,7 @@ impl PartialRegression {
         Some(Normal::standard().inverse_cdf(1.0 - chance.max(1e-15))).filter(|z| z.is_finite())
     }
 
-    /// How many equal groups would decide the factors of these columns as well as these do.
+    /// Equivalent number of equal groups that determine the coefficients of these columns as well.
     pub fn deciding(&self, columns: &[Vec<f32>]) -> Option<f64> {
         let squares = |column: &Vec<f32>| {
             let rest = self.basis.rest(&column.iter().copied().map(f64::from).collect::<Vec<_>>());
@@ -134,28 +135,28 @@ impl PartialRegression {
 }
 
 impl Orthogonalized {
-    /// Factors of the columns beside the basis.
-    pub fn factors(&self) -> Vec<f64> {
+    /// Coefficients of the columns, given the basis.
+    pub fn coefficients(&self) -> Vec<f64> {
         Cholesky::new(&self.gram, self.side.len(), 0.0).solve(&self.side)
     }
 
-    /// Squares of what each kept column has of its own.
+    /// Squares of the orthogonal part of each kept column.
     pub fn squares(&self) -> impl Iterator<Item = f64> {
         self.kept.iter().map(|a| self.gram[a * self.side.len() + a])
     }
 }
 
-/// How often noise alone would bring a factor so far from zero, beside the scatter of groups: `sums` are the products of its
-/// column with the residual, `squares` those with itself.
+/// p-value of a coefficient by a jackknife over groups: `sums` are the products of its column with the residual,
+/// `squares` those with itself.
 pub fn jackknife(sums: &[f64], squares: &[f64]) -> Option<f64> {
     let (sum, square) = (sums.iter().sum::<f64>(), squares.iter().sum::<f64>());
-    let factor = sum / square;
-    let without = |(s, h): (&f64, &f64)| ((sum - s) / (square - h) - factor).powi(2);
+    let coefficient = sum / square;
+    let without = |(s, h): (&f64, &f64)| ((sum - s) / (square - h) - coefficient).powi(2);
     let n = sums.len() as f64;
     let error = ((n - 1.0) / n * sums.iter().zip(squares).map(without).sum::<f64>()).sqrt();
     let deciding = square * square / dot(squares, squares);
     let t = StudentsT::new(0.0, 1.0, deciding - 1.0).ok()?;
-    Some(2.0 * t.sf((factor / error).abs()))
+    Some(2.0 * t.sf((coefficient / error).abs()))
 }
 
 pub fn products<C: Into<f64> + Copy>(a: &[C], b: &[f64], groups: &[Range<usize>]) -> Vec<f64> {

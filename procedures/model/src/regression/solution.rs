@@ -1,4 +1,5 @@
-//! A model on a run that is judged sample by sample: effects and nuisance columns for their form error.
+//! A model on a run that is judged sample by sample: columns of the effects and nuisance columns for their form
+//! error.
 
 use crate::effects;
 use crate::linear::basis::{Basis, dot};
@@ -10,16 +11,16 @@ use crate::regression::weights::weights;
 use jointbench_instrument::Kind;
 use std::sync::Arc;
 
-/// Strength with which columns are held near zero before the weights are known.
+/// Ridge strength before the weights are known.
 const FIRST_RIDGE: f64 = 1e-4;
-/// How often the weights are made anew.
+/// How many times the weights are updated.
 const REWEIGHTED: usize = 2;
 
-/// The effect that jerk itself is, and the one that moves the load.
+/// The delay, whose column is the jerk, and presliding, which changes the friction direction.
 pub const DELAY: &str = "signal_delay";
 pub const PRESLIDING: &str = "presliding";
 
-/// Nuisance columns of a model.
+/// Nuisance columns of a model: form error, by its place in the list, and other forms of the effects.
 pub struct Nuisance<'a> {
     pub error: Vec<(usize, BaseColumn<'a>)>,
     pub relatives: Vec<BaseColumn<'a>>,
@@ -31,8 +32,8 @@ impl<'a> Nuisance<'a> {
     }
 }
 
-/// Nuisance columns of a model: its form error and other forms of its effects. Form error that an effect of the model describes or
-/// imitates is omitted, and so is what `leaves_out` says.
+/// Nuisance columns of a model: its form error and other forms of its effects. Form error that an effect of the model
+/// describes or imitates is omitted, and so is form error for which `leaves_out` returns true.
 pub fn nuisance<'a>(
     model: &'a LinearModel,
     form_error: &'a FormError,
@@ -44,7 +45,8 @@ pub fn nuisance<'a>(
         Lives::LoadRate => !passes_load,
         Lives::Bristle | Lives::Snap => false,
     };
-    // On one sine jerk is velocity. What the ridge does not hold near zero must differ from the effects.
+    // On one sine the jerk is proportional to the velocity. A column without ridge penalty must not be collinear with
+    // the effects.
     let effects = Basis::of(model.terms.iter().flat_map(|term| &term.columns));
     let is_own = |c: &ErrorColumn| {
         let rest = effects.rest(&c.values);
@@ -69,25 +71,25 @@ pub fn effect_columns<'a>(model: &'a LinearModel) -> Vec<BaseColumn<'a>> {
     model.terms.iter().flat_map(|term| &term.columns).map(column).collect()
 }
 
-/// A model with its factors, and what it was projected out of.
+/// Coefficients of a model, with the ridge regression that gave them.
 pub struct Solution {
     pub ridge: BlockedRidge,
     pub weight: Vec<f64>,
-    /// Factors of the effects, of the form error by its place, and of other forms.
-    pub factors: Vec<f64>,
+    /// Coefficients of the effects, of the form error by its place, and of other forms.
+    pub coefficients: Vec<f64>,
     pub error: Vec<(usize, f64)>,
     pub relatives: Vec<f64>,
     pub residual: Vec<f64>,
-    /// Factors that are held at zero, beyond which they are impossible.
+    /// Coefficients that are held at their bound of zero.
     pub bound: Vec<usize>,
 }
 
 impl Solution {
-    /// `None` of a run that is not judged this way.
+    /// `None` for a run that is not judged sample by sample.
     pub fn of(model: &LinearModel) -> Option<Arc<Self>> {
         let form_error = model.problem.form_error.as_deref()?;
         let make = || Self::weighted(model, form_error, weighed(model, form_error), None);
-        // Of a user's effect the name does not say all.
+        // The name of a user effect does not identify its formula, so that its solution is not cached.
         match model
             .terms
             .iter()
@@ -114,12 +116,12 @@ impl Solution {
             columns[at].values = &nothing;
             ridge = BlockedRidge::new(&columns, &response, &weight, &model.problem.block, Some(ridge.strength));
         }
-        let all = ridge.factors();
+        let all = ridge.coefficients();
         let residual = left(&columns, &all, &response);
-        let (factors, rest) = all.split_at(own);
+        let (coefficients, rest) = all.split_at(own);
         let (error, relatives) = rest.split_at(nuisance.error.len());
         Self {
-            factors: factors.to_vec(),
+            coefficients: coefficients.to_vec(),
             error: nuisance.error.iter().map(|(at, _)| *at).zip(error.iter().copied()).collect(),
             relatives: relatives.to_vec(),
             residual,
@@ -129,7 +131,7 @@ impl Solution {
         }
     }
 
-    /// Standard errors of the factors of the effects: jackknife over blocks.
+    /// Standard errors of the coefficients of the effects, by a jackknife over blocks.
     pub fn standard_errors(&self) -> Vec<f64> {
         let replicates: Vec<Vec<f64>> = self.ridge.replicates().collect();
         let groups = replicates.len() as f64;
@@ -137,41 +139,42 @@ impl Solution {
             let mean = replicates.iter().map(|r| r[k]).sum::<f64>() / groups;
             ((groups - 1.0) / groups * replicates.iter().map(|r| (r[k] - mean).powi(2)).sum::<f64>()).sqrt()
         };
-        (0..self.factors.len()).map(of).collect()
+        (0..self.coefficients.len()).map(of).collect()
     }
 
     /// Sum of the nuisance terms at the rows.
     pub fn form_error(&self, model: &LinearModel) -> Vec<f64> {
         let mut sum = vec![0.0; model.problem.rows()];
-        let mut add = |column: &[f64], factor: f64| sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+        let mut add =
+            |column: &[f64], coefficient: f64| sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
         if let Some(form_error) = model.problem.form_error.as_deref() {
-            self.error.iter().for_each(|(at, factor)| add(&form_error.columns[*at].values, *factor));
+            self.error.iter().for_each(|(at, coefficient)| add(&form_error.columns[*at].values, *coefficient));
         }
         let columns = model.relatives.iter().flat_map(|relative| &relative.columns);
-        columns.zip(&self.relatives).for_each(|(column, factor)| add(column, *factor));
+        columns.zip(&self.relatives).for_each(|(column, coefficient)| add(column, *coefficient));
         sum
     }
 
-    /// As any model's.
+    /// The solution as coefficients of the terms, like that of a least-squares model.
     pub fn linear(&self, model: &LinearModel) -> Linear {
-        let mut next = self.factors.iter().copied();
-        let factors = model.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
+        let mut next = self.coefficients.iter().copied();
+        let coefficients = model.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
         let sse = self.residual.iter().map(|e| e * e).sum();
-        Linear { factors, residual: self.residual.clone(), sse }
+        Linear { coefficients, residual: self.residual.clone(), sse }
     }
 
-    /// Squared error of each block, as the others predict it.
-    pub fn held_out(&self, model: &LinearModel) -> Vec<f64> {
+    /// Squared error of each block, predicted from the other blocks.
+    pub fn validation_losses(&self, model: &LinearModel) -> Vec<f64> {
         let Some(form_error) = model.problem.form_error.as_deref() else { return Vec::new() };
         let response = model.response();
         let nuisance = nuisance(model, form_error, |_| false);
         let mut columns = effect_columns(model);
         columns.extend(nuisance.columns());
         let replicates = self.ridge.replicates().zip(&self.ridge.blocks);
-        let loss = |(factors, rows): (Vec<f64>, &std::ops::Range<usize>)| {
+        let loss = |(coefficients, rows): (Vec<f64>, &std::ops::Range<usize>)| {
             let mut left = response[rows.clone()].to_vec();
-            for (column, factor) in columns.iter().zip(factors) {
-                left.iter_mut().zip(&column.values[rows.clone()]).for_each(|(e, x)| *e -= factor * x);
+            for (column, coefficient) in columns.iter().zip(coefficients) {
+                left.iter_mut().zip(&column.values[rows.clone()]).for_each(|(e, x)| *e -= coefficient * x);
             }
             left.iter().map(|e| e * e).sum()
         };
@@ -179,29 +182,29 @@ impl Solution {
     }
 }
 
-/// The factor that lies furthest below zero of those that cannot be negative, where it does by chance: what is surely negative
-/// contradicts physics, and has to be told.
+/// The most negative of the coefficients that cannot be negative, if it is negative by chance. A significantly
+/// negative coefficient contradicts physics and has to be reported, so it is not held at zero.
 fn beyond(model: &LinearModel, ridge: &BlockedRidge) -> Option<usize> {
-    /// Standard errors that chance makes of a few factors in hardly any run.
+    /// Standard errors below zero that a few coefficients hardly ever reach by chance.
     const CHANCE: f64 = 3.0;
     let names =
         model.terms.iter().flat_map(|term| term.form.linear.iter().map(move |name| term.effect.info().bounds(name).0));
-    let factors = ridge.factors();
+    let coefficients = ridge.coefficients();
     let below: Vec<usize> =
-        names.enumerate().filter(|(at, least)| *least == 0.0 && factors[*at] < 0.0).map(|(at, _)| at).collect();
+        names.enumerate().filter(|(at, least)| *least == 0.0 && coefficients[*at] < 0.0).map(|(at, _)| at).collect();
     if below.is_empty() {
         return None;
     }
     let replicates: Vec<Vec<f64>> = ridge.replicates().collect();
     let groups = replicates.len() as f64;
     let errors = |at: &usize| {
-        let square: f64 = replicates.iter().map(|r| (r[*at] - factors[*at]).powi(2)).sum();
-        factors[*at] / ((groups - 1.0) / groups * square).sqrt().max(f64::MIN_POSITIVE)
+        let square: f64 = replicates.iter().map(|r| (r[*at] - coefficients[*at]).powi(2)).sum();
+        coefficients[*at] / ((groups - 1.0) / groups * square).sqrt().max(f64::MIN_POSITIVE)
     };
     below.into_iter().filter(|at| errors(at) > -CHANCE).min_by(|a, b| errors(a).total_cmp(&errors(b)))
 }
 
-/// Weights of the rows, from what the model leaves.
+/// Weights of the rows, from the residual of the model.
 pub fn weighed(model: &LinearModel, form_error: &FormError) -> Vec<f64> {
     let mut weight = vec![1.0; model.problem.rows()];
     let response = model.response();
@@ -209,8 +212,8 @@ pub fn weighed(model: &LinearModel, form_error: &FormError) -> Vec<f64> {
     let mut columns = effect_columns(model);
     columns.extend(nuisance.columns());
     for _ in 0..REWEIGHTED {
-        let factors = fitted(&columns, &response, &weight, FIRST_RIDGE);
-        weight = weights(form_error, &left(&columns, &factors, &response));
+        let coefficients = fitted(&columns, &response, &weight, FIRST_RIDGE);
+        weight = weights(form_error, &left(&columns, &coefficients, &response));
     }
     weight
 }
@@ -219,7 +222,7 @@ fn is_of_library(id: &str) -> bool {
     effects::find(Kind::Friction, id).is_ok()
 }
 
-/// What a model is made of.
+/// The effects, forms and nonlinear parameters of a model, as a key of the cache.
 fn name(model: &LinearModel) -> String {
     let mut name = String::new();
     model.offsets.iter().for_each(|effect| name.push_str(effect.info().id));
@@ -232,34 +235,34 @@ fn name(model: &LinearModel) -> String {
     name
 }
 
-fn left(columns: &[BaseColumn], factors: &[f64], response: &[f64]) -> Vec<f64> {
+fn left(columns: &[BaseColumn], coefficients: &[f64], response: &[f64]) -> Vec<f64> {
     let mut left = response.to_vec();
-    for (column, factor) in columns.iter().zip(factors) {
-        left.iter_mut().zip(column.values).for_each(|(e, x)| *e -= factor * x);
+    for (column, coefficient) in columns.iter().zip(coefficients) {
+        left.iter_mut().zip(column.values).for_each(|(e, x)| *e -= coefficient * x);
     }
     left
 }
 
-/// The first factor of an effect.
-pub fn effect_factor(model: &LinearModel, solution: &Solution, id: &str) -> Option<f64> {
+/// The first coefficient of an effect.
+pub fn effect_coefficient(model: &LinearModel, solution: &Solution, id: &str) -> Option<f64> {
     let mut at = 0;
     for term in &model.terms {
         if term.id() == id {
-            return solution.factors.get(at).copied();
+            return solution.coefficients.get(at).copied();
         }
         at += term.columns.len();
     }
     None
 }
 
-/// The model projected out without one kind of form error.
+/// The ridge regression without one kind of form error.
 pub fn without(model: &LinearModel, solution: &Solution, lives: Lives) -> BlockedRidge {
     let mut columns = effect_columns(model);
     if let Some(form_error) = model.problem.form_error.as_deref() {
         let nuisance = nuisance(model, form_error, |other| other == lives);
         columns.extend(nuisance.columns());
     }
-    // Weights make least of the very rows that such an effect is about.
+    // The weights are smallest at the rows that show such an effect.
     let even = vec![1.0; model.problem.rows()];
     BlockedRidge::new(&columns, &model.response(), &even, &model.problem.block, Some(solution.ridge.strength))
 }

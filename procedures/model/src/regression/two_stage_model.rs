@@ -1,9 +1,10 @@
-//! A model laid out on a prepared run: settled effects on the plateaus, ramps and memory where the motion changes.
+//! A model on a prepared run in two stages: steady-state effects on the means, ramp and hysteresis effects on the
+//! data with changing motion.
 
 use crate::effect::Regime;
 use crate::preprocess::{Prepared, Problem};
 use crate::regression::candidates::CandidateSet;
-use crate::regression::canonical_fit::{enter, lay};
+use crate::regression::canonical_fit::{enter, fit_canonical};
 use crate::regression::hysteresis_form::form_of;
 use crate::regression::linear_model::{LinearModel, Term, columns};
 use crate::regression::solution::PRESLIDING;
@@ -13,21 +14,22 @@ use crate::{Effect, ModelError, ModelSpec, Options};
 #[derive(Clone)]
 pub struct TwoStageModel<'p> {
     pub prepared: &'p Prepared,
-    /// What the model was at first, and the effects that it may hold.
+    /// The initial model, and the effects that it may contain.
     pub spec: &'p ModelSpec,
     /// Ids in the order of the model.
     pub effects: Vec<String>,
     pub main: LinearModel<'p>,
     pub moving: Option<LinearModel<'p>>,
-    /// What the main part takes as given of effects that ramps have decided: a slow step over teeth accelerates as well.
+    /// Torque of the ramp effects at the rows of the main part, as an offset: a slow step over gear teeth accelerates
+    /// as well.
     wavering: Vec<f64>,
     /// Effects of the model that this data cannot show.
     pub hidden: Vec<Invisible>,
 }
 
 impl<'p> TwoStageModel<'p> {
-    /// Finds forms and shapes of every effect: the same set of effects is laid out in one way only, whether it was asked
-    /// for or found.
+    /// Finds forms and nonlinear parameters of every effect. The fit is canonical: it does not depend on whether an
+    /// effect was requested or found.
     pub fn new(prepared: &'p Prepared, spec: &'p ModelSpec, options: &Options) -> Result<Self, ModelError> {
         Self::of_effects(prepared, spec, spec.effects.clone(), options)
     }
@@ -70,10 +72,10 @@ impl<'p> TwoStageModel<'p> {
             }
         }
         let library = CandidateSet::for_layout(spec, &prepared.main, prepared.regimes(), &settled);
-        // What the ramps decide needs the settled part, and that a little of what they decide.
+        // The ramps depend on the steady-state part, and the steady-state part depends a little on the ramp effects.
         for _ in 0..2 {
             assembly.main.terms.clear();
-            assembly.main = lay(&assembly.main, &settled, &library, options);
+            assembly.main = fit_canonical(&assembly.main, &settled, &library, options);
             assembly.enter_moving();
             if !assembly.take_wavering() {
                 break;
@@ -82,12 +84,12 @@ impl<'p> TwoStageModel<'p> {
         Ok(assembly)
     }
 
-    /// The same of a run that is judged sample by sample.
+    /// The model of a run that is judged sample by sample.
     pub fn decided(prepared: &'p Prepared, spec: &'p ModelSpec, effects: Vec<String>) -> Result<Self, ModelError> {
         let main = LinearModel::new(prepared.judged(&effects));
         let mut assembly =
             Self { prepared, spec, effects, main, moving: None, wavering: Vec::new(), hidden: Vec::new() };
-        let mut laid: Vec<&dyn Effect> = Vec::new();
+        let mut effects_to_fit: Vec<&dyn Effect> = Vec::new();
         let view = &prepared.main.view;
         for id in &assembly.effects {
             let effect = spec.find(id)?;
@@ -101,21 +103,21 @@ impl<'p> TwoStageModel<'p> {
                 add(&mut assembly.main.given, &given, &[1.0]);
                 assembly.main.offsets.push(effect);
             } else if id != PRESLIDING {
-                laid.push(effect);
+                effects_to_fit.push(effect);
             }
         }
-        let ids: Vec<&str> = laid.iter().map(|effect| effect.info().id).collect();
+        let ids: Vec<&str> = effects_to_fit.iter().map(|effect| effect.info().id).collect();
         let library = CandidateSet::only(spec, assembly.main.problem, prepared.regimes(), &ids);
-        assembly.main = crate::regression::layout::lay(&assembly.main, &laid, &library);
+        assembly.main = crate::regression::layout::fit_canonical(&assembly.main, &effects_to_fit, &library);
         Ok(assembly)
     }
 
-    /// Plateaus say nothing about the effect: it is judged where the motion changes.
+    /// Whether steady-state means cannot show the effect, so that it is fitted where the motion changes.
     pub fn is_apart(&self, effect: &dyn Effect) -> bool {
         !self.prepared.regimes().contains(&effect.regime())
     }
 
-    /// What the model predicts at the rows of another problem of the same run.
+    /// Prediction of the model at the rows of another problem of the same run.
     pub fn predict(&self, problem: &Problem) -> Vec<f64> {
         let mut sum = vec![0.0; problem.rows()];
         for id in &self.effects {
@@ -125,14 +127,15 @@ impl<'p> TwoStageModel<'p> {
             }
         }
         for part in std::iter::once(&self.main).chain(&self.moving) {
-            for (term, factors) in part.terms.iter().zip(part.linear().factors) {
-                add(&mut sum, &columns(term.effect, term.form.name, &term.shape, problem), &factors);
+            for (term, coefficients) in part.terms.iter().zip(part.linear().coefficients) {
+                add(&mut sum, &columns(term.effect, term.form.name, &term.shape, problem), &coefficients);
             }
         }
         sum
     }
 
-    /// Lays the settled part under the moving problem, which then holds nothing else.
+    /// Sets the prediction of the steady-state part as the offset of the moving problem, and removes all other terms
+    /// from it.
     fn relay(&mut self) {
         let Some(moving) = &mut self.moving else { return };
         moving.given.fill(0.0);
@@ -143,13 +146,13 @@ impl<'p> TwoStageModel<'p> {
                 add(&mut moving.given, &columns(effect, "linear", &[], moving.problem), &[1.0]);
             }
         }
-        for (term, factors) in self.main.terms.iter().zip(self.main.linear().factors) {
+        for (term, coefficients) in self.main.terms.iter().zip(self.main.linear().coefficients) {
             let columns = columns(term.effect, term.form.name, &term.shape, moving.problem);
-            add(&mut moving.given, &columns, &factors);
+            add(&mut moving.given, &columns, &coefficients);
         }
     }
 
-    /// Enters the effects that are judged where the motion changes.
+    /// Adds the effects that are fitted where the motion changes.
     fn enter_moving(&mut self) {
         let is_in = |id: &str| self.effects.iter().any(|e| e == id) && !self.hidden.iter().any(|h| h.effect == id);
         let apart = self.spec.known().filter(|e| self.is_apart(*e) && is_in(e.info().id));
@@ -179,14 +182,14 @@ impl<'p> TwoStageModel<'p> {
         }
     }
 
-    /// Takes what ramps tell into the main part, where it has anything to say there.
+    /// Adds the torque of the ramp effects to the main part as an offset. Returns whether it is not zero there.
     fn take_wavering(&mut self) -> bool {
         let mut wavering = vec![0.0; self.wavering.len()];
         if let Some(moving) = &self.moving {
-            let told = moving.terms.iter().zip(moving.linear().factors);
-            for (term, factors) in told.filter(|(term, _)| term.effect.regime() == Regime::Transient) {
+            let fitted = moving.terms.iter().zip(moving.linear().coefficients);
+            for (term, coefficients) in fitted.filter(|(term, _)| term.effect.regime() == Regime::Transient) {
                 let columns = columns(term.effect, term.form.name, &term.shape, self.main.problem);
-                add(&mut wavering, &columns, &factors);
+                add(&mut wavering, &columns, &coefficients);
             }
         }
         add(&mut self.main.given, &[std::mem::replace(&mut self.wavering, wavering.clone())], &[-1.0]);
@@ -194,8 +197,8 @@ impl<'p> TwoStageModel<'p> {
         self.wavering.iter().any(|torque| *torque != 0.0)
     }
 
-    /// The same from the beginning, where ramps reach into the main part: the order in which effects came in would show there
-    /// in the last digits.
+    /// Refits the model from scratch if ramp effects contribute to the main part. Otherwise the order of entry would
+    /// change the last digits.
     pub fn settled(self, options: &Options) -> Result<Self, ModelError> {
         match self.wavering.iter().any(|torque| *torque != 0.0) {
             true => Self::of_effects(self.prepared, self.spec, self.effects, options),
@@ -203,7 +206,7 @@ impl<'p> TwoStageModel<'p> {
         }
     }
 
-    /// The model of other effects, whose settled part is laid out already.
+    /// The model of other effects whose steady-state part is given.
     pub fn of(&self, main: LinearModel<'p>, effects: Vec<String>) -> Self {
         let mut next = Self { main, effects, ..self.clone() };
         next.enter_moving();
@@ -212,8 +215,8 @@ impl<'p> TwoStageModel<'p> {
     }
 }
 
-fn add(sum: &mut [f64], columns: &[Vec<f64>], factors: &[f64]) {
-    for (column, factor) in columns.iter().zip(factors) {
-        sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+fn add(sum: &mut [f64], columns: &[Vec<f64>], coefficients: &[f64]) {
+    for (column, coefficient) in columns.iter().zip(coefficients) {
+        sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
     }
 }

@@ -1,22 +1,22 @@
-//! Weights of rows by how a model errs with the time to the nearest reversal, the acceleration and the jerk.
+//! Weights of rows from the residual's dependence on the time to the nearest reversal, the acceleration and the jerk.
 //!
-//! Nothing is cut out: where a model errs more, a row counts less.
+//! No row is removed; a row with a larger expected error gets a smaller weight.
 
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::form_error::FormError;
 use crate::preprocess::friction::bristles::quantile;
 
-/// Weights stay within these, the middle one being 1.
+/// Bounds of the weights; the median weight is 1.
 const LEAST: f64 = 0.2;
 const MOST: f64 = 3.0;
-/// What is added to times [s], and to sizes as a share of the largest, before logarithms are taken.
+/// Added to times [s], and to accelerations and jerks as a share of the largest, before the logarithm.
 const SOON_S: f64 = 0.05;
 const LATE_S: f64 = 2.0;
 const STILL: f64 = 0.05;
-/// The same to squared errors, as a share of the middle one.
+/// Added to squared errors before the logarithm, as a share of their median.
 const EXACT: f64 = 1e-3;
 
-/// One over the standard deviation of a residual, as a smooth function of how swift the motion is.
+/// One over the standard deviation of the residual, as a smooth function of reversal time, acceleration and jerk.
 pub fn weights(form_error: &FormError, residual: &[f64]) -> Vec<f64> {
     let middle = quantile(residual.iter().map(|e| e * e), 0.5);
     let floor = (EXACT * middle).max(f64::MIN_POSITIVE);
@@ -33,7 +33,7 @@ pub fn weights(form_error: &FormError, residual: &[f64]) -> Vec<f64> {
     expected.into_iter().map(|e| (-0.5 * (e - usual)).exp().clamp(LEAST, MOST)).collect()
 }
 
-/// What least squares make of values by some columns. The first column is constant.
+/// Least-squares prediction of values from some columns. The first column is constant.
 fn regressed(columns: &[&Vec<f64>], values: &[f64]) -> Vec<f64> {
     let n = values.len().max(1) as f64;
     let means: Vec<f64> = columns.iter().map(|c| c.iter().sum::<f64>() / n).collect();
@@ -48,6 +48,6 @@ fn regressed(columns: &[&Vec<f64>], values: &[f64]) -> Vec<f64> {
             }
         }
     }
-    let factors = Cholesky::new(&gram, p, 1e-9).solve(&side);
-    (0..values.len()).map(|row| (0..p).map(|k| factors[k] * about(k, row)).sum()).collect()
+    let coefficients = Cholesky::new(&gram, p, 1e-9).solve(&side);
+    (0..values.len()).map(|row| (0..p).map(|k| coefficients[k] * about(k, row)).sum()).collect()
 }

@@ -1,4 +1,4 @@
-//! Two models side by side.
+//! Comparison of two models.
 
 use crate::report::fit::{Evaluation, Parameter};
 use jointbench_instrument::Kind;
@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     pub kind: Kind,
-    /// Effects of the second that the first has not.
+    /// Effects of the second model that the first one lacks.
     pub added: Vec<String>,
     pub removed: Vec<String>,
     pub parameters: Vec<ParameterPair>,
     /// Both on the same run.
     pub first: Evaluation,
     pub second: Evaluation,
-    /// Each on what was held out of its own run.
+    /// Validation error of each model on its own run.
     pub first_validation_rms: f64,
     pub second_validation_rms: f64,
 }
@@ -27,9 +27,9 @@ pub struct ParameterPair {
     pub unit: String,
     pub first: Option<Parameter>,
     pub second: Option<Parameter>,
-    /// The values are further apart than their intervals allow. `None` where one is missing or has no interval.
+    /// Whether the values differ by more than their intervals allow. `None` if one is missing or has no interval.
     pub differ: Option<bool>,
-    /// Where one interval is much wider than the other.
+    /// Present if one interval is much wider than the other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wider: Option<Wider>,
 }
@@ -37,7 +37,7 @@ pub struct ParameterPair {
 /// Why a parameter is less certain in one of two models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Wider {
-    /// In the second, or in the first.
+    /// Whether the second model has the wider interval.
     pub second: bool,
     pub times: f64,
     pub why: String,

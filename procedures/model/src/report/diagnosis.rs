@@ -1,4 +1,4 @@
-//! Where a model fails and what is missing.
+//! Result of a diagnosis: missing effects and unexplained structure.
 
 use crate::OwnEffect;
 use crate::report::fit::{Fit, Parameter, ResidualKind};
@@ -7,24 +7,24 @@ use crate::thresholds::{MASKED_RATIO, SMALL_REDUCTION, STRONG_P_VALUE};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 
-/// Why a verdict decides nothing.
+/// Why a verdict is undecided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UndecidedReason {
     /// The columns of the run contradict each other.
     ContradictoryColumns,
-    /// Too few independent blocks to name anything.
+    /// Too few independent blocks for a significance test.
     TooFewBlocks,
-    /// How well the run repeats itself is not known.
+    /// The noise floor is not known.
     NoNoiseFloor,
-    /// A parameter contradicts physics in every model.
+    /// A parameter is physically impossible in every model.
     ImpossibleParameter,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Nothing reproducible is left that the library or the maps could name.
+    /// No repeatable structure remains that the library or the maps could show.
     Adequate,
     /// At least one effect of the library is missing.
     MissingEffect,
@@ -32,87 +32,87 @@ pub enum Verdict {
     UnexplainedStructure,
 }
 
-/// The answer of `diagnose`.
+/// Result of `diagnose`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Diagnosis {
     pub kind: Kind,
     pub model: Vec<String>,
-    /// Users' effects that the diagnosis knew.
+    /// User effects that the diagnosis included.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<OwnEffect>,
     pub fit: Fit,
     pub residual: ResidualKind,
-    /// Repeatability of the run, of the same kind as the RMS figures. `None` without repeats.
+    /// Noise floor of the run, comparable with the RMS figures. `None` without repeats.
     pub noise_floor_rms: Option<f64>,
     pub noise_floor: NoiseFloor,
     pub verdict: Verdict,
-    /// Why the verdict decides nothing: too little was measured to find fault with the model, so that `adequate` says no more
-    /// than that nothing was found, or the columns contradict each other. With it `jointbench` ends with code 3.
+    /// Why the verdict is undecided: too little data to reject the model, so that `adequate` only means that nothing
+    /// was found, or contradicting columns. `jointbench` then ends with code 3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided: Option<String>,
-    /// The kind of that reason.
+    /// The category of that reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided_reason: Option<UndecidedReason>,
     /// One plain sentence.
     pub summary: String,
-    /// Regions in which the model errs, the worst first.
+    /// Regions with a significant residual, the worst first.
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
-    /// The residual over the two axes where it shows most, where the verdict is `unexplained_structure`.
+    /// The residual over the two axes with most structure, for the verdict `unexplained_structure`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub structure: Option<PairMap>,
-    /// The columns that the summary names as those over which what remains shows most. Empty where none does.
+    /// The columns with most structure, as named in the summary. Empty without structure.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shows_over: Vec<String>,
-    /// Whether structure remains even beside all suggestions.
+    /// Whether structure remains with all suggestions.
     #[serde(default)]
     pub structure_remains: bool,
     /// Missing effects, the most important first. Empty unless the verdict is `missing_effect`.
     pub suggestions: Vec<Suggestion>,
-    /// An effect that may be there beside the suggestions, and change the parameters.
+    /// An effect that may be present in addition to the suggestions and changes the parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imitated: Option<Imitated>,
     pub experiment: Option<Experiment>,
-    /// Effects that were looked for and not found, with what would have been seen.
+    /// Effects that were tested and not found, with their detection limits.
     pub silent: Vec<Silent>,
     /// Effects that this data cannot show.
     pub not_visible: Vec<Invisible>,
-    /// Effects that were tried and left out.
+    /// Effects that were tested and rejected.
     #[serde(default)]
     pub left_out: Vec<LeftOut>,
 }
 
-/// How well the measurement repeats itself.
+/// Noise floor: the repeatability of the measurement.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct NoiseFloor {
     pub rms: Option<f64>,
     pub ci95: Option<[f64; 2]>,
-    /// Where the figure comes from, in words.
+    /// Source of the figure, in words.
     pub source: String,
-    /// Share of the remaining squared error that is the same in every repeat.
+    /// Share of the remaining squared error that is repeatable.
     pub repeatable_share: Option<f64>,
-    /// Of that share. Where it reaches to zero, chance may have made it.
+    /// 95 % interval of that share. If it includes zero, the share is not significant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeatable_ci95: Option<[f64; 2]>,
 }
 
-/// How sure it is that an effect is missing, and whether it matters.
+/// How significant and how relevant a missing effect is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Evidence {
     #[default]
     Strong,
-    /// Sure, and less than [`SMALL_REDUCTION`] of the held-out error.
+    /// Significant, but less than [`SMALL_REDUCTION`] of the validation error.
     Small,
-    /// It may be missing: chance would name one of the library in more than [`STRONG_P_VALUE`] of such runs, or what it takes of the
-    /// held-out error may be nothing.
+    /// Possibly missing: its p-value exceeds [`STRONG_P_VALUE`], or the interval of its reduction of the validation
+    /// error includes zero.
     Weak,
 }
 
 impl Evidence {
     /// From the figures of a suggestion.
     pub fn of(p_value: f64, alone: f64, ci95: Option<[f64; 2]>, together: f64) -> Self {
-        // Effects that mask each other show little alone.
+        // Effects that mask each other have a small individual reduction.
         let may_be_nothing = together <= MASKED_RATIO * alone && ci95.is_some_and(|[low, _]| low <= 0.0);
         match () {
             () if p_value > STRONG_P_VALUE || may_be_nothing => Self::Weak,
@@ -126,59 +126,59 @@ impl Evidence {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Suggestion {
     pub effect: String,
-    /// Held-out error of the model with this effect.
+    /// Validation error of the model with this effect.
     pub validation_rms: f64,
     /// RMS error of the effects alone on the fitted data. `None` of a fit without nuisance terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects_rms: Option<f64>,
     /// 1 − validation_rms / validation_rms of the present model.
     pub error_reduction: f64,
-    /// From the scatter over what was held out. `None` for an effect that is judged elsewhere than where the RMS looks.
+    /// 95 % interval from the scatter over the folds. `None` for an effect of other data than that of the RMS.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_reduction_ci95: Option<[f64; 2]>,
-    /// Change of the Bayesian information criterion over independent pieces; below 0 it speaks for the effect.
+    /// Change of the Bayesian information criterion over independent blocks; a negative value supports the effect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bic_change: Option<f64>,
-    /// Share of the held-out error that the effect takes away beside all other suggestions: what the complete model is
-    /// better by than the complete model without it. Effects that mask each other show little alone.
+    /// Relative reduction of the validation error by this effect in the complete model, compared with the complete
+    /// model without it. Effects that mask each other have a small individual reduction.
     #[serde(default)]
     pub error_reduction_together: f64,
     /// Family-wise, from sign flips of whole blocks.
     pub p_value: f64,
     #[serde(default)]
     pub evidence: Evidence,
-    /// No flip scored as high: the chance is `p_value` at most.
+    /// No flip reached this score, so that `p_value` is an upper limit.
     #[serde(default)]
     pub p_at_most: bool,
-    /// As they are in the complete model, where `discover` ends: beside all other suggestions.
+    /// Parameters in the complete model with all suggestions, where `discover` ends.
     pub parameters: Vec<Parameter>,
     /// Effects that explain this data as well.
     pub confounded_with: Vec<String>,
     pub why: String,
 }
 
-/// A run that would decide what this one leaves open.
+/// A run that would answer the questions that this run leaves open.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Experiment {
     pub procedure: String,
     pub parameters: serde_json::Map<String, serde_json::Value>,
     pub why: String,
-    /// Expected separation of the rivals in standard deviations, before it is run.
+    /// Expected separation of the alternatives in standard deviations.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_z: Option<f64>,
     /// Longest duration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_duration_s: Option<f64>,
-    /// Effects that it tells apart, or shows for the first time.
+    /// Effects that it distinguishes, or makes detectable.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub separates: Vec<String>,
 }
 
-/// An effect that the shape of another one imitates: the error hardly tells whether it is there, a parameter does.
+/// An effect that another one imitates: its absence hardly changes the error, but biases a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Imitated {
     pub effect: String,
-    /// The parameter of the given model that it changes, as `effect.parameter`.
+    /// The biased parameter of the given model, as `effect.parameter`.
     pub parameter: String,
     pub unit: String,
     /// Its value without the effect, and with it.
@@ -186,18 +186,18 @@ pub struct Imitated {
     pub with: f64,
 }
 
-/// An effect that was looked for and not found.
+/// An effect that was tested and not found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Silent {
     pub effect: String,
-    /// RMS of the smallest effect of this kind that would have been found with 80 % probability, in the fit's unit.
+    /// Detection limit: RMS of the smallest effect that is found with 80 % power, in the unit of the fit.
     pub minimum_detectable_rms: f64,
-    /// Within what it was looked for, where that has ends: `1 to 60 waves a turn`.
+    /// Tested range, if it is limited: `1 to 60 waves a turn`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sought: Option<String>,
 }
 
-/// An effect that was tried and is not in the model, though it might be there.
+/// A rejected effect, which may nevertheless be present.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
     pub effect: String,
@@ -211,14 +211,14 @@ pub struct Invisible {
     pub why: String,
 }
 
-/// One step of `discover`. The first is the model that was given.
+/// One step of `discover`. The first one is the given model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     pub added: Option<String>,
-    /// An effect that lost its reason when others came in.
+    /// An effect that later effects made redundant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub removed: Option<String>,
-    /// Effects that explain this data as well as the one that was added, and did not turn out otherwise later.
+    /// Effects that explain this data as well as the added one, in the final model too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub confounded_with: Vec<String>,
     pub model: Vec<String>,
@@ -226,7 +226,7 @@ pub struct Step {
     pub validation_rms: f64,
 }
 
-/// The answer of `discover`.
+/// Result of `discover`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Discovery {
     pub kind: Kind,
@@ -235,11 +235,11 @@ pub struct Discovery {
     pub noise_floor_rms: Option<f64>,
     pub noise_floor: NoiseFloor,
     pub verdict: Verdict,
-    /// Why the verdict decides nothing: too little was measured to find fault with the model, so that `adequate` says no more
-    /// than that nothing was found, or the columns contradict each other. With it `jointbench` ends with code 3.
+    /// Why the verdict is undecided: too little data to reject the model, so that `adequate` only means that nothing
+    /// was found, or contradicting columns. `jointbench` then ends with code 3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided: Option<String>,
-    /// The kind of that reason.
+    /// The category of that reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided_reason: Option<UndecidedReason>,
     pub summary: String,
@@ -247,23 +247,23 @@ pub struct Discovery {
     pub fit: Fit,
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
-    /// The residual over the two axes where it shows most, where the verdict is `unexplained_structure`.
+    /// The residual over the two axes with most structure, for the verdict `unexplained_structure`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub structure: Option<PairMap>,
-    /// The columns that the summary names as those over which what remains shows most. Empty where none does.
+    /// The columns with most structure, as named in the summary. Empty without structure.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shows_over: Vec<String>,
-    /// An effect that may be there beside those of the model, and change the parameters.
+    /// An effect that may be present in addition to those of the model and changes the parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imitated: Option<Imitated>,
     pub experiment: Option<Experiment>,
-    /// Effects that were looked for and not found, with what would have been seen.
+    /// Effects that were tested and not found, with their detection limits.
     #[serde(default)]
     pub silent: Vec<Silent>,
     /// Effects that this data cannot show.
     #[serde(default)]
     pub not_visible: Vec<Invisible>,
-    /// Effects that were tried and left out.
+    /// Effects that were tested and rejected.
     #[serde(default)]
     pub left_out: Vec<LeftOut>,
 }

@@ -4,13 +4,13 @@ use crate::OwnEffect;
 use jointbench_instrument::{Kind, Motion};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// What RMS figures and residuals are made of.
+/// The data of RMS figures and residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ResidualKind {
     /// Filtered and decimated samples.
     Raw,
-    /// Means over short chunks of settled motion.
+    /// Means over short chunks at steady state.
     PlateauMean,
 }
 
@@ -19,12 +19,12 @@ pub enum ResidualKind {
 pub struct Fit {
     pub kind: Kind,
     pub effects: Vec<String>,
-    /// Definitions of the effects that a user wrote: without them the fit means nothing.
+    /// Definitions of the user effects that the fit contains.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<OwnEffect>,
-    /// Root mean square of the residual on the data that was fitted, in `unit`.
+    /// Training error: RMS of the residual on the fitted data, in `unit`.
     pub rms: f64,
-    /// The same on data that did not take part in the fit: every condition is predicted by the others.
+    /// Validation error: RMS on data left out of the fit; the other conditions predict every condition.
     pub validation_rms: f64,
     /// RMS error of the effects alone on the fitted data, as an exported model predicts. `None` of a fit without nuisance terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -34,17 +34,18 @@ pub struct Fit {
     /// ‖residual‖ / ‖measured‖.
     pub relative_error: f64,
     pub parameters: Vec<Parameter>,
-    /// Pairs of parameters that trade off against each other.
+    /// Pairs of parameters with a trade-off.
     pub trade_offs: Vec<TradeOff>,
     /// Condition number of the scaled columns.
     #[serde(deserialize_with = "open_end")]
     pub condition: f64,
-    /// What a user should know, in plain sentences.
+    /// Notes for the user, in plain sentences.
     pub notes: Vec<String>,
     pub preparation: Preparation,
-    /// The same parameters as the effects hold them, to compute the model again.
+    /// The parameters in the structure of the effects, for predictions.
     pub terms: Vec<Term>,
-    /// What stands beside the effects where samples are judged: the run shows it, and no effect of the model says it.
+    /// Nuisance terms for the form error of a run that is judged sample by sample; they belong to the run, not to the
+    /// model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub form_error: Vec<FormErrorTerm>,
     /// `None` in fits of earlier versions.
@@ -63,7 +64,8 @@ pub struct Parameter {
     #[serde(deserialize_with = "open_interval")]
     pub ci95: [f64; 2],
     pub state: ParameterState,
-    /// The state in words, where it is not `ok`; in a diagnosis also what it would be with an effect that the run leaves open.
+    /// The state in words, if it is not `ok`. In a diagnosis also the value with an effect that the run does not
+    /// exclude.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
 }
@@ -72,15 +74,15 @@ pub struct Parameter {
 #[serde(rename_all = "snake_case")]
 pub enum ParameterState {
     Ok,
-    /// The best value lies at or beyond the edge of what is physically sensible.
+    /// The estimate is at a bound of the physically plausible range.
     AtBound,
-    /// The whole interval of a coefficient contradicts physics, or the range that a user gave it.
+    /// The whole interval of a coefficient is outside its physical range, or outside the range of the user.
     Impossible,
-    /// The data does not decide it: the interval is as wide as the value.
+    /// The data does not determine the parameter: its interval is as wide as the value.
     Unidentified,
 }
 
-/// JSON has no infinity: `null` stands for a side without a bound.
+/// JSON has no infinity: `null` represents an unbounded side.
 fn open_interval<'de, D: Deserializer<'de>>(source: D) -> Result<[f64; 2], D::Error> {
     let [low, high] = <[Option<f64>; 2]>::deserialize(source)?;
     Ok([low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)])
@@ -90,7 +92,7 @@ fn open_end<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(source)?.unwrap_or(f64::INFINITY))
 }
 
-/// Two parameters of which the data decides only a combination.
+/// Two parameters of which the data determines only a combination.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TradeOff {
     /// `effect.parameter`.
@@ -99,46 +101,48 @@ pub struct TradeOff {
     pub correlation: f64,
 }
 
-/// How the run was prepared for the fit. A run is prepared in the same way when the fit is evaluated on it.
+/// Preprocessing of the run for the fit. A run is preprocessed in the same way when the fit is evaluated on it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Preparation {
     pub residual: ResidualKind,
     pub sample_rate_hz: f64,
-    /// `None` where nothing was filtered.
+    /// `None` without a filter.
     pub cutoff_hz: Option<f64>,
-    /// By how much the measured velocity came after its position, and was moved back. `None` where it stays as it was measured.
+    /// Corrected delay of the measured velocity against the position. `None` without a correction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity_lag_s: Option<f64>,
     pub decimation: usize,
-    /// The direction of motion as contacts feel it. `None` where it is the sign of the velocity.
+    /// The presliding direction of motion. `None` if the direction is the sign of the velocity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bristles: Option<Bristles>,
-    /// Length of a chunk. A row of a long run in steps is the mean of several neighbours.
+    /// Length of a chunk. In a long run in steps, a row is the mean of several neighbouring chunks.
     pub chunk_s: Option<f64>,
     pub samples: usize,
     /// Rows of the fit: chunks or decimated samples.
     pub rows: usize,
-    /// Independent pieces for validation, intervals and tests.
+    /// Independent blocks for validation, intervals and tests.
     pub blocks: usize,
-    /// Where the segments came from: `column` or `found`.
+    /// Source of the segments: `column` or `found`.
     pub segments_from: String,
-    /// Where the repeats came from: `column`, `found` or `none`.
+    /// Source of the repeats: `column`, `found` or `none`.
     pub repeats_from: String,
 }
 
-/// A direction that turns over a way: contacts that slip at ±1 and contacts that yield exponentially, weighed.
+/// A direction that changes over a displacement: weighted stop operators, which slip at ±1, and Dahl elements with
+/// exponential approach.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Bristles {
-    /// Reaches of the contacts that slip, the shortest first; those that yield have the same but for the shortest [rad].
+    /// Reaches of the stop operators, the shortest first; the Dahl elements have the same without the shortest [rad].
     pub reaches_rad: Vec<f64>,
-    /// Shares of the ones that slip, then of the ones that yield.
+    /// Weights of the stop operators, then of the Dahl elements.
     pub weights: Vec<f64>,
-    /// Without bristles the direction turns within this speed [rad/s].
+    /// Without presliding the direction changes within this speed [rad/s].
     pub band_rad_s: f64,
 }
 
 impl Bristles {
-    /// The one contact that stands for all: its form in the library and its reach, with the ends of what has weight.
+    /// An equivalent single element: its form in the library and its reach, with the range of reaches that have
+    /// weight.
     pub(crate) fn single(&self) -> Option<(&'static str, f64, [f64; 2])> {
         const NONE: f64 = 0.05;
         let n = self.reaches_rad.len();
@@ -151,14 +155,14 @@ impl Bristles {
     }
 }
 
-/// A column beside the effects of a model, where the errors of their formulas live.
+/// A nuisance column for the form error of a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FormErrorTerm {
-    /// `bristle`, `jerk`, `snap` or `load_rate`; or the effect of which it is another form.
+    /// `bristle`, `jerk`, `snap` or `load_rate`, or an effect, for another form of it.
     pub name: String,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub form: String,
-    /// Of another form its shape, else the place of the column.
+    /// Nonlinear parameters for another form, otherwise the place of the column.
     pub shape: Vec<f64>,
     pub linear: Vec<f64>,
 }
@@ -167,55 +171,57 @@ pub struct FormErrorTerm {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Term {
     pub effect: String,
-    /// Which form of the effect fits best.
+    /// The best form of the effect.
     pub form: String,
-    /// Parameters that the effect is not linear in.
+    /// Nonlinear parameters.
     pub shape: Vec<f64>,
-    /// Factors of the effect's columns.
+    /// Coefficients of the effect's columns.
     pub linear: Vec<f64>,
-    /// Names of the factors, then of the shape parameters.
+    /// Names of the coefficients, then of the nonlinear parameters.
     #[serde(default)]
     pub names: Vec<String>,
 }
 
-/// Where a fit holds: what someone needs who uses it far from its run.
+/// Range of validity of a fit, for its use without the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scope {
     pub motion: Motion,
-    /// Factor from the load as the model sees it to the link torque: the gear ratio of friction runs, else 1.
+    /// Factor from the load in model quantities to the link torque: the gear ratio for friction runs, otherwise 1.
     pub load_scale: f64,
-    /// Step of the samples that memory effects were simulated on [s].
+    /// Time step of the samples on which hysteresis effects were simulated [s].
     pub sample_s: f64,
-    /// Signals at the points of the fit, by the names that formulas use.
+    /// Ranges of the signals at the points of the fit, by their formula names.
     pub signals: Vec<SignalRange>,
-    /// Facts of the set-up that turned measured columns into what the model sees. Empty in fits of earlier versions.
+    /// Constants of the set-up that converted measured columns to model quantities. Empty in fits of earlier
+    /// versions.
     #[serde(default)]
     pub constants: Vec<GivenConstant>,
-    /// Error of what remembers in C, fed with the load as the run felt it and not as the fit smoothed it. `None` where the
-    /// fit smoothed nothing that is remembered.
+    /// Error of the hysteresis states in C code, with the measured load instead of the smoothed one. `None` if the
+    /// fit smoothed no signal of a hysteresis state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fed_rms: Option<f64>,
-    /// What effects that remember are on average.
+    /// Mean curves of hysteresis effects.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub means: Vec<MeanCurve>,
-    /// Error of the look-up table, read in straight lines at the points of the run. `None` in fits of earlier versions.
+    /// Error of the look-up table with linear interpolation at the points of the run. `None` in fits of earlier
+    /// versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table_rms: Option<f64>,
 }
 
-/// An effect that remembers as the curve over what it remembers that comes nearest to it on the run.
+/// The mean curve of a hysteresis effect over its signal, fitted to the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeanCurve {
     pub effect: String,
-    /// By the name that formulas use.
+    /// Formula name of the signal.
     pub signal: String,
     pub at: Vec<f64>,
     pub mean: Vec<f64>,
-    /// How far the effect was off it.
+    /// RMS difference between the effect and the curve.
     pub off_rms: f64,
 }
 
-/// A fact of the set-up, by its name in the meta file.
+/// A constant of the set-up, by its name in the meta file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GivenConstant {
     pub name: String,
@@ -228,12 +234,12 @@ pub struct SignalRange {
     pub unit: String,
     pub min: f64,
     pub max: f64,
-    /// What the fit took off it as noise, rms.
+    /// RMS of the noise that the fit removed from the signal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<f64>,
 }
 
-/// A fit on a run that took no part in it.
+/// A fit on a run that was not used for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     pub rms: f64,
@@ -246,9 +252,9 @@ pub struct Evaluation {
     pub relative_error: f64,
     pub rows: usize,
     pub samples: usize,
-    /// Share of the samples that is settled motion, where only that is judged.
+    /// Share of the samples at steady state, if only these are judged.
     pub settled_share: Option<f64>,
-    /// What the error does not say by itself, in plain sentences: columns that are missing, facts that differ from those
-    /// of the fit, signals that leave its ranges.
+    /// Limitations of the error, in plain sentences: missing columns, constants that differ from those of the fit,
+    /// signals outside its ranges.
     pub notes: Vec<String>,
 }

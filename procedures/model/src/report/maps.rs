@@ -1,4 +1,4 @@
-//! The residual over one quantity or two, ready to be drawn.
+//! The residual over one or two quantities, for plots.
 
 use crate::report::fit::ResidualKind;
 use serde::{Deserialize, Serialize};
@@ -11,12 +11,12 @@ pub struct ResidualMaps {
     pub unit: String,
     pub axes: Vec<AxisMap>,
     pub pairs: Vec<PairMap>,
-    /// Where the residual is not noise, the worst first.
+    /// Regions with a significant residual, the worst first.
     pub regions: Vec<Region>,
 }
 
 impl ResidualMaps {
-    /// The map of an axis in each direction, where it has one.
+    /// The map of an axis by direction, if there is one.
     pub fn in_each_direction(&self, axis: &AxisMap) -> Option<&PairMap> {
         self.pairs.iter().find(|pair| pair.x == axis.axis && pair.y == "direction")
     }
@@ -29,23 +29,25 @@ pub struct AxisMap {
     pub axis: String,
     pub unit: String,
     pub bins: Vec<MapBin>,
-    /// Share of the squared residual that a function of this quantity alone takes off data that it was not made from.
+    /// Cross-validated R²: share of the squared residual that a function of this quantity removes on data that was
+    /// not used for it.
     pub removable_share: f64,
 }
 
-/// One bin: mean ± half_width holds the true mean in all bins of all maps at once with the chosen certainty.
+/// One bin: mean ± half_width contains the true mean in all bins of all maps simultaneously, with the chosen
+/// probability.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MapBin {
     pub from: f64,
     pub to: f64,
     pub centre: f64,
     pub mean: f64,
-    /// `None` where fewer than three independent pieces of the run pass: to be hatched, not judged.
+    /// `None` with fewer than three independent blocks: shown hatched, without a band.
     pub half_width: Option<f64>,
     pub rows: usize,
 }
 
-/// Mean residual over two quantities: a heat map. Cells without rows are left out.
+/// Mean residual over two quantities: a heat map without empty cells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PairMap {
     pub x: String,
@@ -55,7 +57,8 @@ pub struct PairMap {
     pub x_bins: Vec<[f64; 2]>,
     pub y_bins: Vec<[f64; 2]>,
     pub cells: Vec<MapCell>,
-    /// Share of the squared residual that a function of the two takes off data that it was not made from.
+    /// Cross-validated R²: share of the squared residual that a function of both quantities removes on data that was
+    /// not used for it.
     pub removable_share: f64,
 }
 
@@ -69,7 +72,7 @@ pub struct MapCell {
     pub rows: usize,
 }
 
-/// A stretch of an axis (and a direction or a second axis) in which the residual is not noise.
+/// A range of an axis (and a direction or a second axis) with a significant residual.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Region {
     pub axis: String,
@@ -79,7 +82,7 @@ pub struct Region {
     /// Simultaneous over all regions of all maps.
     pub ci95: [f64; 2],
     pub samples: usize,
-    /// `positive` or `negative` motion, or both where empty.
+    /// `positive` or `negative` motion, or both if empty.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<String>,
     /// The same in one sentence with figures.

@@ -1,4 +1,4 @@
-//! What comes out: the objects of the contract, ready to be written as JSON.
+//! Report objects for JSON output.
 
 pub(crate) mod comparison;
 pub(crate) mod diagnosis;

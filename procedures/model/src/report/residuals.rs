@@ -1,4 +1,4 @@
-//! The residual with everything that it may depend on, for the pictures of the workbench.
+//! The residual with all quantities that it may depend on, for plots of the workbench.
 
 use crate::report::fit::ResidualKind;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ pub struct Axis {
     pub values: Vec<f64>,
 }
 
-/// Measured against model at the points of the fit. All lists have the same length.
+/// Measured and predicted values at the points of the fit. All lists have the same length.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ResidualSet {
     pub residual: ResidualKind,
@@ -22,10 +22,10 @@ pub struct ResidualSet {
     pub predicted: Vec<f64>,
     /// measured − predicted.
     pub error: Vec<f64>,
-    /// Points that are not part of the fit (ramps, reversals): shown, not judged.
+    /// Points that are not part of the fit (ramps, reversals): shown, but not judged.
     pub held_out: Vec<bool>,
     pub segment: Vec<i64>,
     pub repeat: Vec<i64>,
-    /// Pieces of the run that may be called independent of each other, numbered in their order: what bands count.
+    /// Independent blocks of the run, numbered in their order; the bands are based on them.
     pub piece: Vec<usize>,
 }

@@ -1,7 +1,8 @@
-//! Events that do not come again: a sensor that jumps for a while, grit that passes once.
+//! Events that do not repeat: a sensor that jumps for a while, a particle that passes once.
 //!
-//! No function of any axis predicts them, and in the difference of two repeats they look like noise. What tells them is that a
-//! few moments lie far out of what all the others scatter by, and that no repeat of the same moment does.
+//! No function of an axis predicts an event, and in the difference of two repeats it looks like noise. An event is a
+//! short section whose mean is an outlier of the scatter of all sections, and that is absent in the repeats of the
+//! same moment.
 
 use crate::effect::ShapeSearch;
 use crate::preprocess::Problem;
@@ -11,29 +12,29 @@ use crate::thresholds::EVENT_ERRORS;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Lengths of events that are looked for, in rows.
+/// Tested lengths of events, in rows.
 const LENGTHS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
-/// A stretch that is shorter than so many of its lengths has no scatter of its own.
+/// The scatter of sections of one length is estimated only if there are more than this number times the length.
 const STRETCHES: usize = 16;
-/// Rows on each side of a reversal that belong to it.
-const BESIDE: usize = 2;
-/// More of them are no events.
+/// Rows on each side of a reversal that are excluded.
+const REVERSAL_ROWS: usize = 2;
+/// Largest number of events; more of them are no isolated events.
 const MOST: usize = 40;
-/// Median of the size of a normal figure, in standard deviations.
+/// Median absolute value of a normal variable, in standard deviations.
 const MEDIAN: f64 = 0.6745;
 
-/// A stretch of rows, and what a model leaves there.
+/// A section of rows with the mean residual.
 #[derive(Debug, Clone)]
 pub struct Event {
     pub rows: Range<usize>,
     pub mean: f64,
 }
 
-/// What a model leaves, with the moments that repeat each row.
+/// The residual of a model, with the rows that repeat each row.
 pub struct Events<'p> {
     problem: &'p Problem,
     residual: Vec<f64>,
-    /// Rows that belong to no event, or to one that is known.
+    /// Rows that are excluded: at reversals, at jumps, or in a known event.
     is_out: Vec<bool>,
     repeats: HashMap<usize, Vec<usize>>,
 }
@@ -45,16 +46,16 @@ impl<'p> Events<'p> {
             repeats.entry(*a).or_default().push(*b);
             repeats.entry(*b).or_default().push(*a);
         }
-        // What shows at a reversal belongs to it.
+        // A residual at a reversal belongs to the reversal.
         let direction = problem.view.get(Signal::Direction);
         let mut is_out = vec![false; residual.len()];
         for row in (1..direction.len().min(residual.len())).filter(|row| direction[*row] != direction[row - 1]) {
-            is_out[row.saturating_sub(BESIDE)..(row + BESIDE).min(residual.len())].fill(true);
+            is_out[row.saturating_sub(REVERSAL_ROWS)..(row + REVERSAL_ROWS).min(residual.len())].fill(true);
         }
         Self { problem, residual: residual.to_vec(), is_out, repeats }
     }
 
-    /// A mean over the moment of a jump of the model holds both of its sides.
+    /// Excludes the rows at jumps of the model: a mean over a jump contains both sides.
     pub fn without_jumps(mut self, model: &LinearModel) -> Self {
         let time = self.problem.view.get(Signal::Time);
         let shapes = model.terms.iter().flat_map(|term| term.form.shape.iter().zip(&term.shape));
@@ -76,16 +77,16 @@ impl<'p> Events<'p> {
             if z < EVENT_ERRORS {
                 break;
             }
-            let beside = rows.start.saturating_sub(rows.len())..(rows.end + rows.len()).min(self.residual.len());
-            self.is_out[beside].fill(true);
-            if !self.comes_again(&rows, mean) && !self.begins(&rows) {
+            let surrounding = rows.start.saturating_sub(rows.len())..(rows.end + rows.len()).min(self.residual.len());
+            self.is_out[surrounding].fill(true);
+            if !self.recurs(&rows, mean) && !self.begins(&rows) {
                 found.push(Event { rows, mean });
             }
         }
         found
     }
 
-    /// It lies nearer to the beginning of a recording than it is long.
+    /// Whether the section begins within its own length after the start of a recording.
     fn begins(&self, rows: &Range<usize>) -> bool {
         let chunk = |row: usize| self.problem.view.chunks.get(row).map_or(row, |chunk| chunk.start);
         let mut starts = self.problem.view.starts.iter().map(|start| start.at);
@@ -93,7 +94,7 @@ impl<'p> Events<'p> {
         starts.any(|start| (before..=chunk(rows.start)).contains(&start))
     }
 
-    /// First rows and means of all stretches of a length that hold no row that is out.
+    /// First row and mean of every section of a length without an excluded row.
     fn means(&self, length: usize) -> impl Iterator<Item = (usize, f64)> {
         let (mut sum, mut out) = (0.0, 0usize);
         let next = move |last: usize| {
@@ -106,7 +107,7 @@ impl<'p> Events<'p> {
         (0..self.residual.len()).filter_map(next)
     }
 
-    /// What stretches of a length scatter by, whatever a few of them do. `None` where they are too few.
+    /// Robust scatter of the means of sections of one length. `None` if there are too few.
     fn scale(&self, length: usize) -> Option<f64> {
         let sizes: Vec<f64> = self.means(length).map(|(_, mean)| mean.abs()).collect();
         let scale = crate::preprocess::median(sizes.iter().copied()) / MEDIAN;
@@ -118,8 +119,8 @@ impl<'p> Events<'p> {
         Some((mean.abs() / scale, at..at + length, mean))
     }
 
-    /// At least half of it is there in the moments that repeat it.
-    fn comes_again(&self, rows: &Range<usize>, mean: f64) -> bool {
+    /// Whether at least half of the event is present in the rows that repeat it.
+    fn recurs(&self, rows: &Range<usize>, mean: f64) -> bool {
         let (mut sum, mut count) = (0.0, 0.0);
         for other in rows.clone().filter_map(|row| self.repeats.get(&row)).flatten() {
             (sum, count) = (sum + self.residual[*other], count + 1.0);
@@ -127,7 +128,7 @@ impl<'p> Events<'p> {
         count > 0.0 && sum / count / mean > 0.5
     }
 
-    /// From when to when [s].
+    /// Start and end time of an event [s].
     pub fn span_s(problem: &Problem, event: &Event) -> [f64; 2] {
         let time = problem.view.get(Signal::Time);
         [time[event.rows.start], time[event.rows.end - 1]]
@@ -143,7 +144,7 @@ mod tests {
     use crate::view::View;
     use std::collections::HashSet;
 
-    /// Two repeats of 500 rows with a swing in the middle, whose second one jumps.
+    /// Two repeats of 500 rows with a pulse in the middle; the second repeat always has it.
     fn found(again: f64) -> Vec<Event> {
         let n = 1000;
         let noise = |i: usize| (12.9898 * i as f64).sin() * (78.233 * i as f64).cos();

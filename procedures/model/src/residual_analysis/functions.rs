@@ -1,4 +1,5 @@
-//! Any function of an axis, as columns: hats between knots, in each direction where friction may be one.
+//! Free functions of an axis, as columns: hat functions between knots, separately for each direction where friction
+//! can depend on it.
 
 use crate::preprocess::Problem;
 use crate::preprocess::friction::bristles::quantile;
@@ -8,19 +9,19 @@ use std::f64::consts::TAU;
 const ANGLES: usize = 36;
 const SPEEDS: usize = 13;
 const SLOW_SPEEDS: usize = 4;
-/// The slow ones among the speeds, as shares of the fastest.
+/// Range of the slow speed knots, as shares of the fastest speed.
 const SLOW: [f64; 2] = [0.003, 0.08];
 const LOADS: usize = 10;
 const LEVELS: usize = 8;
 
-/// An axis with the columns that any function of it is a sum of, at the rows.
+/// An axis with the columns whose sums represent any function of it, at the rows.
 pub struct Functions {
-    /// Signals that it is a function of.
+    /// Signals that the function depends on.
     pub over: Vec<Signal>,
     pub columns: Vec<Vec<f32>>,
 }
 
-/// Functions of the axes of a run.
+/// Free functions of the axes of a run.
 pub fn functions(problem: &Problem) -> Vec<Functions> {
     let view = &problem.view;
     let direction = view.get(Signal::Direction);
@@ -79,7 +80,7 @@ fn levels(values: &[f64], count: usize) -> Vec<f64> {
     knots
 }
 
-/// Hats over an angle that goes round.
+/// Periodic hat functions of an angle.
 fn around(angle: &[f64], times: &[f64]) -> Vec<Vec<f64>> {
     let step = TAU / ANGLES as f64;
     let mut hats = vec![vec![0.0; angle.len()]; ANGLES];
@@ -92,7 +93,7 @@ fn around(angle: &[f64], times: &[f64]) -> Vec<Vec<f64>> {
     hats
 }
 
-/// Hats between knots, flat beyond the ends.
+/// Hat functions between knots, constant beyond the ends.
 fn hats(values: &[f64], knots: &[f64], times: &[f64]) -> Vec<Vec<f64>> {
     let mut hats = vec![vec![0.0; values.len()]; knots.len()];
     if knots.len() < 2 {

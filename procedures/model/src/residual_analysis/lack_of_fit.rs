@@ -1,9 +1,9 @@
-//! Lack of fit: what is left over an axis, and whether it is more than whole stretches of motion scatter by.
+//! Lack of fit: structure of the residual over an axis, compared with the scatter of whole stretches of motion.
 
 use crate::Options;
 use crate::preprocess::Prepared;
 use crate::preprocess::design::segments::stretches;
-use crate::preprocess::independent_blocks::{legs, pieces};
+use crate::preprocess::independent_blocks::{independent_blocks, legs};
 use crate::regression::linear_model::LinearModel;
 use crate::report::diagnosis::NoiseFloor;
 use crate::residual_analysis::maps::Maps;
@@ -16,8 +16,8 @@ pub fn structured(maps: &Maps) -> Option<&str> {
     maps.removable().filter(|(_, share)| *share > STRUCTURE_SHARE).map(|(axis, _)| axis)
 }
 
-/// What shows over an axis is what whole stretches of motion differ by, a zero that wanders or lies elsewhere after every
-/// reversal: little of it comes again for sure in another repeat, and no part of any axis stands out of that scatter.
+/// Whether the structure over an axis is only scatter between stretches of motion, such as an offset that drifts or
+/// changes after every reversal. Then little of it is repeatable, and no part of an axis exceeds that scatter.
 pub fn is_scatter(
     now: &LinearModel,
     maps: &Maps,
@@ -27,29 +27,38 @@ pub fn is_scatter(
     options: &Options,
 ) -> bool {
     let surely = floor.repeatable_ci95.is_none_or(|[least, _]| least > 0.0);
-    let comes_again = floor.repeatable_share.is_none_or(|share| share > STRUCTURE_SHARE) && surely;
-    if structured(maps).is_none() || comes_again {
+    let recurs = floor.repeatable_share.is_none_or(|share| share > STRUCTURE_SHARE) && surely;
+    if structured(maps).is_none() || recurs {
         return false;
     }
     let is_known = floor.ci95.is_some();
     match Ar1Offset::of(now, options) {
-        Some(wander) => only_wanders(&wander, residual, prepared, options) || is_known && !maps.stand_out(),
-        None => is_known && !(maps.stand_out_beside_time() && stands_out_within_legs(residual, prepared, options)),
+        Some(random_walk) => {
+            is_random_walk_only(&random_walk, residual, prepared, options) || is_known && !maps.is_significant()
+        }
+        None => {
+            is_known && !(maps.is_significant_beyond_time() && is_significant_within_legs(residual, prepared, options))
+        }
     }
 }
 
-/// Nothing shows over any axis but a zero that wanders over time: a little everywhere, and no figure of the model leaps.
-fn only_wanders(wander: &Ar1Offset, residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
-    let beside = Maps::new(prepared, wander.taken_off(residual), options);
-    structured(&beside).is_none() && !beside.stand_out() && !wander.is_heavy_tailed() && !wander.leaps(options)
+/// Whether a random-walk offset explains all structure: no axis shows structure without it, its innovations are not
+/// heavy-tailed, and no coefficient has a changepoint.
+fn is_random_walk_only(random_walk: &Ar1Offset, residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
+    let remaining = Maps::new(prepared, random_walk.without_offset(residual), options);
+    structured(&remaining).is_none()
+        && !remaining.is_significant()
+        && !random_walk.is_heavy_tailed()
+        && !random_walk.has_changepoint(options)
 }
 
-/// Where legs are too few to tell what they scatter by, some part of an axis stands out within them, each with a zero of its own.
-fn stands_out_within_legs(residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
+/// Whether a part of an axis is significant within legs, with a separate offset for each. The test only applies with
+/// too few legs to estimate their scatter; otherwise the result is true.
+fn is_significant_within_legs(residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
     let problem = &prepared.main;
     let leg = legs(problem);
-    if pieces(problem, 1).0 == leg {
+    if independent_blocks(problem, 1).0 == leg {
         return true;
     }
-    Maps::new(prepared, within(residual, &stretches(&leg)), options).stand_out_beside_time()
+    Maps::new(prepared, within(residual, &stretches(&leg)), options).is_significant_beyond_time()
 }

@@ -1,4 +1,4 @@
-//! What a model leaves: over which axes it shows, how much of it is noise, and whether it is a lack of fit.
+//! Residual analysis: the axes with structure, the noise floor, and lack of fit.
 
 pub(crate) mod events;
 pub(crate) mod functions;

@@ -1,6 +1,6 @@
-//! How well the measurement repeats itself, from rows that should be equal but for noise.
+//! Noise floor (pure error) from pairs of rows of the same condition in different repeats.
 
-use crate::preprocess::independent_blocks::pieces;
+use crate::preprocess::independent_blocks::independent_blocks;
 use crate::preprocess::{Prepared, Problem};
 use crate::report::diagnosis::NoiseFloor;
 use crate::residual_analysis::events::Event;
@@ -9,14 +9,15 @@ use crate::words::{figure, spoken};
 use jointbench_instrument::Kind;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Fewer pairs than these have no scatter that could be told.
+/// Fewer pairs than these do not estimate a scatter.
 const FEWEST: usize = 8;
 
-/// From the residual, not from the response, so that small differences of speed or load between repeats cancel.
+/// Computed from the residual, not from the response, so that small differences of speed or load between repeats
+/// cancel.
 ///
-/// Pure error of pairs, σ² = Σ (e_a − e_b)²/2 over their number; the mean product of the same pairs is what repeats
-/// itself, whatever the noise within a repeat remembers. What came there on different ways is equal only in a model that
-/// `remembers`. `events` do not come again: what they differ by is no repeatability.
+/// The pure error of the pairs is σ² = Σ (e_a − e_b)²/2 over their number. The mean product of the same pairs is the
+/// repeatable part, for any correlation of the noise within a repeat. Pairs with a different loading history count
+/// only if the model `remembers`. `events` do not repeat, so that they do not count for the repeatability.
 pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool, events: &[Event]) -> NoiseFloor {
     let problem = &prepared.main;
     let is_equal = |replicate_pairs: &(usize, usize)| remembers || !problem.different_history.contains(replicate_pairs);
@@ -26,15 +27,15 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool, event
     if replicate_pairs.len() < FEWEST {
         return NoiseFloor { source: unknown(prepared), ..NoiseFloor::default() };
     }
-    let (all, of_piece) = Pairs::sums(problem, residual, &replicate_pairs);
-    // What depends on an angle comes again where that does.
+    let (all, of_block) = Pairs::sums(problem, residual, &replicate_pairs);
+    // Structure over an angle repeats only at the same angle.
     let met: Vec<_> = replicate_pairs.iter().copied().filter(|pair| !problem.different_angle.contains(pair)).collect();
     let elsewhere = replicate_pairs.len() - met.len();
     let of_met = (elsewhere > 0 && met.len() >= FEWEST).then(|| Pairs::sums(problem, residual, &met));
-    let (again, again_of) = of_met.as_ref().map_or((&all, &of_piece), |(again, of)| (again, of));
+    let (again, again_of) = of_met.as_ref().map_or((&all, &of_block), |(again, of)| (again, of));
     NoiseFloor {
         rms: Some((all.noise / all.count).sqrt()),
-        ci95: interval(&all, &of_piece),
+        ci95: interval(&all, &of_block),
         source: format!(
             "residuals of the complete model in {} pairs of the same condition and phase in different repeats ({}{})",
             replicate_pairs.len(),
@@ -50,10 +51,10 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool, event
     }
 }
 
-/// Sums over pairs of moments.
+/// Sums over pairs of rows.
 #[derive(Clone, Default)]
 struct Pairs {
-    /// Halves of the squared differences.
+    /// Half squared differences.
     noise: f64,
     /// Products.
     common: f64,
@@ -61,18 +62,18 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// Of all pairs, and of those that touch each piece of the run.
+    /// Sums over all pairs, and over the pairs that include each block of the run.
     fn sums(problem: &Problem, residual: &[f64], replicate_pairs: &[(usize, usize)]) -> (Self, Vec<Self>) {
-        let (piece, count) = pieces(problem, 1);
-        let (mut all, mut of_piece) = (Pairs::default(), vec![Pairs::default(); count]);
+        let (block, count) = independent_blocks(problem, 1);
+        let (mut all, mut of_block) = (Pairs::default(), vec![Pairs::default(); count]);
         for (a, b) in replicate_pairs {
             let half = (residual[*a] - residual[*b]).powi(2) / 2.0;
             let pair = Pairs { noise: half, common: residual[*a] * residual[*b], count: 1.0 };
             all.add(&pair, 1.0);
-            [a, b].into_iter().for_each(|row| of_piece[piece[*row]].add(&pair, 1.0));
+            [a, b].into_iter().for_each(|row| of_block[block[*row]].add(&pair, 1.0));
         }
-        of_piece.retain(|pairs| pairs.count > 0.0);
-        (all, of_piece)
+        of_block.retain(|pairs| pairs.count > 0.0);
+        (all, of_block)
     }
 
     fn add(&mut self, other: &Pairs, times: f64) {
@@ -81,34 +82,34 @@ impl Pairs {
         self.count += times * other.count;
     }
 
-    fn without(&self, piece: &Pairs) -> Pairs {
+    fn without(&self, block: &Pairs) -> Pairs {
         let mut rest = self.clone();
-        rest.add(piece, -1.0);
+        rest.add(block, -1.0);
         rest
     }
 
-    /// Of the squared residual, what both of a pair have in common.
+    /// Share of the squared residual that both rows of the pairs have in common.
     fn share(&self) -> f64 {
         let total = self.common.max(0.0) + self.noise;
         if total > 0.0 { self.common / total } else { 0.0 }
     }
 }
 
-/// 95 % interval of the share in common: jackknife over pieces.
-fn share_interval(all: &Pairs, of_piece: &[Pairs]) -> [f64; 2] {
+/// 95 % interval of the common share, by a jackknife over blocks.
+fn share_interval(all: &Pairs, of_block: &[Pairs]) -> [f64; 2] {
     let whole = all.share();
-    let reach = reach(of_piece.iter().map(|piece| all.without(piece).share() - whole));
+    let reach = reach(of_block.iter().map(|block| all.without(block).share() - whole));
     [(whole - reach).max(0.0), (whole.max(0.0) + reach).min(1.0)]
 }
 
-/// Half of a 95 % interval from what a figure changes by without each piece.
+/// Half width of a 95 % interval, from the changes of a figure without each block.
 fn reach(steps: impl ExactSizeIterator<Item = f64>) -> f64 {
     let groups = steps.len().max(2) as f64;
     let spread = (groups - 1.0) / groups * steps.map(|step| step * step).sum::<f64>();
     StudentsT::new(0.0, 1.0, groups - 1.0).map_or(2.0, |t| t.inverse_cdf(0.975)) * spread.sqrt()
 }
 
-/// Why there is no floor.
+/// Why there is no noise floor.
 fn unknown(prepared: &Prepared) -> String {
     let problem = &prepared.main;
     if let Some(unlike) = problem.unlike {
@@ -135,17 +136,17 @@ fn unknown(prepared: &Prepared) -> String {
     source.to_owned()
 }
 
-/// 95 % interval of the root: jackknife over pieces, because the pairs of one are not independent of each other, on the
-/// logarithm, because a variance is skew. Where a few pieces chance to agree it is what so many independent pairs of normal
-/// noise would scatter by, 2/n in the logarithm of their variance: no noise is known better. `None` where a few pieces hold
-/// all of it: nobody can say how well it is known then.
-fn interval(all: &Pairs, of_piece: &[Pairs]) -> Option<[f64; 2]> {
+/// 95 % interval of the RMS, by a jackknife over blocks, because the pairs of one block are not independent. It is
+/// computed on the logarithm, because a variance has a skewed distribution. It is at least as wide as for so many
+/// independent pairs of normal noise, whose log variance scatters by 2/n: a few blocks can agree by chance. `None` if
+/// a few blocks contain all the noise, because then its accuracy is unknown.
+fn interval(all: &Pairs, of_block: &[Pairs]) -> Option<[f64; 2]> {
     let whole = all.noise / all.count;
-    let without = |piece: &Pairs| {
-        let rest = all.without(piece);
+    let without = |block: &Pairs| {
+        let rest = all.without(block);
         (rest.noise.max(0.0) / rest.count.max(1.0)).max(1e-12 * whole)
     };
-    let reach = reach(of_piece.iter().map(|piece| (without(piece) / whole).ln())).max(1.96 * (2.0 / all.count).sqrt());
-    let factor = if whole > 0.0 { (0.5 * reach).min(50.0).exp() } else { 1.0 };
-    (factor <= FLOOR_INTERVAL_RATIO).then(|| [whole.sqrt() / factor, whole.sqrt() * factor])
+    let reach = reach(of_block.iter().map(|block| (without(block) / whole).ln())).max(1.96 * (2.0 / all.count).sqrt());
+    let ratio = if whole > 0.0 { (0.5 * reach).min(50.0).exp() } else { 1.0 };
+    (ratio <= FLOOR_INTERVAL_RATIO).then(|| [whole.sqrt() / ratio, whole.sqrt() * ratio])
 }

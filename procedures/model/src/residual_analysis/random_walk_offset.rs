@@ -1,8 +1,8 @@
-//! A zero that wanders over time, and what shows beside it.
+//! A random-walk offset that drifts over time (AR(1)), and the structure of a residual without it.
 //!
-//! What wanders at random is the sum of all that happened before. Neighbours in time resemble each other, and whatever changes
-//! slowly, a drift, a temperature or an angle that is passed one way, looks a little like it: many stretches of motion, and few
-//! independent ones. Each of them is news only by what those before it do not tell.
+//! A random walk is correlated over time. Anything that changes slowly resembles it: a drift, a temperature, or an
+//! angle that is passed in one direction. There are many stretches of motion, but few independent ones. Each stretch
+//! adds only the innovation that the earlier ones do not predict.
 
 use crate::Options;
 use crate::effect::Regime;
@@ -12,29 +12,29 @@ use crate::regression::linear_model::{LinearModel, Term};
 use crate::signal::Signal;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Sizes of the wandering that are tried, as variances beside what is new in every block.
+/// Tested variances of the drift, relative to the variance that is new in every block.
 const RATIOS: [f64; 6] = [0.1, 0.4, 1.6, 6.4, 25.6, 102.4];
 
-/// Moments that are tried for a leap.
+/// Largest number of tested changepoints.
 const MOST_PLACES: usize = 200;
 
-/// Kurtosis of a normal law, and so many standard errors √(24/n) beyond it is no chance.
+/// Kurtosis of a normal distribution, and the significance limit above it in standard errors √(24/n).
 const NORMAL_KURTOSIS: f64 = 3.0;
 const EVENTS: f64 = 4.0;
 
-/// What the blocks of a run differ by, means over each, in the order of time.
+/// Block means of a run in the order of time, with the fitted AR(1) offset.
 pub struct Ar1Offset<'t, 'p> {
     now: &'t LinearModel<'p>,
-    /// From the middle of one block to that of the next [s], the first of them none.
+    /// Time from the middle of the previous block to that of this block [s]; zero for the first block.
     gaps: Vec<f64>,
     memory: Ar1Parameters,
-    /// Minus twice the logarithm of how likely the blocks are with this memory.
+    /// −2 log likelihood of the blocks with these parameters.
     neg2_log_likelihood: f64,
-    /// Degrees of freedom that the model leaves.
+    /// Residual degrees of freedom.
     free: f64,
 }
 
-/// How much wanders, and for how long that is remembered [s].
+/// Relative variance and correlation time [s] of the drift.
 #[derive(Clone, Copy)]
 struct Ar1Parameters {
     ratio: f64,
@@ -43,15 +43,15 @@ struct Ar1Parameters {
 
 const NOTHING: Ar1Parameters = Ar1Parameters { ratio: 0.0, time_s: 1.0 };
 
-/// One step of a filter that expects of a block what those before it tell.
+/// One step of a Kalman filter that predicts a block from the earlier ones.
 struct Step {
     decay: f64,
     gain: f64,
-    /// Variance of the news.
+    /// Variance of the innovation.
     variance: f64,
 }
 
-/// What turns means of blocks into news.
+/// Filter that converts block means to innovations.
 struct Filter {
     steps: Vec<Step>,
     /// Logarithm of the product of the variances.
@@ -82,7 +82,7 @@ impl Filter {
         values.iter().zip(&self.steps).map(new).collect()
     }
 
-    /// What of block means wanders, as those before and after tell together.
+    /// Smoothed offset of the blocks, estimated from all blocks before and after each one.
     fn smooth(&self, values: &[f64]) -> Vec<f64> {
         let mut known = 0.0;
         let forward = |(value, step): (&f64, &Step)| {
@@ -92,7 +92,8 @@ impl Filter {
         let mut smooth: Vec<f64> = values.iter().zip(&self.steps).map(forward).collect();
         for i in (1..smooth.len()).rev() {
             let next = &self.steps[i];
-            // What is known of a block is known to `gain`, and of the next one `variance - 1` is expected.
+            // The estimate of a block has the variance `gain`; the prediction of the next block has the variance
+            // `variance - 1`.
             let weight = next.decay * self.steps[i - 1].gain / (next.variance - 1.0).max(f64::MIN_POSITIVE);
             smooth[i - 1] += weight * (smooth[i] - next.decay * smooth[i - 1]);
         }
@@ -101,7 +102,7 @@ impl Filter {
 }
 
 impl<'t, 'p> Ar1Offset<'t, 'p> {
-    /// `None` where neighbouring blocks do not resemble each other beyond chance.
+    /// `None` if neighbouring blocks are not significantly correlated.
     pub fn of(now: &'t LinearModel<'p>, options: &Options) -> Option<Self> {
         let problem = now.problem;
         let time = means(&problem.reduce.apply(problem.view.get(Signal::Time).to_vec()), problem);
@@ -121,8 +122,8 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
         Some(Self { now, gaps, memory, neg2_log_likelihood: least, free })
     }
 
-    /// What an effect of the model gains in likelihood from block to block, where the wandering explains that as well: the
-    /// best of so many `effects` would gain as much.
+    /// Gain in log likelihood by a term of the model, if it is not significant against the drifting offset. The test
+    /// corrects for the best of this number of `effects`.
     pub fn gain(&self, term: &Term, effects: usize, options: &Options) -> Option<f64> {
         if term.effect.regime() == Regime::Hysteresis {
             return None;
@@ -134,8 +135,8 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
         (!is_more(less, term.size(), effects as f64, options)).then_some(less)
     }
 
-    /// What a model leaves, without what wanders.
-    pub fn taken_off(&self, residual: &[f64]) -> Vec<f64> {
+    /// The residual of a model without the drifting offset.
+    pub fn without_offset(&self, residual: &[f64]) -> Vec<f64> {
         let problem = self.now.problem;
         let smooth = Filter::new(self.memory, &self.gaps).smooth(&means(residual, problem));
         let mut block = 0;
@@ -146,7 +147,7 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
         (0..residual.len()).map(of_row).collect()
     }
 
-    /// What the model leaves of the news, and the columns that it has taken off.
+    /// Innovations of the residual, and the basis of the model's columns.
     fn left(&self, filter: &Filter) -> (Basis, Vec<f64>) {
         let columns = of_blocks(&self.now.tangent(), self.now.problem);
         let basis = Basis::of(&columns.iter().map(|column| filter.innovations(column)).collect::<Vec<_>>());
@@ -154,9 +155,9 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
         (basis, left)
     }
 
-    /// A figure of the model leaps at a moment: beside that, the blocks are likelier than the best of so many leaps would
-    /// make them.
-    pub fn leaps(&self, options: &Options) -> bool {
+    /// Whether a coefficient of the model has a changepoint: with a step at one moment the blocks are significantly
+    /// more likely, corrected for all tested steps.
+    pub fn has_changepoint(&self, options: &Options) -> bool {
         let columns = self.now.columns();
         let figures: Vec<Vec<f64>> = columns.iter().map(|column| means(column, self.now.problem)).collect();
         let places: Vec<usize> = (1..self.gaps.len()).step_by(self.gaps.len().div_ceil(MOST_PLACES)).collect();
@@ -165,8 +166,9 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
             let filter = Filter::new(memory, &self.gaps);
             let (basis, left) = self.left(&filter);
             let taken = |figure: &[f64], place: usize| {
-                let leap: Vec<f64> = (0..figure.len()).map(|i| if i < place { 0.0 } else { figure[i] }).collect();
-                let own = basis.rest(&filter.innovations(&leap));
+                let step_column: Vec<f64> =
+                    (0..figure.len()).map(|i| if i < place { 0.0 } else { figure[i] }).collect();
+                let own = basis.rest(&filter.innovations(&step_column));
                 dot(&own, &left).powi(2) / dot(&own, &own).max(f64::MIN_POSITIVE)
             };
             let all = figures.iter().flat_map(|figure| places.iter().map(|place| taken(figure, *place)));
@@ -175,8 +177,8 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
         })
     }
 
-    /// What is new comes in a few events, a leap or a bump, and not everywhere a little: its kurtosis is not that of a normal
-    /// law.
+    /// Whether the innovations consist of a few events, such as a step or a bump: their kurtosis exceeds that of a
+    /// normal distribution.
     pub fn is_heavy_tailed(&self) -> bool {
         let (_, news) = self.left(&Filter::new(self.memory, &self.gaps));
         let n = news.len() as f64;
@@ -185,7 +187,7 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
     }
 }
 
-/// A gain in likelihood by so many figures is more than the best of so many chances.
+/// Whether a gain in log likelihood by this number of parameters is significant, corrected for the number of tests.
 fn is_more(gain: f64, figures: usize, chances: f64, options: &Options) -> bool {
     ChiSquared::new(figures as f64).is_ok_and(|law| chances * law.sf(gain.max(0.0)) <= options.alpha)
 }
@@ -203,7 +205,7 @@ fn means(values: &[f64], problem: &Problem) -> Vec<f64> {
     problem.block.chunk_by(|a, b| a == b).map(mean).collect()
 }
 
-/// The memory with which the blocks are most likely beside columns.
+/// The AR(1) parameters with the largest likelihood, given the columns.
 fn most_likely(columns: &[Vec<f64>], response: &[f64], gaps: &[f64], free: f64) -> (Ar1Parameters, f64) {
     let whole: f64 = gaps.iter().sum();
     let times = std::iter::successors(Some(2.0 * whole / gaps.len() as f64), |time| Some(2.0 * time));
@@ -218,7 +220,7 @@ fn most_likely(columns: &[Vec<f64>], response: &[f64], gaps: &[f64], free: f64) 
         .unwrap_or((NOTHING, f64::INFINITY))
 }
 
-/// Minus twice the logarithm of how likely the blocks are beside columns.
+/// −2 log likelihood of the blocks, given the columns.
 fn neg2_log_likelihood(columns: &[Vec<f64>], response: &[f64], filter: &Filter, free: f64) -> f64 {
     let columns: Vec<Vec<f64>> = columns.iter().map(|column| filter.innovations(column)).collect();
     let left = Basis::of(&columns).rest(&filter.innovations(response));

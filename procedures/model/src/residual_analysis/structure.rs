@@ -1,4 +1,5 @@
-//! What no effect of the library takes: functions of an axis, a line in time, what neighbouring moments have in common.
+//! Unexplained structure that no effect of the library explains: functions of an axis, a spectral line in time, and
+//! correlation of neighbouring moments.
 
 use crate::linear::added_columns::Added;
 use crate::linear::basis::dot;
@@ -16,14 +17,14 @@ use crate::thresholds::{LEFT_ERRORS, LEFT_SHARE, TIME_ERRORS};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Strengths with which functions are held near zero.
+/// Tested ridge strengths of the free functions.
 const RIDGES: [f64; 3] = [1e-3, 1e-2, 1e-1];
-/// Residuals count up to so many robust standard deviations where time is looked at.
+/// Residuals are clipped at this number of robust standard deviations for the tests over time.
 const MOST_DEVIATIONS: f64 = 6.0;
-/// Lines are sought up to this frequency [Hz], in so many steps between two of a spectrum.
+/// Highest frequency of a tested spectral line [Hz], and the number of steps between two lines of the spectrum.
 const FASTEST_LINE_HZ: f64 = 2.0;
 const LINE_STEPS: i32 = 4;
-/// Neighbouring means are over this time [s].
+/// Averaging time of neighbouring means [s].
 const MEANS_S: f64 = 1.0;
 
 /// Structure that remains.
@@ -31,13 +32,13 @@ const MEANS_S: f64 = 1.0;
 pub struct Left {
     /// Signals over which it shows.
     pub over: Vec<Signal>,
-    /// Share of the held-out squared error that a function of them would take.
+    /// Share of the squared validation error that a function of these signals explains.
     pub share: f64,
-    /// A function of them takes more from the given model than all effects that were added.
+    /// Whether a function of these signals explains more than all added effects together.
     pub is_all: bool,
 }
 
-/// What remains, where it is more than chance. `end` is the last model of a search that began at `start`.
+/// The significant unexplained structure. `end` is the last model of a search from `start`.
 pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> Option<Left> {
     let model = &end.main;
     let ridge = &solution.ridge;
@@ -73,22 +74,24 @@ fn taken(ridge: &BlockedRidge, axis: &Functions) -> Vec<f64> {
     let scale = |c: &Vec<f32>| c.iter().map(|v| v * v).sum::<f32>() > 0.0;
     let columns: Vec<&Vec<f32>> = axis.columns.iter().filter(|c| scale(c)).collect();
     let added = Added::new(ridge, &columns);
-    let of = |strength: &f64| added.gains(*strength, |_| true).iter().map(|gain| gain.held_out).collect::<Vec<f64>>();
+    let of = |strength: &f64| {
+        added.gains(*strength, |_| true).iter().map(|gain| gain.validation_losses).collect::<Vec<f64>>()
+    };
     let all = RIDGES.iter().map(of);
     all.max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum())).unwrap_or_default()
 }
 
-/// Gains of blocks as a share of the error, and in their own standard errors.
+/// Gains of blocks as a share of the error, and their sum in standard errors.
 fn sized(gains: &[f64], ridge: &BlockedRidge) -> (f64, f64) {
     (gains.iter().sum::<f64>() / ridge.loss().max(f64::MIN_POSITIVE), errors(gains))
 }
 
-/// One function beside the given model predicts held-out data clearly better than the whole last model does.
+/// Whether the given model with one free function has a significantly smaller validation error than the last model.
 fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> bool {
     let plain = &start.main;
     let mut columns = effect_columns(plain);
     let Some(form_error) = plain.problem.form_error.as_deref() else { return false };
-    // What an added effect is no error of a formula any more.
+    // Form error that an added effect represents is no nuisance here.
     let is_added = |id: &str| end.main.contains(id) && !plain.contains(id);
     let nuisance = nuisance(plain, form_error, |lives| match lives {
         Lives::Jerk => is_added(DELAY),
@@ -103,14 +106,15 @@ fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, so
     with.iter().sum::<f64>() < (1.0 - LEFT_SHARE) * solution.ridge.loss() && errors(&better) > LEFT_ERRORS
 }
 
-/// A weighted residual without what stands far out.
+/// A weighted residual with clipped outliers.
 fn clipped(residual: &[f64], weight: &[f64]) -> Vec<f64> {
     let weighted: Vec<f64> = residual.iter().zip(weight).map(|(e, w)| e * w).collect();
     let most = MOST_DEVIATIONS * 1.4826 * quantile(weighted.iter().map(|e| e.abs()), 0.5);
     weighted.into_iter().map(|e| e.clamp(-most, most)).collect()
 }
 
-/// Held-out gain of the strongest line in time, and its standard errors.
+/// Cross-validated error reduction by the strongest spectral line in time, as a share of the squared residual and in
+/// standard errors.
 fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
     let blocks = ranges(&problem.block);
     let whole_s = values.len() as f64 * row_s;
@@ -149,9 +153,12 @@ fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
         let all = sums.iter().fold([0.0; 5], |a, b| std::array::from_fn(|k| a[k] + b[k]));
         let gains = sums.iter().map(|own| {
             let rest: [f64; 5] = std::array::from_fn(|k| all[k] - own[k]);
-            let factors = Cholesky::new(&[rest[0], rest[1], rest[1], rest[2]], 2, 1e-9).solve(&rest[3..]);
-            let there = [own[0] * factors[0] + own[1] * factors[1], own[1] * factors[0] + own[2] * factors[1]];
-            2.0 * (factors[0] * own[3] + factors[1] * own[4]) - dot(&factors, &there)
+            let coefficients = Cholesky::new(&[rest[0], rest[1], rest[1], rest[2]], 2, 1e-9).solve(&rest[3..]);
+            let there = [
+                own[0] * coefficients[0] + own[1] * coefficients[1],
+                own[1] * coefficients[0] + own[2] * coefficients[1],
+            ];
+            2.0 * (coefficients[0] * own[3] + coefficients[1] * own[4]) - dot(&coefficients, &there)
         });
         let gains: Vec<f64> = gains.collect();
         (gains.iter().sum::<f64>() / square.max(f64::MIN_POSITIVE), errors(&gains))
@@ -159,8 +166,8 @@ fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
     tried.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
 }
 
-/// Covariance of neighbouring means of a residual and of one that changes sign with the direction, as a share of its variance,
-/// and its standard errors.
+/// Covariance of neighbouring means as a share of the variance, and in standard errors: for the residual, and for the
+/// residual with the sign of the direction.
 fn neighbours(values: &[f64], direction: &[f64], row_s: f64) -> [(f64, f64); 2] {
     let length = ((MEANS_S / row_s).round() as usize).max(1);
     let of = |values: Vec<f64>| {

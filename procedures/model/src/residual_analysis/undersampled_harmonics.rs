@@ -1,15 +1,15 @@
-//! Waves that pass faster than samples follow.
+//! Harmonics that pass faster than the samples resolve.
 
 use crate::linear::basis::Basis;
 use crate::preprocess::design::segments::stretches;
 use crate::regression::linear_model::LinearModel;
 use crate::thresholds::SAMPLES_FOLLOW_RAD;
 
-/// Fewer rows of a stretch do not tell a wave from noise.
+/// Fewer rows in a stretch do not separate a wave from noise.
 const FEWEST: usize = 10;
 
-/// What a model of settled motion leaves, without the waves of its own effects where these pass that fast. What of a wave
-/// reaches the motor's current there is up to inertia and the drive's control, and says nothing of the joint.
+/// The residual of a steady-state model without the waves of its own effects where they pass too fast. The share of a
+/// fast wave in the motor current depends on the inertia and the drive's control, not on the joint.
 pub fn without_swift_waves(now: &LinearModel, mut residual: Vec<f64>) -> Vec<f64> {
     let view = &now.problem.view;
     for term in &now.terms {

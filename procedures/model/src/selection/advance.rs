@@ -3,7 +3,7 @@
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::forward_step::ScoredCandidate;
 
-/// What was added or removed, and the model after it.
+/// An added or removed effect, and the model after this step.
 pub struct SelectionStep<'p> {
     pub added: Option<ScoredCandidate<'p>>,
     pub removed: Option<&'p str>,
@@ -11,7 +11,7 @@ pub struct SelectionStep<'p> {
     pub after: TwoStageModel<'p>,
 }
 
-/// The steps from a model to the last one, each told as soon as it is made.
+/// The steps from the first model to the last one. `on_advance` gets each step as soon as it is made.
 pub struct Path<'a, 'p> {
     pub start: TwoStageModel<'p>,
     pub advances: Vec<SelectionStep<'p>>,

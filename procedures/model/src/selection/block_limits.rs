@@ -1,4 +1,4 @@
-//! What was looked for and not found, and how large it would have been.
+//! Detection limits of effects that the evidence search did not find.
 
 use crate::Options;
 use crate::effect::Regime;
@@ -7,7 +7,7 @@ use crate::preprocess::form_error::Lives;
 use crate::preprocess::friction::bristles::quantile;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::visible;
-use crate::regression::solution::{DELAY, Solution, effect_factor, without};
+use crate::regression::solution::{DELAY, Solution, effect_coefficient, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::refused::least_share;
@@ -15,9 +15,9 @@ use crate::thresholds::{DELAY_ROWS, DETECTION_POWER};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The smallest size of each effect that is not in the model which would have been named with 80 % power, in the middle of its
-/// forms.
-pub fn silences<'p>(
+/// Detection limit of each effect that is not in the model: the smallest size that is found with 80 % power, as the
+/// median over the forms of the effect.
+pub fn detection_limits<'p>(
     end: &TwoStageModel<'p>,
     solution: &Solution,
     library: &CandidateSet<'p>,
@@ -28,12 +28,12 @@ pub fn silences<'p>(
     let blocks = solution.ridge.blocks.len() as f64;
     let chance = options.alpha / (2.0 * open.len().max(1) as f64);
     let critical = StudentsT::new(0.0, 1.0, blocks - 1.0).map_or(3.0, |law| law.inverse_cdf(1.0 - chance));
-    let late = without(&end.main, solution, Lives::Jerk);
-    let bent = without(&end.main, solution, Lives::Bristle);
+    let without_jerk = without(&end.main, solution, Lives::Jerk);
+    let without_bristle = without(&end.main, solution, Lives::Bristle);
     let size = |form: &&Regressor<'p>| {
         let ridge = match form.effect.regime() {
-            Regime::Hysteresis => &bent,
-            _ if form.id() == DELAY => &late,
+            Regime::Hysteresis => &without_bristle,
+            _ if form.id() == DELAY => &without_jerk,
             _ => &solution.ridge,
         };
         Some((form.id(), smallest(form, ridge, critical, end, solution)?))
@@ -46,7 +46,7 @@ pub fn silences<'p>(
     sizes.chunk_by(|a, b| a.0 == b.0).map(of_effect).collect()
 }
 
-/// RMS of the smallest effect of a form that would have been named.
+/// RMS of the smallest effect of this form that is found.
 fn smallest(
     form: &Regressor,
     ridge: &BlockedRidge,
@@ -55,21 +55,21 @@ fn smallest(
     solution: &Solution,
 ) -> Option<f64> {
     let added = visible(ridge, form)?;
-    let scatter = added.scatter(&added.factors());
+    let scatter = added.scatter(&added.coefficients());
     let share = least_share(form.effect);
     let least = share / (1.0 - share) * ridge.loss();
     let delay = || {
         let form_error = end.main.problem.form_error.as_deref()?;
-        Some(effect_factor(&end.main, solution, "inertia")?.abs() * DELAY_ROWS * form_error.sample_s)
+        Some(effect_coefficient(&end.main, solution, "inertia")?.abs() * DELAY_ROWS * form_error.sample_s)
     };
     let bound = if form.id() == DELAY { delay()? } else { 0.0 };
     let k = added.size;
     let of_column = |(at, own): (usize, f64)| {
         let error = scatter[at * k + at].sqrt() / own;
-        let factor = (critical * error).max((least / own).sqrt()).max(bound) + DETECTION_POWER * error;
+        let coefficient = (critical * error).max((least / own).sqrt()).max(bound) + DETECTION_POWER * error;
         let column = &form.columns[at];
         let square = column.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>() / column.len().max(1) as f64;
-        factor * square.sqrt()
+        coefficient * square.sqrt()
     };
     added.squares().enumerate().map(of_column).reduce(f64::min).filter(|rms| rms.is_finite())
 }

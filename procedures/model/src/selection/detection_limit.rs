@@ -1,4 +1,4 @@
-//! What was looked for and not found, and how large it would have been.
+//! Detection limits of effects that the staged search did not find.
 
 use crate::linear::basis::dot;
 use crate::regression::candidates::{CandidateSet, Regressor};
@@ -10,22 +10,22 @@ use crate::stats::permutation_test::{MaxTNull, Score};
 use crate::thresholds::DETECTION_POWER;
 use rayon::prelude::*;
 
-/// A candidate that was looked for and not found.
+/// A candidate effect that was tested and not found.
 pub struct DetectionLimit<'p> {
     pub effect: &'p str,
-    /// RMS of the smallest one that would have been found with 80 % probability.
+    /// Detection limit: RMS of the smallest effect that is found with 80 % power.
     pub detectable_rms: f64,
 }
 
 impl<'p> FloatingSearch<'_, 'p> {
-    pub fn silences(&self) -> Vec<DetectionLimit<'p>> {
-        silences(&self.now, self.library, &self.withdrawn, self.bar())
+    pub fn detection_limits(&self) -> Vec<DetectionLimit<'p>> {
+        detection_limits(&self.now, self.library, &self.withdrawn, self.bar())
     }
 }
 
-/// For each effect that is not in the model what would have been seen of it: in the form that is hardest to see, at the shape
-/// in the middle of those looked for.
-fn silences<'p>(
+/// Detection limit of each effect that is not in the model. It is the largest over the forms of the effect, at the
+/// median of the tested nonlinear parameters.
+fn detection_limits<'p>(
     end: &LinearModel<'p>,
     library: &CandidateSet<'p>,
     withdrawn: &[&'p str],
@@ -57,13 +57,13 @@ fn silences<'p>(
     out
 }
 
-/// What the rows tell of a candidate.
+/// Statistics of a candidate, computed from the data rows.
 struct Tested<'a, 'p> {
     candidate: &'a Regressor<'p>,
     score: Score,
-    /// What its factor scatters by, as the square root of what that explains.
+    /// Scatter of the coefficient, expressed as the square root of the squared error that it explains.
     noise: f64,
-    /// Of the effect itself the model's own columns take the rest.
+    /// Part of the effect that is orthogonal to the model; the columns of the model explain the rest.
     visible: f64,
 }
 
@@ -79,7 +79,7 @@ impl<'a, 'p> Tested<'a, 'p> {
         self.candidate.id() == other.candidate.id() && self.candidate.form.name == other.candidate.form.name
     }
 
-    /// The same of the whole effect.
+    /// The scatter in units of the whole effect.
     fn scatter(&self) -> f64 {
         self.noise / self.visible.sqrt()
     }

@@ -1,8 +1,8 @@
-//! From a model to the one that is left when nothing more can be named, by one decision: an effect is named where what it
-//! takes off held-out data is more than a share of what is left, is significant and exceeds its own standard error.
+//! Adds effects by one decision rule. An effect is added if it reduces the validation error by a minimum share, is
+//! significant, and exceeds its own standard error.
 //!
-//! Size ranks, significance only gates. What shows at reversals alone, where everything else is imperfect too, has to take most
-//! of what is left.
+//! The error reduction ranks the candidates; significance is only a condition. Form error concentrates at reversals. A candidate
+//! that shows only there has to explain most of the residual.
 
 use crate::effect::Regime;
 use crate::linear::blocked_ridge::BlockedRidge;
@@ -11,7 +11,7 @@ use crate::preprocess::form_error::Lives;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::{Evidence, chance, errors, evidence};
 use crate::regression::linear_model::{LinearModel, Term};
-use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_columns, effect_factor, nuisance, without};
+use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_coefficient, effect_columns, nuisance, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::{self, Left};
@@ -25,17 +25,17 @@ use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, FLOOR_RATIO, LEFT_SHARE, SIM
 use crate::{Effect, ModelError, ModelSpec, Options};
 use std::cell::OnceCell;
 
-/// Effects that are added at most.
+/// Largest number of added effects.
 const MOST_NAMED: usize = 4;
 
-/// The libraries of a run: beside a direction that turns at once, and beside one that bends.
+/// Candidate sets of a run: for a friction direction that switches at once, and for one with presliding.
 struct Libraries<'p> {
     plain: OnceCell<CandidateSet<'p>>,
     bristled: OnceCell<CandidateSet<'p>>,
 }
 
 impl<'p> Libraries<'p> {
-    /// The one beside the direction of a model.
+    /// The candidate set that matches the friction direction of a model.
     fn of(&self, model: &LinearModel<'p>, prepared: &'p Prepared, spec: &'p ModelSpec) -> &CandidateSet<'p> {
         let is_plain = std::ptr::eq(model.problem, &prepared.main);
         let known = if is_plain { &self.plain } else { &self.bristled };
@@ -43,7 +43,7 @@ impl<'p> Libraries<'p> {
     }
 }
 
-/// What the steps are chosen from.
+/// Data and state of the search.
 struct Search<'a, 'p> {
     prepared: &'p Prepared,
     spec: &'p ModelSpec,
@@ -52,7 +52,7 @@ struct Search<'a, 'p> {
     libraries: Libraries<'p>,
 }
 
-/// `on_advance` sees every move when it is made.
+/// `on_advance` gets each step when it is made.
 pub fn search<'p>(
     prepared: &'p Prepared,
     spec: &'p ModelSpec,
@@ -63,7 +63,7 @@ pub fn search<'p>(
     let start = TwoStageModel::new(prepared, spec, options)?;
     let libraries = Libraries { plain: OnceCell::new(), bristled: OnceCell::new() };
     let mut search = Search { prepared, spec, options, path: Path::new(start, on_advance), libraries };
-    // Of columns that cannot be right every effect is made up.
+    // Contradicting columns make every effect spurious.
     let most = if prepared.clashes.void.is_empty() { most.min(MOST_NAMED) } else { 0 };
     if most > 0
         && let Some(step) = offset(&search.path.start, options)
@@ -75,11 +75,12 @@ pub fn search<'p>(
         search.remove(id)?;
     }
     let left = search.left()?;
-    search.told(left, refused)
+    search.finish(left, refused)
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Adds the effect that takes most, as long as one passes. Returns those that take much and do not.
+    /// Adds the effect with the largest error reduction as long as one passes. Returns the rejected effects with a
+    /// large error reduction.
     fn grow(&mut self, most: usize) -> Result<Vec<Refused<'p>>, ModelError> {
         loop {
             let now = self.path.end();
@@ -105,19 +106,19 @@ impl<'p> Search<'_, 'p> {
             };
             let id = best.best.id();
             let mut ties = Vec::new();
-            for rival in all.iter().filter(|e| e.id() != id && is_rival(best, e)) {
-                if self.fits_alike(rival.best.id(), &after)? && !ties.contains(&rival.best.id()) {
-                    ties.push(rival.best.id());
+            for tied in all.iter().filter(|e| e.id() != id && is_tied(best, e)) {
+                if self.fits_alike(tied.best.id(), &after)? && !ties.contains(&tied.best.id()) {
+                    ties.push(tied.best.id());
                 }
             }
-            let rival = ScoredCandidate {
+            let scored = ScoredCandidate {
                 term: best.best.term(now.main.problem),
                 share: best.gain,
-                held_out: best.losses.iter().sum(),
+                validation_losses: best.losses.iter().sum(),
                 p_value: best.p_value,
                 losses: best.losses.clone(),
             };
-            self.path.push(SelectionStep { added: Some(rival), removed: None, ties, after });
+            self.path.push(SelectionStep { added: Some(scored), removed: None, ties, after });
         }
     }
 
@@ -125,7 +126,7 @@ impl<'p> Search<'_, 'p> {
     fn fits_alike(&self, rival: &str, after: &TwoStageModel<'p>) -> Result<bool, ModelError> {
         let effects = self.path.end().effects.iter().cloned().chain([rival.to_owned()]).collect();
         let other = TwoStageModel::decided(self.prepared, self.spec, effects)?;
-        let losses = |model: &LinearModel| Solution::of(model).map(|solution| solution.held_out(model));
+        let losses = |model: &LinearModel| Solution::of(model).map(|solution| solution.validation_losses(model));
         Ok(match (losses(&after.main), losses(&other.main)) {
             (Some(best), Some(losses)) => is_tie(&best, &losses) && impossible(&other.main) <= impossible(&after.main),
             _ => true,
@@ -139,7 +140,8 @@ impl<'p> Search<'_, 'p> {
         Ok(())
     }
 
-    /// What remains. Where a function of one axis says more than all that was named, nothing of the library is it.
+    /// Unexplained structure. If a function of one axis explains more than all added effects together, these effects
+    /// are removed.
     fn left(&mut self) -> Result<Option<Left>, ModelError> {
         let of = |Self { path, .. }: &Self| {
             Solution::of(&path.end().main).and_then(|solution| structure::left(&path.start, path.end(), &solution))
@@ -155,17 +157,22 @@ impl<'p> Search<'_, 'p> {
         Ok(of(self).or(left))
     }
 
-    fn told(self, left: Option<Left>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
+    fn finish(self, left: Option<Left>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
         let end = self.path.end();
         let now = end.main.clone();
-        let silences = Solution::of(&now).map_or_else(Vec::new, |solution| {
-            block_limits::silences(end, &solution, self.libraries.of(&now, self.prepared, self.spec), self.options)
+        let detection_limits = Solution::of(&now).map_or_else(Vec::new, |solution| {
+            block_limits::detection_limits(
+                end,
+                &solution,
+                self.libraries.of(&now, self.prepared, self.spec),
+                self.options,
+            )
         });
         let residual = now.linear().residual;
         let is_in = |id: &str| end.effects.iter().any(|e| e == id);
         let named = self.path.advances.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
-        let ties = named.flat_map(|(id, rivals)| rivals.iter().map(move |rival| (id, *rival)));
-        let ties = ties.filter(|(id, rival)| is_in(id) && !is_in(rival)).collect();
+        let ties = named.flat_map(|(id, ids)| ids.iter().map(move |scored| (id, *scored)));
+        let ties = ties.filter(|(id, scored)| is_in(id) && !is_in(scored)).collect();
         let maps = Maps::new(self.prepared, residual.clone(), self.options);
         Ok(ModelSelection {
             start: self.path.start,
@@ -174,7 +181,7 @@ impl<'p> Search<'_, 'p> {
             now,
             residual,
             maps,
-            silences,
+            detection_limits,
             ties,
             upheld: Vec::new(),
             open: None,
@@ -183,7 +190,7 @@ impl<'p> Search<'_, 'p> {
     }
 }
 
-/// The evidence for every effect that is not in the model, the one that takes most first.
+/// Evidence for every effect that is not in the model, sorted by decreasing error reduction.
 fn candidates<'l, 'p>(
     now: &TwoStageModel<'p>,
     solution: &Solution,
@@ -202,20 +209,20 @@ fn candidates<'l, 'p>(
     };
     let regime = |regime: Regime| move |c: &Regressor| c.effect.regime() == regime;
     let (mut all, mut hidden) = evidence(&solution.ridge, &of(&regime(Regime::SteadyState)), &near, forms);
-    // What is form error of all others is judged without it.
-    let late = of(&|c| c.id() == DELAY);
-    if !late.is_empty() && is_late(now, solution) {
-        all.extend(evidence(&without(&now.main, solution, Lives::Jerk), &late, &near, forms).0);
+    // A candidate is judged without the form-error columns that represent the same effect.
+    let delays = of(&|c| c.id() == DELAY);
+    if !delays.is_empty() && is_delayed(now, solution) {
+        all.extend(evidence(&without(&now.main, solution, Lives::Jerk), &delays, &near, forms).0);
     }
-    let bent = of(&regime(Regime::Hysteresis));
-    if !bent.is_empty() {
-        all.extend(evidence(&without(&now.main, solution, Lives::Bristle), &bent, &near, forms).0);
+    let presliding_candidates = of(&regime(Regime::Hysteresis));
+    if !presliding_candidates.is_empty() {
+        all.extend(evidence(&without(&now.main, solution, Lives::Bristle), &presliding_candidates, &near, forms).0);
     }
     let inertia = of(&|c| c.effect.regime() == Regime::Transient && c.id() != DELAY);
-    let (beside, imitated) = evidence(&solution.ridge, &inertia, &near, forms);
-    all.extend(beside);
+    let (visible, imitated) = evidence(&solution.ridge, &inertia, &near, forms);
+    all.extend(visible);
     hidden.extend(imitated);
-    // On one sine snap is the acceleration, turned over, and jerk the velocity.
+    // On one sine the snap is the acceleration with the opposite sign, and the jerk is the velocity.
     for lives in free_error(now, solution) {
         all.extend(evidence(&without(&now.main, solution, lives), &hidden, &near, forms).0);
     }
@@ -223,14 +230,14 @@ fn candidates<'l, 'p>(
     all
 }
 
-/// The form error of a model that the ridge does not shrink.
+/// Form-error columns of a model that the ridge penalty does not shrink.
 fn free_error(now: &TwoStageModel, solution: &Solution) -> impl Iterator<Item = Lives> {
     let columns = now.main.problem.form_error.as_deref().map_or(&[][..], |form_error| &form_error.columns);
     solution.error.iter().filter_map(|(at, _)| Some(columns.get(*at)?.lives)).filter(|lives| !lives.shrinks())
 }
 
-/// An effect that changes the direction of all others explains what free elements explain in its place: a torque that comes late
-/// bends around reversals as well, and no direction follows it.
+/// A candidate that changes the direction of all friction terms has to explain as much as free form-error columns in
+/// its place. A delayed torque also bends around reversals, but friction directions do not follow it.
 fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> bool {
     let Some(form_error) = after.main.problem.form_error.as_deref() else { return true };
     std::ptr::eq(now.main.problem, after.main.problem)
@@ -238,40 +245,42 @@ fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> b
             < FLOOR_RATIO.powi(2) * solution.ridge.loss()
 }
 
-/// Coefficients that are surely beyond their physical bounds.
+/// Number of coefficients that are significantly beyond their physical bounds.
 fn impossible(model: &LinearModel) -> usize {
     let Some(solution) = Solution::of(model) else { return 0 };
     let least =
         |term: &Term| term.form.linear.iter().map(|name| term.effect.info().bounds(name).0).collect::<Vec<f64>>();
-    model.terms.iter().flat_map(least).zip(&solution.factors).filter(|(least, factor)| **factor < *least).count()
+    let coefficients = model.terms.iter().flat_map(least).zip(&solution.coefficients);
+    coefficients.filter(|(least, coefficient)| **coefficient < *least).count()
 }
 
-/// The largest gain first; of those that tie with it the surest.
+/// Candidates by decreasing error reduction; those that tie with the first one by increasing p-value.
 fn in_turn<'e, 'l, 'p>(passing: &[&'e Evidence<'l, 'p>]) -> Vec<&'e Evidence<'l, 'p>> {
     let mut in_turn = passing.to_vec();
     if let Some(first) = passing.first() {
-        let ties = passing.iter().take_while(|e| is_rival(first, e)).count();
+        let ties = passing.iter().take_while(|e| is_tied(first, e)).count();
         in_turn[..ties].sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
     }
     in_turn
 }
 
-/// Takes about as much, block by block.
-fn is_rival(best: &Evidence, other: &Evidence) -> bool {
+/// Whether two candidates reduce the error about equally, compared over the blocks.
+fn is_tied(best: &Evidence, other: &Evidence) -> bool {
     other.gain > SIMPLER_GAIN * best.gain && is_tie(&best.losses, &other.losses)
 }
 
-/// The torque is later or earlier than the motion by more than a sample: of which moment of it a reading is nobody knows.
-fn is_late(now: &TwoStageModel, solution: &Solution) -> bool {
+/// Whether torque and motion are shifted by more than a sample. Below that, the moment of a reading within its sample
+/// is unknown.
+fn is_delayed(now: &TwoStageModel, solution: &Solution) -> bool {
     let model = &now.main;
     let Some(form_error) = model.problem.form_error.as_deref() else { return false };
-    let inertia = effect_factor(model, solution, "inertia");
+    let inertia = effect_coefficient(model, solution, "inertia");
     let jerk = solution.error.iter().find(|(at, _)| form_error.columns[*at].lives == Lives::Jerk).map(|(_, f)| *f);
     let (Some(inertia), Some(jerk)) = (inertia, jerk) else { return false };
     (jerk / inertia).abs() > DELAY_ROWS * form_error.sample_s
 }
 
-/// The added effect without which the others predict held-out data as well, where there is one beside others.
+/// The added effect without which the validation error does not increase, if other effects were added too.
 fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     let added: Vec<&'p str> =
         end.effects.iter().filter(|e| !spec.contains(e)).filter_map(|e| Some(spec.find(e).ok()?.info().id)).collect();
@@ -279,12 +288,12 @@ fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     if added.len() < 2 {
         return None;
     }
-    // Other forms of the others would imitate it.
+    // Other forms of the remaining effects would imitate the effect under test.
     let mut plain = end.main.clone();
     plain.relatives = Default::default();
     let weight = Solution::of(&plain)?.weight.clone();
-    let loss = |model: &LinearModel, is_late: bool| {
-        if !is_late {
+    let loss = |model: &LinearModel, is_delayed: bool| {
+        if !is_delayed {
             return Solution::weighted(model, form_error, weight.clone(), None).ridge.loss();
         }
         let mut columns = effect_columns(model);
@@ -302,7 +311,7 @@ fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     judged.filter(|(_, loss)| *loss < DECISION_SHARE).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }
 
-/// The power balance, where the model lacks it and the run shows it.
+/// The power balance, if the model lacks it and the data supports it.
 fn offset<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionStep<'p>> {
     let problem = start.main.problem;
     let is_out = |id: &str| !start.effects.iter().any(|e| e == id);
@@ -313,7 +322,7 @@ fn offset<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionS
     let effects: Vec<String> = start.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
     let after = TwoStageModel::decided(start.prepared, start.spec, effects).ok()?;
     let (was, is) = (Solution::of(&start.main)?, Solution::of(&after.main)?);
-    let (was, is) = (was.held_out(&start.main), is.held_out(&after.main));
+    let (was, is) = (was.validation_losses(&start.main), is.validation_losses(&after.main));
     let gains: Vec<f64> = was.iter().zip(&is).map(|(was, is)| was - is).collect();
     let gain = gains.iter().sum::<f64>() / was.iter().sum::<f64>();
     let standard_errors = errors(&gains);
@@ -321,7 +330,7 @@ fn offset<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionS
     if gain < DECISION_SHARE || p_value > options.alpha {
         return None;
     }
-    let held_out = is.iter().sum();
-    let rival = ScoredCandidate { term, share: gain, held_out, p_value, losses: is };
-    Some(SelectionStep { added: Some(rival), removed: None, ties: Vec::new(), after })
+    let validation_losses = is.iter().sum();
+    let scored = ScoredCandidate { term, share: gain, validation_losses, p_value, losses: is };
+    Some(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after })
 }

@@ -1,10 +1,10 @@
-//! From a model to the model that is left when nothing more can be named.
+//! Floating forward selection of effects: one added or removed effect at a time.
 
 use crate::Options;
 use crate::effect::{Effect, Form};
 use crate::regression::candidates::{CandidateSet, Regressor};
-use crate::regression::canonical_fit::lay;
-use crate::regression::cross_validation::held_out;
+use crate::regression::canonical_fit::fit_canonical;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
@@ -14,46 +14,47 @@ use crate::thresholds::{MOST_EXCHANGES, SIMPLER_GAIN, STAND_IN_LOSS};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Effects of a model with their forms and shapes.
-type Laid<'p> = Vec<(&'p dyn Effect, Arc<Form<'p>>, Vec<f64>)>;
+/// Effects of a model with their forms and nonlinear parameters.
+type CachedTerms<'p> = Vec<(&'p dyn Effect, Arc<Form<'p>>, Vec<f64>)>;
 
 pub enum Move<'p> {
-    Added { rival: Box<ScoredCandidate<'p>>, ties: Vec<&'p str> },
+    Added { scored: Box<ScoredCandidate<'p>>, ties: Vec<&'p str> },
     Removed(&'p str),
 }
 
-/// An effect with what the run cannot tell it from.
+/// A scored candidate with the effects that are confounded with it.
 pub(crate) type Found<'p> = (ScoredCandidate<'p>, Vec<&'p str>);
 
-/// Adds the best effect again and again until none passes, and drops what lost its reason: one move at a time.
+/// Adds the best candidate until none passes, and removes effects that became redundant, one move at a time.
 pub struct FloatingSearch<'l, 'p> {
     pub now: LinearModel<'p>,
     pub(crate) library: &'l CandidateSet<'p>,
     pub(crate) options: &'l Options,
-    /// Squared error of the model without any effect but those of the baseline and those whose formula is exact.
+    /// Squared error of the model with only the baseline effects and those with an exact formula.
     plain: f64,
-    /// Effects of the model that was given.
+    /// Effects of the given model.
     pub(crate) initial_terms: Vec<&'p str>,
-    /// Effects that were withdrawn and are not tried again.
+    /// Effects that were removed and are not tried again.
     pub(crate) withdrawn: Vec<&'p str>,
-    /// Effects whose reason is not the error, but what the others would be without them.
+    /// Effects that are kept because the other coefficients are biased without them, not because of the error.
     pub retained_for_bias: Vec<&'p str>,
-    /// Held-out squared errors, fold by fold, of the models that they were withdrawn from.
+    /// Squared validation errors, fold by fold, of the models before each removal.
     rejected_losses: Vec<Vec<f64>>,
     /// The effect that was added last.
     pub(crate) last: Option<&'p str>,
     pub(crate) left: usize,
     exchanges: usize,
-    /// What takes the place of an effect that was just removed.
+    /// The effect that replaces the one that was just removed.
     pending_swap: Option<Found<'p>>,
-    /// Models that were laid out, without their columns.
-    laid: Mutex<BTreeMap<Vec<&'p str>, Laid<'p>>>,
-    /// Something from outside the library was seen: whatever entered now would stand for it.
+    /// Cache of canonical models, without their columns.
+    cache: Mutex<BTreeMap<Vec<&'p str>, CachedTerms<'p>>>,
+    /// Structure from outside the library was found. Any effect that is added now would only imitate it.
     pub unmodelled_structure: bool,
 }
 
 impl<'l, 'p> FloatingSearch<'l, 'p> {
-    /// `most` effects are added at most. `baseline` is what the run's own facts take for granted.
+    /// `most` limits the number of added effects. `baseline` names the effects that the test conditions of the run
+    /// imply.
     pub fn new(
         start: LinearModel<'p>,
         library: &'l CandidateSet<'p>,
@@ -81,7 +82,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
             left: most,
             exchanges: MOST_EXCHANGES as usize,
             pending_swap: None,
-            laid: Mutex::default(),
+            cache: Mutex::default(),
             unmodelled_structure: false,
         }
     }
@@ -94,25 +95,25 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         AcceptanceThreshold { plain: self.plain, kind: self.library.kind, options: self.options }
     }
 
-    /// Takes an effect back that turned out not to be the answer.
+    /// Removes an effect that was found to be wrong.
     pub fn withdraw(&mut self, id: &'p str) -> Move<'p> {
         self.withdrawn.push(id);
-        self.rejected_losses.push(held_out(&self.now));
+        self.rejected_losses.push(validation_losses(&self.now));
         self.remove(id)
     }
 
-    /// Adds an effect that hardly shows in the error, and keeps it.
-    pub fn uphold(&mut self, rival: ScoredCandidate<'p>) -> Move<'p> {
-        self.retained_for_bias.push(rival.term.id());
-        self.add(rival, Vec::new())
+    /// Adds an effect that hardly changes the error, and keeps it.
+    pub fn uphold(&mut self, scored: ScoredCandidate<'p>) -> Move<'p> {
+        self.retained_for_bias.push(scored.term.id());
+        self.add(scored, Vec::new())
     }
 
-    fn add(&mut self, rival: ScoredCandidate<'p>, ties: Vec<&'p str>) -> Move<'p> {
+    fn add(&mut self, scored: ScoredCandidate<'p>, ties: Vec<&'p str>) -> Move<'p> {
         self.left -= 1;
-        let id = rival.term.id();
+        let id = scored.term.id();
         self.now = self.model_with(id);
         self.last = Some(id);
-        Move::Added { rival: rival.into(), ties }
+        Move::Added { scored: scored.into(), ties }
     }
 
     fn remove(&mut self, id: &'p str) -> Move<'p> {
@@ -125,72 +126,74 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         Move::Removed(id)
     }
 
-    /// What to add next.
+    /// The next effect to add.
     fn best(&self) -> Option<Found<'p>> {
         let plain = self.step(&self.now);
         if !self.now.terms.iter().any(|term| self.bends(term)) {
             return plain;
         }
-        let than = plain.as_ref().map_or_else(|| held_out(&self.now), |p| held_out(&self.model_with(p.0.term.id())));
+        let than = plain
+            .as_ref()
+            .map_or_else(|| validation_losses(&self.now), |p| validation_losses(&self.model_with(p.0.term.id())));
         self.behind_bent(&self.now, None, &than).or(plain)
     }
 
-    /// A given effect may have bent into the place of another one until nothing of that shows beside it: without a viscous
-    /// torque a Stribeck peak becomes negative and wide. What is missing without the given one, and makes the model with
-    /// both clearly better than one that has these held-out errors, is what it stands for.
+    /// A given effect with several coefficients can absorb a missing effect completely: without a viscous torque a
+    /// Stribeck peak becomes negative and wide. This step searches for a candidate without that given effect. The
+    /// candidate is returned if the model with both has a significantly smaller validation error than `than`.
     pub(crate) fn behind_bent(&self, now: &LinearModel<'p>, but: Option<&'p str>, than: &[f64]) -> Option<Found<'p>> {
         now.terms.iter().filter(|term| self.bends(term)).find_map(|given| {
             let out: Vec<&str> = self.withdrawn.iter().copied().chain([given.id()]).chain(but).collect();
             let found = step(&now.without(given.id()), self.library, &out, self.bar())?;
-            let losses = held_out(&self.lay(now.terms.iter().map(Term::id).chain([found.0.term.id()])));
+            let losses = validation_losses(&self.canonical(now.terms.iter().map(Term::id).chain([found.0.term.id()])));
             let less = 1.0 - losses.iter().sum::<f64>() / than.iter().sum::<f64>();
             (less > self.options.practical_share && !is_tie(&losses, than)).then_some(found)
         })
     }
 
-    /// A given effect of which the data decides more than one factor.
+    /// Whether a given effect has more than one free parameter, so that it can absorb another one.
     fn bends(&self, term: &Term) -> bool {
         self.initial_terms.contains(&term.id()) && term.size() > 1
     }
 
-    /// The model with one effect more.
+    /// The model with one additional effect.
     pub fn model_with(&self, id: &'p str) -> LinearModel<'p> {
-        self.lay(self.now.terms.iter().map(Term::id).chain([id]))
+        self.canonical(self.now.terms.iter().map(Term::id).chain([id]))
     }
 
     pub(crate) fn model_without(&self, id: &str) -> LinearModel<'p> {
-        self.lay(self.now.terms.iter().map(Term::id).filter(|other| *other != id))
+        self.canonical(self.now.terms.iter().map(Term::id).filter(|other| *other != id))
     }
 
-    /// The model of these effects, which is asked for more than once.
-    fn lay(&self, effects: impl Iterator<Item = &'p str>) -> LinearModel<'p> {
+    /// The canonical model of these effects, from the cache if it was built before.
+    fn canonical(&self, effects: impl Iterator<Item = &'p str>) -> LinearModel<'p> {
         let mut effects: Vec<&str> = effects.collect();
         effects.sort_unstable();
-        let known = |laid: &BTreeMap<Vec<&str>, Laid<'p>>| laid.get(&effects).cloned();
-        if let Some(terms) = known(&self.laid.lock().unwrap_or_else(PoisonError::into_inner)) {
+        let known = |cache: &BTreeMap<Vec<&str>, CachedTerms<'p>>| cache.get(&effects).cloned();
+        if let Some(terms) = known(&self.cache.lock().unwrap_or_else(PoisonError::into_inner)) {
             let problem = self.now.problem;
             let terms =
                 terms.into_iter().map(|(effect, form, shape)| Term::new(effect, form, shape, problem)).collect();
             return LinearModel { terms, ..self.now.clone() };
         }
-        let made = lay(&self.now, &effects, self.library, self.options);
+        let made = fit_canonical(&self.now, &effects, self.library, self.options);
         let shapes = made.terms.iter().map(|term| (term.effect, term.form.clone(), term.shape.clone())).collect();
-        self.laid.lock().unwrap_or_else(PoisonError::into_inner).insert(effects, shapes);
+        self.cache.lock().unwrap_or_else(PoisonError::into_inner).insert(effects, shapes);
         made
     }
 
-    /// The model is as good with another effect in place of one, of a size that is physically possible.
-    pub fn ties(&self, effect: &str, rival: &'p str) -> bool {
+    /// Whether `scored` replaces an effect without loss and with physically possible coefficients.
+    pub fn ties(&self, effect: &str, scored: &'p str) -> bool {
         let others = self.now.terms.iter().map(Term::id).filter(|id| *id != effect);
-        let other = self.lay(others.chain([rival]));
-        let mut sized = other.terms.iter().zip(other.linear().factors);
-        let is_possible = sized.all(|(term, factors)| term.id() != rival || term.allows(&factors));
-        // What stands in for an effect that hardly shows in the error leaves the others where it does.
-        let is_elsewhere = self.retained_for_bias.contains(&effect) && self.is_wrong_beside(&other);
-        is_possible && !is_elsewhere && is_tie(&held_out(&self.now), &held_out(&other))
+        let other = self.canonical(others.chain([scored]));
+        let mut sized = other.terms.iter().zip(other.linear().coefficients);
+        let is_possible = sized.all(|(term, coefficients)| term.id() != scored || term.allows(&coefficients));
+        // The replacement of an effect that is kept for its bias must not bias the others.
+        let is_elsewhere = self.retained_for_bias.contains(&effect) && self.is_biased_by(&other);
+        is_possible && !is_elsewhere && is_tie(&validation_losses(&self.now), &validation_losses(&other))
     }
 
-    /// Effects that explain nearly as much in the place of one, and with which the model is as good.
+    /// Effects that explain nearly as much in place of a term, and are confounded with it.
     pub fn stand_ins(&self, term: &Term<'p>) -> Vec<&'p str> {
         let without = self.now.without(term.id());
         let ground = PartialRegression::of(&without);
@@ -215,17 +218,17 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         near.into_iter().map(|(_, candidate)| candidate.id()).collect()
     }
 
-    /// Effects that were added and are still there.
+    /// Effects that were added and are still in the model.
     pub fn added(&self) -> impl Iterator<Item = &Term<'p>> {
         self.now.terms.iter().filter(|t| !self.initial_terms.contains(&t.id()))
     }
 
-    /// Added effects that have to be worth their error.
+    /// Added effects that have to be justified by the error.
     pub(crate) fn on_trial(&self) -> impl Iterator<Item = &Term<'p>> {
         self.added().filter(|term| !self.retained_for_bias.contains(&term.id()))
     }
 
-    /// Effects that were withdrawn and stayed out.
+    /// Effects that were removed and are not in the model.
     pub fn given_back(&self) -> impl Iterator<Item = &'p str> {
         self.withdrawn.iter().copied().filter(|id| !self.now.contains(id))
     }
@@ -241,17 +244,18 @@ impl<'p> Iterator for FloatingSearch<'_, 'p> {
         if self.unmodelled_structure {
             return None;
         }
-        // What explains clearly less than an effect that was withdrawn only stands in for it.
-        let stands_in = |rival: &ScoredCandidate| {
+        // A candidate that explains clearly less than a removed effect is only a substitute for it.
+        let stands_in = |scored: &ScoredCandidate| {
             let clearly = |losses: &Vec<f64>| {
                 let rejected: f64 = losses.iter().sum();
-                rejected < STAND_IN_LOSS * rival.held_out || rejected < rival.held_out && !is_tie(losses, &rival.losses)
+                rejected < STAND_IN_LOSS * scored.validation_losses
+                    || rejected < scored.validation_losses && !is_tie(losses, &scored.losses)
             };
             self.rejected_losses.iter().any(clearly)
         };
         let found = self.pending_swap.take().or_else(|| if self.left > 0 { self.best() } else { None });
-        let found = found.filter(|(rival, _)| !stands_in(rival));
-        let Some((rival, ties)) = found else {
+        let found = found.filter(|(scored, _)| !stands_in(scored));
+        let Some((scored, ties)) = found else {
             if let Some(id) = self.impossible(&self.now).or_else(|| self.mutually_cancelling()).or_else(|| self.idle())
             {
                 self.withdrawn.push(id);
@@ -262,6 +266,6 @@ impl<'p> Iterator for FloatingSearch<'_, 'p> {
             self.pending_swap = Some(better);
             return Some(self.remove(id));
         };
-        Some(self.add(rival, ties))
+        Some(self.add(scored, ties))
     }
 }

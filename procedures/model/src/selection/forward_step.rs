@@ -1,4 +1,4 @@
-//! The candidates of one step: which is best, whether it is more than luck, and what the run cannot tell it from.
+//! One forward step: the best candidate, its significance, and the effects that are confounded with it.
 
 use crate::linear::augmented_gram::AugmentedGrams;
 use crate::regression::candidates::CandidateSet;
@@ -11,30 +11,30 @@ use crate::selection::equivalence::{encompasses, is_tie};
 use crate::thresholds::SIMPLER_GAIN;
 use rayon::prelude::*;
 
-/// Candidates that are refined and held against each other at each step.
+/// Candidates that are refined and cross-validated in each step.
 const SHORT_LIST: usize = 8;
 
 /// A candidate of one step with its evidence.
 #[derive(Clone)]
 pub struct ScoredCandidate<'p> {
     pub term: Term<'p>,
-    /// Share of the remaining squared error.
+    /// Partial R²: share of the remaining squared error.
     pub share: f64,
-    /// Held-out squared error of the model with it.
-    pub held_out: f64,
+    /// Squared validation error of the model with this candidate.
+    pub validation_losses: f64,
     pub p_value: f64,
-    /// Held-out squared error of each fold.
+    /// Squared validation error of each fold.
     pub(crate) losses: Vec<f64>,
 }
 
 impl<'p> ScoredCandidate<'p> {
-    /// A candidate that was judged apart from the others, without folds.
+    /// A candidate that was tested alone, without folds.
     pub fn alone(term: Term<'p>, share: f64, p_value: f64) -> Self {
-        Self { term, share, held_out: f64::NAN, p_value, losses: Vec::new() }
+        Self { term, share, validation_losses: f64::NAN, p_value, losses: Vec::new() }
     }
 }
 
-/// The effect that makes the model best, with those that it ties with.
+/// The effect with the smallest validation error, and the effects that tie with it.
 pub fn step<'p>(
     now: &LinearModel<'p>,
     library: &CandidateSet<'p>,
@@ -53,7 +53,7 @@ pub fn step<'p>(
     let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
     let gains: Vec<Orthogonalized> = open.par_iter().map(|i| ground.own(&library.candidates[*i].columns)).collect();
 
-    // The best shape of each form of each effect, the most telling first.
+    // The best grid point of each form of each effect, by decreasing partial R².
     let mut best: Vec<usize> = Vec::new();
     let form = |at: usize| (library.candidates[open[at]].id(), library.candidates[open[at]].form.name);
     for at in 0..open.len() {
@@ -78,7 +78,7 @@ pub fn step<'p>(
             let sse = varpro(&mut term, basis, residual, problem);
             let [term] = term;
             let possible =
-                term.allows(&ground.own(&term.columns).factors()) && bar.keeps_parameters_feasible(now, &term);
+                term.allows(&ground.own(&term.columns).coefficients()) && bar.keeps_parameters_feasible(now, &term);
             let possible = possible
                 && !between_leg_variance::is_random_leg_effect(&term, now, &ground, bar.kind, options)
                 && !aliasing::is_none(&term, now, &ground);
@@ -88,47 +88,53 @@ pub fn step<'p>(
         .filter(|(term, share)| *share >= least_share.max(aliasing::least_share(term)))
         .collect();
     let sets = std::iter::once([].as_slice()).chain(worth_it.iter().map(|(term, _)| term.columns.as_slice()));
-    let beside = AugmentedGrams::new(&now.columns(), sets, residual, &problem.fold, problem.folds);
-    let present: f64 = beside.grams(0).held_out().iter().sum();
-    let mut rivals: Vec<ScoredCandidate> = worth_it
+    let grams = AugmentedGrams::new(&now.columns(), sets, residual, &problem.fold, problem.folds);
+    let present: f64 = grams.grams(0).validation_losses().iter().sum();
+    let mut ranked: Vec<ScoredCandidate> = worth_it
         .par_iter()
         .enumerate()
         .map(|(k, (term, share))| {
-            let losses = beside.grams(1 + k).held_out();
-            ScoredCandidate { term: term.clone(), share: *share, held_out: losses.iter().sum(), p_value: 1.0, losses }
+            let losses = grams.grams(1 + k).validation_losses();
+            ScoredCandidate {
+                term: term.clone(),
+                share: *share,
+                validation_losses: losses.iter().sum(),
+                p_value: 1.0,
+                losses,
+            }
         })
-        .filter(|r| r.held_out < present)
+        .filter(|r| r.validation_losses < present)
         .collect();
-    rivals.sort_by(|a, b| a.held_out.total_cmp(&b.held_out));
-    // The forms of one effect are one group: the best of them speaks for it.
+    ranked.sort_by(|a, b| a.validation_losses.total_cmp(&b.validation_losses));
+    // The best form of an effect represents all its forms.
     let mut seen: Vec<&str> = Vec::new();
-    rivals.retain(|r| {
+    ranked.retain(|r| {
         !seen.contains(&r.term.id()) && {
             seen.push(r.term.id());
             true
         }
     });
-    let first = rivals.first()?;
+    let first = ranked.first()?;
 
-    let mut ties: Vec<usize> = (1..rivals.len()).filter(|i| is_tie(&first.losses, &rivals[*i].losses)).collect();
-    // Of what explains the data equally well, the simplest, and of those the one that the contract names first.
+    let mut ties: Vec<usize> = (1..ranked.len()).filter(|i| is_tie(&first.losses, &ranked[*i].losses)).collect();
+    // Among equal candidates the one with the fewest columns wins, then the first one in the order of the library.
     let near = |i: &usize| {
-        let gain = |i: usize| present - rivals[i].held_out;
-        let as_good = rivals[*i].held_out < (1.0 + options.practical_share) * rivals[0].held_out;
+        let gain = |i: usize| present - ranked[i].validation_losses;
+        let as_good = ranked[*i].validation_losses < (1.0 + options.practical_share) * ranked[0].validation_losses;
         as_good && gain(*i) >= SIMPLER_GAIN * gain(0)
     };
     let rank = |i: &usize| {
-        let id = rivals[*i].term.id();
-        (rivals[*i].term.size(), library.candidates.iter().position(|c| c.id() == id))
+        let id = ranked[*i].term.id();
+        (ranked[*i].term.size(), library.candidates.iter().position(|c| c.id() == id))
     };
     let winner = ties.iter().copied().filter(near).chain([0]).min_by_key(rank).unwrap_or(0);
     ties.push(0);
-    ties.retain(|i| *i != winner && !encompasses(now, &rivals[winner].term, &rivals[*i].term, options));
+    ties.retain(|i| *i != winner && !encompasses(now, &ranked[winner].term, &ranked[*i].term, options));
 
-    let ties = ties.into_iter().map(|i| rivals[i].term.id()).collect();
-    let mut rival = rivals.swap_remove(winner);
+    let ties = ties.into_iter().map(|i| ranked[i].term.id()).collect();
+    let mut scored = ranked.swap_remove(winner);
     let scores =
         open.par_iter().zip(&gains).map(|(i, own)| ground.score(&library.candidates[*i].columns, own)).collect();
-    rival.p_value = family_wise(&rival.term.columns, scores, &ground, options);
-    (rival.p_value <= options.alpha).then_some((rival, ties))
+    scored.p_value = family_wise(&scored.term.columns, scores, &ground, options);
+    (scored.p_value <= options.alpha).then_some((scored, ties))
 }

@@ -1,9 +1,9 @@
-//! Effects with a memory on a run in steps: judged on slow samples and reversals, where plateaus say nothing.
+//! Hysteresis effects on a run in steps: judged on slow samples and reversals, because steady-state means contain no
+//! hysteresis.
 //!
-//! There the instruments are not aligned and static friction has its jump, so every candidate explains something: an
-//! effect is named only where it explains most of what the rest of the model leaves. Measured on simulated joints: real
-//! presliding over more than a few steps of the encoder takes 83 to 98 % of the squared error there, nothing else more
-//! than 63 %.
+//! The instruments are not aligned there and static friction jumps, so that every candidate explains something. An
+//! effect is therefore named only if it explains most of the residual. Measured on simulated joints: presliding over
+//! more than a few encoder steps explains 83 to 98 % of the squared error there, other effects at most 63 %.
 
 use crate::Options;
 use crate::regression::hysteresis_form::Reversals;
@@ -13,7 +13,7 @@ use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::HYSTERESIS_SHARE;
 
-/// The memory effect that this run shows beyond the model, if one does.
+/// The hysteresis effect that this run supports, if there is one.
 pub fn memory<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<ScoredCandidate<'p>> {
     let problem = now.prepared.memory.as_ref()?;
     let is_out = |id: &str| !now.effects.iter().any(|e| e == id);
@@ -23,9 +23,8 @@ pub fn memory<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<ScoredCa
     (share >= HYSTERESIS_SHARE && p_value <= options.alpha).then(|| ScoredCandidate::alone(term, share, p_value))
 }
 
-/// Effects with a memory that are not in the model, with the smallest that would have taken enough beside what is left
-/// around reversals.
-pub fn silences<'p>(now: &TwoStageModel<'p>) -> Vec<DetectionLimit<'p>> {
+/// Detection limits of the hysteresis effects that are not in the model, relative to the residual around reversals.
+pub fn detection_limits<'p>(now: &TwoStageModel<'p>) -> Vec<DetectionLimit<'p>> {
     let is_meant = |id: &str| now.spec.find(id).is_ok_and(|e| now.is_apart(e)) && !now.effects.iter().any(|e| e == id);
     let Some(problem) = now.prepared.memory.as_ref() else { return Vec::new() };
     let Reversals { ground, library, .. } = Reversals::new(problem, now.predict(problem), now.spec, is_meant);

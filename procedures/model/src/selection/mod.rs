@@ -1,4 +1,4 @@
-//! Which effects are missing: forward steps, acceptance, pruning, and the stages that follow.
+//! Selection of missing effects: forward steps, acceptance, pruning, and the stages that follow.
 
 pub(crate) mod acceptance;
 pub(crate) mod advance;
@@ -23,8 +23,8 @@ use crate::selection::advance::SelectionStep;
 use crate::selection::model_selection::ModelSelection;
 use crate::{ModelError, ModelSpec, Options};
 
-/// Searches for at most `most` missing effects: by evidence where samples are judged, else in stages. `on_advance` sees every move
-/// when it is made.
+/// Searches for at most `most` missing effects: by evidence if the run is judged sample by sample, else in stages.
+/// `on_advance` gets each step when it is made.
 pub(crate) fn search<'p>(
     prepared: &'p Prepared,
     spec: &'p ModelSpec,

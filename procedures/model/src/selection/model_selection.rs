@@ -1,4 +1,4 @@
-//! What a search for missing effects ends with.
+//! The result of a selection.
 
 use crate::regression::linear_model::LinearModel;
 use crate::regression::two_stage_model::TwoStageModel;
@@ -9,25 +9,25 @@ use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::refused::Decided;
 use crate::selection::removal::Withdrawn;
 
-/// The way from the given model to the last one, and what was learnt on it.
+/// The steps from the given model to the last one, with all findings.
 pub struct ModelSelection<'p> {
     pub start: TwoStageModel<'p>,
     pub advances: Vec<SelectionStep<'p>>,
     pub withdrawn: Vec<Withdrawn<'p>>,
     /// The steady-state part of the last model.
     pub now: LinearModel<'p>,
-    /// What it leaves beside all directions in which it could move.
+    /// Residual of that model, orthogonal to its tangent space.
     pub residual: Vec<f64>,
-    /// Maps of that.
+    /// Maps of that residual.
     pub maps: Maps,
-    pub silences: Vec<DetectionLimit<'p>>,
-    /// Effects of the last model, and what this run cannot tell them from.
+    pub detection_limits: Vec<DetectionLimit<'p>>,
+    /// Effects of the last model with the effects that are confounded with them.
     pub ties: Vec<(&'p str, &'p str)>,
-    /// Effects of the last model that the error would hardly miss.
+    /// Effects of the last model that hardly reduce the error, but prevent biased coefficients.
     pub upheld: Vec<Imitated>,
-    /// One that may be there as well.
+    /// An effect that may be present as well.
     pub open: Option<Imitated>,
-    /// What one decision leaves, where the run is judged sample by sample.
+    /// Result of the evidence search, for runs that are judged sample by sample.
     pub decided: Option<Decided<'p>>,
 }
 

@@ -1,8 +1,8 @@
-//! What enters a model with a factor of one has no size that a search could find: it is there or it is not.
+//! Offset terms have a fixed coefficient of one, so that no size is searched: the model includes the effect or not.
 
 use crate::Options;
 use crate::regression::candidates::CandidateSet;
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::Term;
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
@@ -11,7 +11,8 @@ use crate::selection::advance::SelectionStep;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
 
-/// The power balance that a model lacks and its data shows. Effects of friction must not explain what the joint only passes on.
+/// Adds the power balance if the model lacks it and the data supports it. Friction effects must not explain power
+/// that the joint only transmits.
 pub fn advance<'p>(
     start: &TwoStageModel<'p>,
     library: &CandidateSet<'p>,
@@ -28,7 +29,7 @@ pub fn advance<'p>(
         with.given.iter_mut().zip(column).for_each(|(g, c)| *g += c);
     }
     with.refine();
-    let (was, is) = (held_out(&start.main), held_out(&with));
+    let (was, is) = (validation_losses(&start.main), validation_losses(&with));
     let share = 1.0 - with.linear().sse / start.main.linear().sse;
     let p_value = significance(&term, library, &PartialRegression::of(&start.main), options);
     if share < options.practical_share || p_value > options.alpha || is_tie(&is, &was) {

@@ -1,8 +1,9 @@
-//! An effect that the shape of another one imitates: the error would hardly miss it, and the parameters are wrong without it.
+//! Omitted-variable bias: an effect that another one imitates hardly changes the error, but its absence biases the
+//! coefficients.
 
 use crate::linear::basis::dot;
 use crate::regression::candidates::Regressor;
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
@@ -12,19 +13,20 @@ use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::{BIAS_TOLERANCE, BIASED_COEFFICIENT};
 use rayon::prelude::*;
 
-/// An effect that hardly shows, in the model that has it.
+/// An effect that hardly changes the error, with the model that includes it.
 pub struct Imitated<'p> {
-    pub rival: ScoredCandidate<'p>,
+    pub scored: ScoredCandidate<'p>,
     pub with: LinearModel<'p>,
-    /// What was held out decides that it is there.
+    /// The validation error confirms the effect.
     pub is_clear: bool,
 }
 
 impl<'p> FloatingSearch<'_, 'p> {
-    /// The effect that one of a free shape imitates best, at the cost of a factor of the given model: a Stribeck
-    /// effect that fades slowly is a curve over speed and a part of Coulomb friction as well.
+    /// The effect that a term with free nonlinear parameters imitates best, at the cost of a biased coefficient of
+    /// the given model. A Stribeck effect that fades slowly also fits a curve over speed and a part of Coulomb
+    /// friction.
     ///
-    /// `decides` says whether a model decides an effect.
+    /// `decides` returns whether a model identifies an effect.
     pub fn imitated(&self, decides: impl Fn(&LinearModel<'p>, &Term<'p>) -> bool + Sync) -> Option<Imitated<'p>> {
         let bends = |term: &Term| term.form.shape.iter().any(|shape| shape.is_smooth());
         if self.left == 0 || !self.now.terms.iter().any(bends) {
@@ -42,69 +44,71 @@ impl<'p> FloatingSearch<'_, 'p> {
                 None => alike.push((own.share, candidate)),
             }
         }
-        let (present, sse) = (held_out(&self.now), self.now.linear().sse);
+        let (present, sse) = (validation_losses(&self.now), self.now.linear().sse);
         let least_share = self.bar().least_share(sse);
         let is_at_edge = self.added().any(Term::is_at_edge);
         let imitated = alike.into_par_iter().filter_map(|(_, candidate)| {
             let mut near = self.now.clone();
             near.terms.push(candidate.term(near.problem));
             near.refine();
-            if !self.is_wrong_beside(&near) {
+            if !self.is_biased_by(&near) {
                 return None;
             }
             let with = self.model_with(candidate.id());
             let term = with.terms.iter().find(|term| term.id() == candidate.id())?.clone();
             let linear = with.linear();
-            let is_possible = with.terms.iter().zip(&linear.factors).all(|(term, factors)| term.allows(factors));
-            // What shows and could be the remainder of another formula was refused, unless that formula has given way to its
-            // edge.
+            let is_possible =
+                with.terms.iter().zip(&linear.coefficients).all(|(term, coefficients)| term.allows(coefficients));
+            // A reduction within the formula error was rejected before. It counts only if the formula of an added
+            // effect has reached its bound.
             let share = 1.0 - linear.sse / sse;
             let is_remainder = (self.options.practical_share..least_share).contains(&share) && !is_at_edge;
-            if !is_possible || is_remainder || !self.is_wrong_beside(&with) || !decides(&with, &term) {
+            if !is_possible || is_remainder || !self.is_biased_by(&with) || !decides(&with, &term) {
                 return None;
             }
-            // Its score counts beside the shapes that the others have with it: without it they imitate it.
-            let mut beside = with.clone();
-            beside.terms.retain(|other| other.id() != candidate.id());
-            let p_value = significance(&term, self.library, &PartialRegression::of(&beside), self.options);
-            let losses = held_out(&with);
-            let held_out = losses.iter().sum();
-            let is_clear = held_out < present.iter().sum() && !is_tie(&losses, &present);
-            let rival = ScoredCandidate { term, share, held_out, p_value, losses };
-            (p_value <= self.options.alpha).then_some(Imitated { rival, with, is_clear })
+            // The score uses the nonlinear parameters of the model with this effect; refitted without it, the other
+            // terms would imitate it.
+            let mut without = with.clone();
+            without.terms.retain(|other| other.id() != candidate.id());
+            let p_value = significance(&term, self.library, &PartialRegression::of(&without), self.options);
+            let losses = validation_losses(&with);
+            let validation_losses = losses.iter().sum();
+            let is_clear = validation_losses < present.iter().sum() && !is_tie(&losses, &present);
+            let scored = ScoredCandidate { term, share, validation_losses, p_value, losses };
+            (p_value <= self.options.alpha).then_some(Imitated { scored, with, is_clear })
         });
-        let better = |a: &Imitated, b: &Imitated| a.rival.held_out.total_cmp(&b.rival.held_out);
+        let better = |a: &Imitated, b: &Imitated| a.scored.validation_losses.total_cmp(&b.scored.validation_losses);
         imitated.min_by(|a, b| b.is_clear.cmp(&a.is_clear).then(better(a, b)))
     }
 
-    /// A factor of the given model is elsewhere in another one.
-    pub(crate) fn is_wrong_beside(&self, other: &LinearModel<'p>) -> bool {
+    /// Whether a coefficient of the given model differs from its value in another model.
+    pub(crate) fn is_biased_by(&self, other: &LinearModel<'p>) -> bool {
         moved(&self.now, other, &self.initial_terms).is_some()
     }
 }
 
-/// A factor in two models.
+/// A coefficient in two models.
 pub struct Moved<'p> {
     pub term: Term<'p>,
-    pub factor: &'p str,
+    pub coefficient: &'p str,
     pub was: f64,
     pub is: f64,
 }
 
-/// The first factor of these effects that is wrong in one model if it is right in another, by more than the error.
+/// The first coefficient of these effects whose change between two models exceeds the error.
 pub fn moved<'p>(was: &LinearModel<'p>, is: &LinearModel<'p>, effects: &[impl AsRef<str>]) -> Option<Moved<'p>> {
     let (then, now) = (was.linear(), is.linear());
     let both = was.terms.iter().enumerate().filter(|(_, term)| effects.iter().any(|id| id.as_ref() == term.id()));
-    // In another form its factors mean something else.
+    // In another form the coefficients have another meaning.
     let same = |a: &Term, b: &Term| a.id() == b.id() && a.form.linear == b.form.linear;
     let mut both = both.filter_map(|(at, term)| Some((at, term, is.terms.iter().position(|t| same(t, term))?)));
     both.find_map(|(at, term, there)| {
-        let mut pairs = (0..term.columns.len()).map(|k| (k, then.factors[at][k], now.factors[there][k]));
+        let mut pairs = (0..term.columns.len()).map(|k| (k, then.coefficients[at][k], now.coefficients[there][k]));
         let is_wrong = |k: usize, was: f64, is: f64| {
             let size = (is - was).powi(2) * dot(&term.columns[k], &term.columns[k]);
             (is - was).abs() > BIASED_COEFFICIENT * is.abs() && size > then.sse
         };
         let (k, was, is) = pairs.find(|(k, was, is)| is_wrong(*k, *was, *is))?;
-        Some(Moved { term: term.clone(), factor: term.form.linear[k], was, is })
+        Some(Moved { term: term.clone(), coefficient: term.form.linear[k], was, is })
     })
 }

@@ -1,7 +1,7 @@
-//! A torque that is recorded later than its motion, in a run in steps: judged on the ramps, where plateaus say nothing.
+//! A torque delay in a run in steps: judged on the ramps, because steady-state means contain no delay.
 //!
-//! There the instruments are not aligned. A drive tells a velocity that it has filtered, so that a torque looks early with
-//! nothing hidden: by 0 to 30 ms on simulated joints. A torque that is late is no such thing.
+//! The instruments are not aligned there. A drive reports a filtered velocity, so that the torque looks early without
+//! any hidden effect: by 0 to 30 ms on simulated joints. Only a torque that follows the motion counts as delay.
 
 use crate::Options;
 use crate::effect::Effect;
@@ -16,60 +16,60 @@ use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::{DELAY_HALF_WIDTHS, DELAY_POWER, DELAY_ROWS};
 
 const DELAY: &str = "signal_delay";
-/// Divides the delay's factor into its time.
+/// The coefficient of the delay divided by the inertia is the delay time.
 const INERTIA: &str = "inertia";
 
-/// The delay that this run shows beyond the model, with the model that has it.
-pub fn late<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCandidate<'p>, TwoStageModel<'p>)> {
-    let Delayed { after, factor, half, by_s } = with_delay(now)?;
+/// The delay that this run supports, with the model that includes it.
+pub fn delay<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCandidate<'p>, TwoStageModel<'p>)> {
+    let Delayed { after, coefficient, half, by_s } = with_delay(now)?;
     let moving = after.moving.as_ref()?;
     let term = moving.terms.iter().find(|term| term.id() == DELAY)?.clone();
     let without = moving.without(DELAY);
-    // A late torque jumps late where the direction changes, and no change of an acceleration is that.
+    // A delayed friction torque jumps after the direction changes. The jerk column does not represent that jump.
     let asked = |residual: Vec<f64>| -> f64 {
         let column = &term.columns[0];
         residual.iter().zip(column).filter(|(_, jerk)| **jerk != 0.0).map(|(r, _)| r * r).sum()
     };
     let share = 1.0 - asked(moving.linear().residual) / asked(without.linear().residual);
     let p_value = alone(&term, &PartialRegression::of(&without), options);
-    let is_late = factor < -DELAY_HALF_WIDTHS * half
+    let is_delayed = coefficient < -DELAY_HALF_WIDTHS * half
         && by_s > DELAY_ROWS * moving.problem.view.sample_s
         && share >= options.practical_share
         && p_value <= options.alpha;
-    is_late.then(|| (ScoredCandidate::alone(term, share, p_value), after))
+    is_delayed.then(|| (ScoredCandidate::alone(term, share, p_value), after))
 }
 
-/// The smallest delay that would have been found, where none was and one could have been.
-pub fn silence<'p>(now: &TwoStageModel<'p>) -> Option<DetectionLimit<'p>> {
+/// The detection limit of the delay, if none was found and one could have been.
+pub fn detection_limit<'p>(now: &TwoStageModel<'p>) -> Option<DetectionLimit<'p>> {
     let Delayed { after, half, .. } = with_delay(now)?;
     let column = after.moving.as_ref()?.terms.iter().find(|term| term.id() == DELAY)?.columns.first()?.clone();
     let rms = (dot(&column, &column) / column.len() as f64).sqrt();
     Some(DetectionLimit { effect: DELAY, detectable_rms: (DELAY_HALF_WIDTHS + DELAY_POWER) * half * rms })
 }
 
-/// A model with a delay on its ramps, the delay's factor with half its 95 % interval, and its time.
+/// A model with a delay on its ramps, the coefficient of the delay with half its 95 % interval, and the delay time.
 struct Delayed<'p> {
     after: TwoStageModel<'p>,
-    factor: f64,
+    coefficient: f64,
     half: f64,
     by_s: f64,
 }
 
 fn with_delay<'p>(now: &TwoStageModel<'p>) -> Option<Delayed<'p>> {
-    let effect = now.spec.find(DELAY).ok().filter(|effect| is_asked(*effect, now))?;
+    let effect = now.spec.find(DELAY).ok().filter(|effect| is_testable(*effect, now))?;
     let effects = now.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
     let after = now.of(now.main.clone(), effects);
     let moving: &LinearModel = after.moving.as_ref()?;
     let parameters = intervals(moving, now.prepared.motion).parameters;
     let of = |id: &str| parameters.iter().find(|p| p.effect == id);
-    let (inertia, delay) = (of(INERTIA)?, of(DELAY)?);
-    let (factor, half) = (delay.value, (delay.ci95[1] - delay.ci95[0]) / 2.0);
-    let by_s = -factor / inertia.value;
-    (inertia.value > 0.0 && half.is_finite()).then_some(Delayed { after, factor, half, by_s })
+    let (inertia, delay_parameter) = (of(INERTIA)?, of(DELAY)?);
+    let (coefficient, half) = (delay_parameter.value, (delay_parameter.ci95[1] - delay_parameter.ci95[0]) / 2.0);
+    let by_s = -coefficient / inertia.value;
+    (inertia.value > 0.0 && half.is_finite()).then_some(Delayed { after, coefficient, half, by_s })
 }
 
-/// Nothing but ramps would show the delay, and the model has an inertia to tell its time by.
-fn is_asked(effect: &dyn Effect, now: &TwoStageModel) -> bool {
+/// Whether only ramps can show the delay and the model has an inertia, which scales the delay to a time.
+fn is_testable(effect: &dyn Effect, now: &TwoStageModel) -> bool {
     let is_in = |id: &str| now.effects.iter().any(|effect| effect == id);
     now.is_apart(effect) && is_in(INERTIA) && !is_in(DELAY)
 }

@@ -6,7 +6,7 @@ use crate::residual_analysis::structure::Left;
 use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
 use crate::words::percent;
 
-/// What remains after the decision.
+/// Findings that remain after the decision.
 pub struct Decided<'p> {
     /// Structure that no effect explains.
     pub left: Option<Left>,
@@ -36,7 +36,7 @@ impl<'p> Refused<'p> {
         }
     }
 
-    /// Its error reduction, and why it is rejected.
+    /// The error reduction of the effect, and why it is rejected.
     pub fn why(&self) -> String {
         let reduces = format!("it would reduce the squared validation error by {}", percent(self.gain));
         match () {

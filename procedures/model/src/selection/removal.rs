@@ -1,28 +1,28 @@
-//! Effects that came in and were taken back.
+//! Effects that were added and removed again.
 
-use crate::regression::cross_validation::held_out_rms;
+use crate::regression::cross_validation::validation_rms;
 use crate::selection::floating_search::FloatingSearch;
 
-/// An effect that came in and was taken back, with the held-out RMS that the last model would have with it.
+/// An effect that was added and removed again, with the validation RMS that the last model has with it.
 pub struct Withdrawn<'p> {
     pub effect: &'p str,
     pub why: RemovalReason,
-    pub held_out_rms: f64,
+    pub validation_rms: f64,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum RemovalReason {
-    /// The run does not decide its size or shape.
+    /// The run does not determine its size or shape.
     Unidentified,
-    /// It explains only a part of what shows over its own axis.
+    /// It explains only a part of the structure over its own axis.
     PartialExplanation,
-    /// Beside any function of the axis over which structure remains it explains nothing.
+    /// Together with a free function of the axis with structure it explains nothing.
     Spurious,
-    /// It shows no more than a zero that wanders over time.
+    /// A random-walk offset explains as much.
     RandomWalk,
-    /// It would have to be of an impossible size.
+    /// Its coefficients are physically impossible.
     Infeasible,
-    /// Whatever came in since explains the rest of it.
+    /// Later effects explain the same.
     Insignificant,
 }
 
@@ -39,17 +39,17 @@ impl RemovalReason {
     }
 }
 
-/// What was withdrawn and stayed out, for the reasons that are known or those of the search itself.
+/// Effects that were removed and stayed out, with the known reason or the one of the search itself.
 pub fn all<'p>(search: &FloatingSearch<'_, 'p>, reasons: &[(&'p str, RemovalReason)]) -> Vec<Withdrawn<'p>> {
     let of = |effect: &'p str| {
         let with = search.model_with(effect);
-        let mut sized = with.terms.iter().zip(with.linear().factors);
-        let of_search = match sized.all(|(term, factors)| term.id() != effect || term.allows(&factors)) {
+        let mut sized = with.terms.iter().zip(with.linear().coefficients);
+        let of_search = match sized.all(|(term, coefficients)| term.id() != effect || term.allows(&coefficients)) {
             true => RemovalReason::Insignificant,
             false => RemovalReason::Infeasible,
         };
         let why = reasons.iter().find(|(id, _)| *id == effect).map_or(of_search, |(_, why)| *why);
-        Withdrawn { effect, why, held_out_rms: held_out_rms(&with) }
+        Withdrawn { effect, why, validation_rms: validation_rms(&with) }
     };
     search.given_back().map(of).collect()
 }

@@ -1,4 +1,4 @@
-//! From a model to the one that is left when nothing more can be named, in stages: steady state first, then ramps, then reversals.
+//! Selection of effects in stages: steady state first, then ramps, then reversals.
 
 use crate::inference::intervals::intervals;
 use crate::preprocess::Prepared;
@@ -17,21 +17,21 @@ use crate::selection::omitted_variable_bias::{Imitated as Found, moved};
 use crate::selection::pruning::partial_explanation::{bump, half_explained};
 use crate::selection::pruning::spurious::borrowing;
 use crate::selection::pruning::unidentified::{Doubt, is_decided, undecided};
-use crate::selection::ramp_stage::late;
+use crate::selection::ramp_stage::delay;
 use crate::selection::removal::{self, RemovalReason};
 use crate::{ModelError, ModelSpec, Options};
 
-/// What the search of the steady-state part ends with.
+/// Result of the search on the steady-state part.
 struct SteadyState<'p> {
     maps: Maps,
     residual: Vec<f64>,
-    /// An effect that may be there as well, in the model that has it.
+    /// An effect that may be present as well, with the model that includes it.
     open: Option<Found<'p>>,
-    /// Why effects were taken back, where the search itself did not ask for it.
+    /// Reasons of removals that the search itself did not cause.
     taken_back: Vec<(&'p str, RemovalReason)>,
 }
 
-/// `on_advance` sees every move when it is made.
+/// `on_advance` gets each step when it is made.
 pub fn search<'p>(
     prepared: &'p Prepared,
     spec: &'p ModelSpec,
@@ -41,7 +41,7 @@ pub fn search<'p>(
 ) -> Result<ModelSelection<'p>, ModelError> {
     let start = TwoStageModel::new(prepared, spec, options)?;
     let library = CandidateSet::new(spec, &prepared.main, prepared.regimes());
-    // Of columns that cannot be right every effect is made up.
+    // Contradicting columns make every effect spurious.
     let most = if prepared.clashes.void.is_empty() { most } else { 0 };
     let offset = (most > 0).then(|| offset_terms::advance(&start, &library, options)).flatten();
     let mut path = Path::new(start, on_advance);
@@ -55,7 +55,7 @@ pub fn search<'p>(
         last.after = last.after.clone().settled(options)?;
     }
     let moves = |id: &str, was: &LinearModel<'p>, is: &LinearModel<'p>| imitated(id, was, is, spec, prepared);
-    let open = open.and_then(|open| moves(open.rival.term.id(), &search.now, &open.with));
+    let open = open.and_then(|open| moves(open.scored.term.id(), &search.now, &open.with));
     let upheld = search.retained_for_bias.iter().filter(|id| search.now.contains(id));
     let upheld = upheld.filter_map(|id| moves(id, &search.now.without(id), &search.now)).collect();
     let withdrawn = removal::all(&search, &taken_back);
@@ -64,13 +64,25 @@ pub fn search<'p>(
         ramps(&mut path, most, options)?;
         reversals(&mut path, most, prepared, options)?;
     }
-    let silences = search.silences();
+    let detection_limits = search.detection_limits();
     let Path { start, advances, .. } = path;
     let now = search.now;
-    Ok(ModelSelection { start, advances, withdrawn, now, residual, maps, silences, ties, upheld, open, decided: None })
+    Ok(ModelSelection {
+        start,
+        advances,
+        withdrawn,
+        now,
+        residual,
+        maps,
+        detection_limits,
+        ties,
+        upheld,
+        open,
+        decided: None,
+    })
 }
 
-/// First phase: what shows in steady-state motion, or in all of a trajectory.
+/// First stage: effects that show in steady-state motion, or in the whole of a trajectory.
 fn steady_state<'p>(
     search: &mut FloatingSearch<'_, 'p>,
     path: &mut Path<'_, 'p>,
@@ -102,7 +114,7 @@ fn steady_state<'p>(
                     let nothing_shows = axis.is_none();
                     let is_all = |with: &LinearModel| nothing_shows || leaves_nothing(with, prepared, options);
                     match search.imitated(is_decided) {
-                        Some(found) if found.is_clear && is_all(&found.with) => search.uphold(found.rival),
+                        Some(found) if found.is_clear && is_all(&found.with) => search.uphold(found.scored),
                         open => {
                             let open = open.filter(|_| nothing_shows);
                             return SteadyState { maps, residual, open, taken_back };
@@ -112,9 +124,9 @@ fn steady_state<'p>(
             }
         };
         let (added, removed, ties) = match made {
-            Move::Added { rival, ties } => {
-                effects.push(rival.term.id().into());
-                (Some(*rival), None, ties)
+            Move::Added { scored, ties } => {
+                effects.push(scored.term.id().into());
+                (Some(*scored), None, ties)
             }
             Move::Removed(id) => {
                 effects.retain(|e| e != id);
@@ -126,7 +138,7 @@ fn steady_state<'p>(
     }
 }
 
-/// An added effect that is only a relative of what lies outside the library.
+/// An added effect that only imitates structure from outside the library.
 fn outside_the_library<'p>(
     search: &FloatingSearch<'_, 'p>,
     maps: &Maps,
@@ -139,23 +151,23 @@ fn outside_the_library<'p>(
     whole.or_else(bump)
 }
 
-/// At most so many effects are added.
+/// Whether fewer than `most` effects were added.
 fn may_grow(path: &Path, most: usize) -> bool {
     path.end().effects.len() < path.start.effects.len() + most
 }
 
-/// Second phase: a torque that is recorded late, on the ramps of a run in steps.
+/// Second stage: a torque delay, on the ramps of a run in steps.
 fn ramps<'p>(path: &mut Path<'_, 'p>, most: usize, options: &Options) -> Result<(), ModelError> {
     if may_grow(path, most)
-        && let Some((rival, after)) = late(path.end(), options)
+        && let Some((scored, after)) = delay(path.end(), options)
     {
         let after = after.settled(options)?;
-        path.push(SelectionStep { added: Some(rival), removed: None, ties: Vec::new(), after });
+        path.push(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after });
     }
     Ok(())
 }
 
-/// Third phase: effects with a memory, around the reversals of a run in steps.
+/// Third stage: hysteresis effects, around the reversals of a run in steps.
 fn reversals<'p>(
     path: &mut Path<'_, 'p>,
     most: usize,
@@ -164,18 +176,18 @@ fn reversals<'p>(
 ) -> Result<(), ModelError> {
     let now = path.end();
     if may_grow(path, most)
-        && let Some(rival) = memory(now, options)
-        && let effects = now.effects.iter().map(String::as_str).chain([rival.term.id()]).map(String::from).collect()
+        && let Some(scored) = memory(now, options)
+        && let effects = now.effects.iter().map(String::as_str).chain([scored.term.id()]).map(String::from).collect()
         && let after = now.of(now.main.clone(), effects).settled(options)?
         && let Some(moving) = &after.moving
-        && !Doubt::of(&rival.term, moving, &intervals(moving, prepared.motion).parameters, prepared).is_there()
+        && !Doubt::of(&scored.term, moving, &intervals(moving, prepared.motion).parameters, prepared).is_there()
     {
-        path.push(SelectionStep { added: Some(rival), removed: None, ties: Vec::new(), after });
+        path.push(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after });
     }
     Ok(())
 }
 
-/// An added effect that is taken back where structure remains over an axis.
+/// An added effect to remove because structure remains over an axis.
 fn taken_back<'p>(
     search: &FloatingSearch<'_, 'p>,
     maps: &Maps,
@@ -187,38 +199,39 @@ fn taken_back<'p>(
     half.or_else(|| Some((borrowing(search, maps, axis, options)?, RemovalReason::Spurious)))
 }
 
-/// Of what tied with an effect when it came in, what still does beside everything that came later, and what does only
-/// since then.
+/// Confounded pairs of the final model: ties from the time of addition that still hold, and new ones.
 fn open_ties<'p>(search: &FloatingSearch<'_, 'p>, advances: &[SelectionStep<'p>]) -> Vec<(&'p str, &'p str)> {
     let mut open = Vec::new();
     for advance in advances {
-        let Some(effect) = advance.added.as_ref().map(|rival| rival.term.id()) else { continue };
-        let is_new = |rival: &&&'p str| !search.now.contains(rival) && !open.contains(&(effect, **rival));
+        let Some(effect) = advance.added.as_ref().map(|scored| scored.term.id()) else { continue };
+        let is_new = |scored: &&&'p str| !search.now.contains(scored) && !open.contains(&(effect, **scored));
         if search.now.contains(effect) {
-            let rivals: Vec<&'p str> = advance.ties.iter().filter(is_new).copied().collect();
-            open.extend(rivals.into_iter().filter(|rival| search.ties(effect, rival)).map(|rival| (effect, rival)));
+            let confounded: Vec<&'p str> = advance.ties.iter().filter(is_new).copied().collect();
+            open.extend(
+                confounded.into_iter().filter(|scored| search.ties(effect, scored)).map(|scored| (effect, scored)),
+            );
         }
     }
     for term in search.added() {
-        let stand_ins = search.stand_ins(term).into_iter().map(|rival| (term.id(), rival));
+        let stand_ins = search.stand_ins(term).into_iter().map(|scored| (term.id(), scored));
         let new: Vec<_> = stand_ins.filter(|tie| !open.contains(tie)).collect();
         open.extend(new);
     }
     open
 }
 
-/// Maps of what a model leaves.
+/// Residual maps of a model.
 fn maps_of(terms: &LinearModel, residual: Vec<f64>, prepared: &Prepared, options: &Options) -> Maps {
     Maps::new(prepared, undersampled_harmonics::without_swift_waves(terms, residual), options)
 }
 
-/// Nothing of what a model leaves shows over any axis.
+/// Whether no structure remains over any axis.
 fn leaves_nothing(terms: &LinearModel, prepared: &Prepared, options: &Options) -> bool {
     let residual = terms.tangent().rest(&terms.response());
     lack_of_fit::structured(&maps_of(terms, residual, prepared, options)).is_none()
 }
 
-/// What another effect imitates, with the figure of the given model that it costs.
+/// The effect that another one imitates, with the biased coefficient of the given model.
 fn imitated(
     id: &str,
     without: &LinearModel,
@@ -230,8 +243,8 @@ fn imitated(
     let info = found.term.effect.info();
     Some(Imitated {
         effect: id.into(),
-        parameter: format!("{}.{}", info.id, found.factor),
-        unit: prepared.motion.label(info.unit(found.factor)),
+        parameter: format!("{}.{}", info.id, found.coefficient),
+        unit: prepared.motion.label(info.unit(found.coefficient)),
         without: found.was,
         with: found.is,
     })

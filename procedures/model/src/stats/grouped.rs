@@ -1,8 +1,8 @@
-//! Means over groups of neighbouring rows, and what is left within them.
+//! Means over groups of neighbouring rows, and deviations from them.
 
 use std::ops::Range;
 
-/// What values differ by from the mean of their leg.
+/// Deviations of values from the mean of their leg.
 pub fn within(values: &[f64], legs: &[Range<usize>]) -> Vec<f64> {
     let mut left = values.to_vec();
     for (mean, leg) in means(values, legs).into_iter().zip(legs) {

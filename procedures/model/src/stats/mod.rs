@@ -1,4 +1,4 @@
-//! Statistics that know no model.
+//! Statistics that are independent of models.
 
 pub(crate) mod grouped;
 pub(crate) mod permutation_test;

@@ -1,8 +1,8 @@
-//! Error control over everything that is looked at: sign flips of whole blocks with the maximum over all candidates.
+//! Permutation test over all candidates: sign flips of whole blocks with the maximum statistic (max-T, family-wise).
 //!
-//! Westfall and Young 1993; under the null a block's residual is as likely as its mirror image, whatever its
-//! autocorrelation and whatever the candidates have in common. Statistics of different size are put on one scale by
-//! Wilson and Hilferty's cube root.
+//! Westfall and Young 1993. Under the null hypothesis the residual of a block is as likely as its negative, for any
+//! autocorrelation within blocks and any correlation between candidates. The Wilson-Hilferty cube root puts
+//! statistics with different degrees of freedom on one scale.
 
 use crate::linear::basis::dot;
 use crate::linear::cholesky::Cholesky;
@@ -20,7 +20,7 @@ pub struct Score {
 }
 
 impl Score {
-    /// `sums[c][g]`: product of what column c has of its own with the residual over group g.
+    /// `sums[c][g]`: product of the orthogonal part of column c with the residual over group g.
     pub fn new(sums: &[Vec<f64>]) -> Self {
         let k = sums.len();
         let mut spread = vec![0.0; k * k];
@@ -47,8 +47,9 @@ impl Score {
         normal_scale(total, self.parts.len())
     }
 
-    /// How many times as large as what noise brings its factor has to be for `z`, where `deciding` equal groups would decide it
-    /// as well as these do: by [`Score::z`], whose scatter holds the effect itself, or a single one by its jackknife.
+    /// Ratio of a coefficient to its noise that is required for the score `z`, with `deciding` equivalent equal
+    /// groups. For several columns by [`Score::z`], whose scatter includes the effect itself, for a single column by
+    /// its jackknife.
     pub fn needed(&self, z: f64, deciding: f64) -> f64 {
         if self.parts.len() == 1 {
             let t = StudentsT::new(0.0, 1.0, deciding - 1.0);
@@ -73,14 +74,14 @@ fn normal_scale(chi2: f64, k: usize) -> f64 {
     ((chi2 / k).cbrt() - (1.0 - spread)) / spread.sqrt()
 }
 
-/// What [`normal_scale`] makes `z` of.
+/// Inverse of [`normal_scale`].
 fn chi2_scale(z: f64, k: usize) -> f64 {
     let k = k as f64;
     let spread = 2.0 / (9.0 * k);
     k * (z * spread.sqrt() + 1.0 - spread).powi(3)
 }
 
-/// The largest score of all for each flip, in rising order.
+/// The largest score of all candidates for each flip, in rising order.
 pub struct MaxTNull {
     largest: Vec<f64>,
 }
@@ -89,7 +90,7 @@ impl MaxTNull {
     pub fn new(scores: &[impl Borrow<Score> + Sync], flips: usize, seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let groups = scores.iter().flat_map(|s| &s.borrow().parts).map(Vec::len).max().unwrap_or(0);
-        // A byte each: as numbers, all of them would be as large as columns of the run.
+        // One byte for each flip: as floating-point numbers all flips would be as large as columns of the run.
         let flips: Vec<bool> = (0..flips * groups).map(|_| !random.random::<bool>()).collect();
         let largest_of = |flips: &[bool]| {
             let signs: Vec<f64> = flips.iter().map(|flipped| if *flipped { -1.0 } else { 1.0 }).collect();
@@ -105,7 +106,7 @@ impl MaxTNull {
         self.largest.get((share * self.largest.len() as f64) as usize).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// Share of flips whose largest score is as large: all, where no candidate has anything of its own.
+    /// Share of flips whose largest score is at least `z`. It is one if no candidate has an orthogonal part.
     pub fn p_value(&self, z: f64) -> f64 {
         let below = self.largest.partition_point(|l| *l < z);
         (1 + self.largest.len() - below) as f64 / (1 + self.largest.len()) as f64
@@ -116,7 +117,7 @@ impl MaxTNull {
 mod tests {
     use super::*;
 
-    /// Sums of one column over many groups, which are nothing in total.
+    /// Sums of one column over many groups, with a total of zero.
     fn sums(groups: usize, turn: f64) -> Vec<f64> {
         let noise = |g: usize| (turn * (g * g) as f64).sin();
         let mean = (0..groups).map(noise).sum::<f64>() / groups as f64;
@@ -124,12 +125,12 @@ mod tests {
     }
 
     #[test]
-    fn a_factor_that_is_so_many_times_its_noise_reaches_the_score() {
+    fn a_coefficient_at_the_required_multiple_of_its_noise_reaches_the_score() {
         for columns in [1, 3] {
             let noise: Vec<Vec<f64>> = (0..columns).map(|c| sums(1000, 1.0 + c as f64)).collect();
             let first = &noise[0];
             let times = Score::new(&noise).needed(3.0, 1000.0);
-            // The first column's sums, moved until their total is so many of their standard errors.
+            // The sums of the first column, shifted so that their total is this number of standard errors.
             let each = times * dot(first, first).sqrt() / 1000.0;
             let mut moved = noise.clone();
             moved[0].iter_mut().for_each(|s| *s += each);

@@ -1,4 +1,4 @@
-//! What a user writes down about an effect: the same object in TOML, in JSON and inside a fit.
+//! Definition of a user effect: the same object in TOML, in JSON and inside a fit.
 
 use crate::effects;
 use crate::formula::fault::{FormulaFault, Mistake};
@@ -8,9 +8,9 @@ use crate::formula::{Formula, is_bare, signals};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 
-/// Nobody can tell more parameters of one effect apart, and every set of them is tried for linearity.
+/// Largest number of parameters: data cannot separate more, and every subset is tested for linearity.
 const MOST_PARAMETERS: usize = 8;
-/// Whole numbers are tried one by one, those of several parameters in every combination.
+/// Largest number of tested integers, including all combinations of several integer parameters.
 const MOST_WHOLE: f64 = 512.0;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,17 +19,17 @@ pub struct Definition {
     /// Lower case letters, digits and underscores; not an id of the library.
     pub id: String,
     pub kind: Kind,
-    /// The quantity that models of the kind predict, `=`, and a formula over signals and parameters; that alone is enough.
+    /// `response = formula` over signals and parameters; the right-hand side alone is sufficient.
     pub formula: String,
     pub parameters: Vec<OwnParameter>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub title: String,
-    /// One sentence that a technician understands.
+    /// One sentence for users.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub sentence: String,
 }
 
-/// A parameter of a user's effect. One that enters linearly is solved for; the others are searched for in their range.
+/// A parameter of a user effect. Linear parameters are solved for; nonlinear ones are searched for in their range.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OwnParameter {
@@ -40,10 +40,10 @@ pub struct OwnParameter {
     pub min: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
-    /// Where the search begins, inside the bounds.
+    /// Range of the starting points, inside the bounds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<[f64; 2]>,
-    /// A whole number, such as waves for each turn: every one of the range is tried.
+    /// An integer parameter, such as waves in a turn: every value of the range is tested.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub whole: bool,
 }
@@ -53,7 +53,7 @@ fn one() -> String {
 }
 
 impl Definition {
-    /// With the left-hand side, where the formula was written without: files, exports and pages show it whole.
+    /// Adds the left-hand side if it is missing, because files, exports and pages show the complete formula.
     pub(crate) fn whole(mut self) -> Self {
         let (left, names) = (left_hand_side(self.kind), self.parameters.iter().map(|p| p.name.as_str()));
         if is_bare(&self.formula, left, &names.collect::<Vec<_>>()) {
@@ -62,7 +62,7 @@ impl Definition {
         self
     }
 
-    /// The formula, if everything makes sense.
+    /// The formula, if the definition is valid.
     pub(crate) fn check(&self) -> Result<Formula, FormulaFault> {
         self.check_id().map_err(|m| m.found(&self.id, "id", &self.id))?;
         for (i, parameter) in self.parameters.iter().enumerate() {
@@ -139,13 +139,13 @@ impl OwnParameter {
         Ok(())
     }
 
-    /// How many whole numbers its range holds.
+    /// Number of integers in the range.
     fn whole_numbers(&self) -> f64 {
         self.max.unwrap_or_default() - self.min.unwrap_or_default() + 1.0
     }
 }
 
-/// A name that formulas and C can hold.
+/// A name that is valid in formulas and in C.
 fn check_name(name: &str) -> Result<(), Mistake> {
     let wrong =
         name.char_indices().find(|(i, c)| !(c.is_ascii_alphabetic() || *i > 0 && (c.is_ascii_digit() || *c == '_')));

@@ -1,4 +1,4 @@
-//! Effects that users write: a formula with parameters, used like an effect of the library.
+//! User effects: a formula with parameters, used like an effect of the library.
 
 pub(crate) mod definition;
 pub(crate) mod inline;
@@ -20,10 +20,10 @@ use jointbench_instrument::{Kind, Motion};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// Said of a formula that names the motor's torque.
+/// Warning for a formula that contains the motor torque.
 const OF_RESPONSE: &str = "motor_torque is the response that a friction model predicts: an effect of it absorbs every residual, and predicts nothing from motion and load; name the cause instead";
 
-/// A user's effect whose definition makes sense.
+/// A user effect with a valid definition.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Definition", into = "Definition")]
 pub struct OwnEffect {
@@ -31,7 +31,7 @@ pub struct OwnEffect {
     formula: Formula,
     parameters: Vec<ParameterInfo>,
     needs: Vec<&'static str>,
-    /// The user's, or one that names the formula.
+    /// The sentence of the user, or a generated one that names the formula.
     sentence: String,
     looks: String,
 }
@@ -68,8 +68,8 @@ impl OwnEffect {
         &self.formula
     }
 
-    /// What a user should think about, though the figures are the formula's all the same: units that contradict each other
-    /// in such a motion, or in every one where none is known, and a formula of the very thing that is modelled.
+    /// Warnings that do not change results: contradicting units for this motion (or for both motions if it is
+    /// unknown), and a formula of the response itself.
     pub fn doubts(&self, motion: Option<Motion>) -> Vec<FormulaFault> {
         let response = self.formula.columns.iter().find_map(|(_, e)| e.place_of(Signal::Drive));
         let response = response.map(|at| Mistake::new(at, OF_RESPONSE));
@@ -77,7 +77,7 @@ impl OwnEffect {
         self.formula.doubt(motion).cloned().into_iter().chain(response).map(found).collect()
     }
 
-    /// The first column that the formula names and a run with these has not.
+    /// The first column of the formula that is not among `columns`.
     pub fn missing(&self, columns: &[&str]) -> Option<FormulaFault> {
         let others = self.formula.signals.iter().filter(|s| matches!(s.signal, Signal::Column(_)));
         let missing = others.into_iter().find(|s| !columns.contains(&s.column))?;
@@ -86,7 +86,7 @@ impl OwnEffect {
         Some(Mistake::new(place, message).found(self.id(), "formula", &self.definition.formula))
     }
 
-    /// [`ModelError::NotFinite`] where a signal that this data has makes the formula fail at every shape.
+    /// [`ModelError::NotFinite`] if a signal of this data makes the formula fail for all nonlinear parameters.
     pub(crate) fn check(&self, view: &View) -> Result<(), ModelError> {
         let present = self.formula.signals.iter().all(|s| view.find(s.signal).is_some());
         let tried: Vec<Columns> = self.grid(&self.shapes(view)).iter().map(|s| self.evaluate(s, view)).collect();
@@ -114,7 +114,7 @@ impl OwnEffect {
         self.formula.shape.iter().map(range).collect()
     }
 
-    /// The one way of writing the effect, without starting points.
+    /// The only form of the effect, without starting points.
     pub(crate) fn form(&self, view: &View) -> Form<'_> {
         let name = |p: usize| self.definition.parameters[p].name.as_str();
         let linear = self.formula.columns.iter().map(|(p, _)| name(*p)).collect();
@@ -152,11 +152,11 @@ impl Effect for OwnEffect {
         }
     }
 
-    /// Starting points at which the formula is finite and says something.
+    /// Starting points at which the formula is finite and not zero.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let tells = |columns: &Columns| is_finite(columns) && columns.iter().all(|c| c.iter().any(|x| *x != 0.0));
+        let is_usable = |columns: &Columns| is_finite(columns) && columns.iter().all(|c| c.iter().any(|x| *x != 0.0));
         let mut grid = self.grid(&self.shapes(view));
-        grid.retain(|start| tells(&self.evaluate(start, view)));
+        grid.retain(|start| is_usable(&self.evaluate(start, view)));
         if grid.is_empty() {
             return Vec::new();
         }
@@ -177,7 +177,7 @@ impl Effect for OwnEffect {
     }
 }
 
-/// The signals of a kind, and the columns that these effects name besides.
+/// The signals of a kind, and the additional columns of these effects.
 pub fn signals_with(kind: Kind, own: &[OwnEffect]) -> Vec<NamedSignal> {
     let mut all = signals(kind).to_vec();
     for other in own.iter().flat_map(|own| &own.formula.signals) {
@@ -192,7 +192,7 @@ impl TryFrom<Definition> for OwnEffect {
     type Error = FormulaFault;
 
     fn try_from(definition: Definition) -> Result<Self, FormulaFault> {
-        // A mistake stands at its character of what was written.
+        // An error has its position in the original text.
         definition.check()?;
         let definition = definition.whole();
         let formula = definition.check()?;
@@ -235,7 +235,7 @@ fn is_finite(columns: &Columns) -> bool {
     columns.iter().flatten().all(|x| x.is_finite())
 }
 
-/// The library with the effects that a user wrote, which come last.
+/// The library, followed by the user effects.
 pub(crate) fn with_own(kind: Kind, own: &[OwnEffect]) -> impl Iterator<Item = &dyn Effect> {
     effects::effects(kind).iter().copied().chain(own.iter().map(|effect| effect as &dyn Effect))
 }

@@ -1,15 +1,15 @@
-//! Where the search for a shape parameter goes when the user leaves that to the data.
+//! Search ranges of nonlinear parameters that the user did not define.
 
 use crate::effect::{Shape, ShapeSearch};
 use crate::formula::signals::NamedSignal;
 use crate::user_effects::definition::OwnParameter;
 use crate::view::View;
 
-/// Starting points of one, two and more parameters of an effect.
+/// Starting points for one, two and more parameters of an effect.
 const POINTS: [usize; 3] = [10, 5, 3];
 
-/// The range of a parameter. What is not given comes from the largest value of a signal in the same unit, 1 where there
-/// is none: three decades below it and one above. Without a bound that allows it no parameter is negative.
+/// The range of a parameter. A missing bound is derived from the largest value of a signal in the same unit, or from
+/// 1: three decades below it and one above. Negative values require a negative bound.
 pub fn shape<'e>(parameter: &'e OwnParameter, signals: &[NamedSignal], view: &View) -> Shape<'e> {
     let same = signals.iter().filter(|s| s.unit == parameter.unit).map(|s| view.peak(s.signal));
     let size = Some(same.fold(0.0, f64::max)).filter(|peak| *peak > 0.0).unwrap_or(1.0);
@@ -26,12 +26,12 @@ pub fn shape<'e>(parameter: &'e OwnParameter, signals: &[NamedSignal], view: &Vi
         (None, Some(max)) => (max - 10.0 * max.abs().max(size), max),
         (None, None) => (1e-3 * size, 10.0 * size),
     };
-    // A logarithm has no zero.
+    // Zero has no logarithm.
     let min = if search == ShapeSearch::Smooth { min.max(1e-4 * max) } else { min };
     Shape { name: &parameter.name, min, max, search }
 }
 
-/// Starting points of all shape parameters together. `starts` is where the user begins the search for each.
+/// Starting points of all nonlinear parameters together. `starts` is the user's range of starting points for each.
 pub fn grid(shapes: &[Shape], starts: impl Iterator<Item = Option<[f64; 2]>>) -> Vec<Vec<f64>> {
     let each = POINTS[shapes.len().clamp(1, POINTS.len()) - 1];
     shapes.iter().zip(starts).fold(vec![Vec::new()], |grid, (shape, start)| {

@@ -7,7 +7,7 @@ fn rub() -> OwnEffect {
     OwnEffect::inline(Kind::Friction, RUB).unwrap()
 }
 
-/// Mistake where `§` stands.
+/// An error at `§`.
 fn check_mistake(marked: &str, words: &str) {
     let fault = OwnEffect::inline(Kind::Friction, &marked.replacen('§', "", 1)).unwrap_err();
     let at = marked.chars().position(|c| c == '§').unwrap();
@@ -48,7 +48,7 @@ fn the_short_form_says_the_same_as_the_long_one() {
 }
 
 #[test]
-fn every_mistake_of_the_short_form_stands_at_its_character() {
+fn every_error_of_the_short_form_has_its_character() {
     check_mistake("rub: tau = a * §velocty; a [µm]", "did you mean velocity");
     check_mistake("r§üb: tau = a * velocity; a", "a name begins with a letter");
     check_mistake("§stribeck: tau = a * velocity; a", "the library has an effect");
@@ -80,13 +80,13 @@ fn a_formula_without_its_left_hand_side_is_kept_with_it() {
 }
 
 #[test]
-fn the_caret_stands_below_the_mistake() {
+fn the_caret_is_below_the_error() {
     let fault = OwnEffect::inline(Kind::Friction, "rub: tau = a * velocty; a").unwrap_err();
     assert_eq!(fault.marked(), "rub: tau = a * velocty; a\n               ^^^^^^^");
 }
 
 #[test]
-fn all_unknown_names_are_told_at_once() {
+fn all_unknown_names_are_reported_at_once() {
     let text = "rub: tau = a * tanh(µ / w1) * w2 * w1 * thanh(load); a";
     let fault = OwnEffect::inline(Kind::Friction, text).unwrap_err();
     let marked = "                    ^   ^^    ^^        ^^^^^";
@@ -136,7 +136,7 @@ fn a_range_that_is_not_given_comes_from_the_data() {
 }
 
 #[test]
-fn what_is_not_finite_is_told_with_its_point() {
+fn a_non_finite_value_is_reported_with_its_point() {
     let effect = OwnEffect::inline(Kind::Friction, "x: tau = a / velocity; a [Nm]").unwrap();
     assert!(effect.check(&view(&[1.0, 2.0])).is_ok());
     let error = effect.check(&view(&[1.0, 0.0, 2.0])).unwrap_err();
@@ -149,7 +149,7 @@ fn what_is_not_finite_is_told_with_its_point() {
 }
 
 #[test]
-fn a_wave_fades_over_a_plateau() {
+fn a_wave_is_attenuated_at_steady_state() {
     let effect = OwnEffect::inline(Kind::Friction, "x: tau = a * cos(5 * position); a [Nm]").unwrap();
     let position: Vec<f64> = (0..40).map(|i| 0.1 * f64::from(i)).collect();
     let mut samples = Signals::new(40);

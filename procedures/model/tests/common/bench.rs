@@ -1,11 +1,11 @@
-//! A made-up bench: torque over a staircase of speeds and loads, written down here and nowhere in the library.
+//! A simulated bench: torque over a staircase of speeds and loads, with formulas that the library does not contain.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 
-/// What the torque is made of at one sample.
+/// Conditions of one sample, which determine its torque.
 #[derive(Clone, Copy)]
 pub struct Moment {
     pub velocity: f64,

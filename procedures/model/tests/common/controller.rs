@@ -4,7 +4,7 @@ use jointbench_model::Fit;
 use jointbench_model::export::{Format, export};
 use std::process::Command;
 
-/// What the header's function returns at every row of its inputs, in the order of its struct. `None` without a compiler.
+/// Result of the header's function at every row of its inputs, in the order of its struct. `None` without a compiler.
 pub fn on_controller(fit: &Fit, unit: &str, rows: &[Vec<f64>]) -> Option<Vec<f64>> {
     if Command::new("cc").arg("--version").output().is_err() {
         println!("SKIPPED: there is no C compiler (cc) to run the exported header with");
@@ -29,6 +29,6 @@ pub fn on_controller(fit: &Fit, unit: &str, rows: &[Vec<f64>]) -> Option<Vec<f64
     let built = Command::new("cc").args(["-std=c99", "-O1", "-o"]).arg(&program).arg(&source).arg("-lm").output();
     let built = built.unwrap();
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-    let told = Command::new(&program).output().unwrap();
-    Some(String::from_utf8(told.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect())
+    let reported = Command::new(&program).output().unwrap();
+    Some(String::from_utf8(reported.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect())
 }

@@ -1,4 +1,4 @@
-//! Reads measured runs from beside the repository, and makes some up.
+//! Reads measured runs from next to the repository, and simulates others.
 
 #![allow(dead_code, reason = "each test binary uses its part")]
 
@@ -11,7 +11,7 @@ use jointbench_instrument::{Channel, Meta, RunTable, Trace};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// A folder of runs, `None` with a message where it is missing.
+/// A folder of runs; `None` with a message if it is missing.
 pub fn shared(folder: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(folder);
     if path.is_dir() {

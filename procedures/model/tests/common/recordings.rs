@@ -1,4 +1,4 @@
-//! Measurements made by others, and what is asked of a diagnosis of each.
+//! Published measurements, with requirements on the diagnosis of each.
 
 use super::read;
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
@@ -11,10 +11,10 @@ pub const ODRIVE: [&str; 3] = ["odrive-slow2-nocomp-0", "odrive-slow2-nocomp-1",
 pub const PLACID: &str = "placid-b5zd-brake";
 pub const KR300: &str = "kr300-axis1";
 
-/// Waves in a turn of the motor of [`ODRIVE`] that are known: a neighbour motor, slots, poles, and thrice the slots.
+/// Known waves in a motor turn of [`ODRIVE`]: a neighbour motor, slots, poles, and three times the slots.
 pub const WAVES: [f64; 4] = [7.0, 12.0, 14.0, 36.0];
 
-/// Effects that may be added to the baseline of a recording.
+/// Number of effects that may be added to the baseline of a recording.
 pub fn most(folder: &str) -> usize {
     if folder == EMPS { 5 } else { 3 }
 }
@@ -24,12 +24,12 @@ pub fn recording(data: &Path, folder: &str) -> RunTable {
     if folder == KR300 { stiffness(&run) } else { run }
 }
 
-/// Share of the force of the run that [`EMPS`] keeps apart which a fit leaves.
+/// Relative error of a fit on the force of the validation run of [`EMPS`].
 pub fn of_pulses(data: &Path, fit: &Fit) -> f64 {
     evaluate(fit, &read(&data.join("emps-pulses"))).unwrap().relative_error
 }
 
-/// Waves in a turn that a fit has.
+/// Waves in a turn in a fit.
 pub fn waves(fit: &Fit) -> Vec<f64> {
     let mut waves: Vec<f64> =
         fit.parameters.iter().filter(|p| p.name.starts_with("harmonic")).map(|p| p.value).collect();
@@ -37,8 +37,8 @@ pub fn waves(fit: &Fit) -> Vec<f64> {
     waves
 }
 
-/// Axis 1 of an industrial robot as a stiffness run: both encoders, and the motor's torque times the gear for the
-/// torque at the link.
+/// Axis 1 of an industrial robot as a stiffness run: both encoders, and the motor torque times the gear ratio instead
+/// of the link torque.
 fn stiffness(robot: &RunTable) -> RunTable {
     let gear = robot.meta().gear_ratio.unwrap();
     let torque_constant = robot.meta().torque_constant_nm_per_a.unwrap();

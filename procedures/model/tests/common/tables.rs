@@ -1,19 +1,19 @@
-//! Tables of all four kinds with the required columns only, as regular or as broken as a test asks for.
+//! Tables of all four kinds with the required columns only, as regular or broken as a test requires.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, TableFault, Trace};
 
-/// What a table is made of.
+/// Properties of a table.
 #[derive(Debug, Clone)]
 pub struct Shape {
     pub rows: usize,
     /// Size of the first input (motor or shaft position, current).
     pub turn: f64,
-    /// Size of what the model predicts.
+    /// Size of the response.
     pub size: f64,
-    /// Share of scatter in both.
+    /// Relative noise of both.
     pub noise: f64,
     pub mix: u64,
-    /// Samples of one segment; no column where zero.
+    /// Samples of one segment; no segment column if zero.
     pub segment: usize,
     pub repeats: usize,
 }
@@ -24,7 +24,7 @@ impl Default for Shape {
     }
 }
 
-/// Scatter without any order, within ±0.5.
+/// Pseudo-random numbers within ±0.5.
 pub fn scatter(i: usize, mix: u64) -> f64 {
     ((i as u64 + 1 + mix.wrapping_mul(1_000_003)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64
         / (1u64 << 24) as f64
@@ -72,7 +72,7 @@ pub fn try_table(kind: Kind, shape: &Shape, spoil: impl Fn(&str, usize, f64) -> 
     RunTable::new(meta(kind), trace)
 }
 
-/// No rows yet of a stiffness run that knows its speed, its segments and its repeats.
+/// An empty stiffness run with speed, segment and repeat columns.
 pub fn stiffness() -> Trace {
     let names = "time_s motor_position_rad link_position_rad link_velocity_rad_s link_torque_nm segment repeat";
     Trace::new(names.split(' ').map(Channel::new).collect())
@@ -98,14 +98,15 @@ pub fn meta(kind: Kind) -> Meta {
 pub struct Moment {
     pub row: usize,
     pub leg: usize,
-    /// Angle of the motor, rad.
+    /// Angle of the motor [rad].
     pub angle: f64,
     pub velocity: f64,
-    /// Since the step began.
+    /// Time since the start of the step [s].
     pub step_s: f64,
 }
 
-/// Friction at speeds of the motor, rad/s, both ways and again, each for so many rows at 250 Hz, with a torque of its own.
+/// Friction at motor speeds [rad/s] in both directions with repeats, each for a number of rows at 250 Hz, with a
+/// given torque.
 pub fn friction_in_steps(speeds: &[f64], repeats: usize, rows: usize, torque_nm: impl Fn(&Moment) -> f64) -> RunTable {
     const STEP_S: f64 = 0.004;
     let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];

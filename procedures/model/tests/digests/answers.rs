@@ -1,4 +1,4 @@
-//! The answers to one run, each as the beginning of the SHA-256 of its JSON.
+//! The answers to one run, each as the first digits of the SHA-256 of its JSON.
 
 use super::cases::{Case, menu};
 use jointbench_model::{Discovery, ModelError, ModelSpec, Open, diagnose, discover, fit, next_run, residuals};
@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::json;
 use sha2::{Digest, Sha256};
 
-/// Hexadecimal digits that are kept of each digest.
+/// Hexadecimal digits of each digest.
 const DIGITS: usize = 12;
 /// Effects that `discover` may add.
 const MOST_EFFECTS: usize = 6;
@@ -37,7 +37,7 @@ pub fn answers(case: &Case) -> String {
     .join(" ")
 }
 
-/// The model with which `discover` ended.
+/// The final model of `discover`.
 fn complete(found: &Discovery, spec: &ModelSpec) -> Result<ModelSpec, ModelError> {
     ModelSpec::with_own(spec.kind, &found.model, spec.own.clone())
 }

@@ -1,5 +1,5 @@
-//! The runs: machines of the example `evaluate`, each short, with a formula of the user, with columns that contradict each
-//! other, and some as long as they were recorded; and measurements of others.
+//! The runs of the digests: short runs of the machines of the example `evaluate`, with a user formula or with
+//! contradicting columns, some of full length, and published measurements.
 
 use crate::common::recordings::{KR300, recording};
 use crate::made;
@@ -17,17 +17,17 @@ pub struct Case {
 /// Rounds of machines.
 const ROUNDS: [u64; 2] = [34_001, 34_002];
 
-/// One machine of so many is looked at as long as it was recorded.
+/// One machine of this number is evaluated in full length.
 const LONG: usize = 6;
 
-/// What a short run keeps: of a friction run the beginning of each step, of the others one sample of so many.
+/// Kept part of a short run: the beginning of each step of a friction run, every n-th sample of the others.
 const BEGINNING: f64 = 0.4;
 const THINNED: usize = 3;
 
-/// Sign flips of the short runs: enough for the smallest error probability that is asked for.
+/// Sign flips of the short runs: sufficient for the smallest error probability in use.
 const FLIPS: usize = 99;
 
-/// What is made of a machine's run.
+/// Modification of a machine's run.
 #[derive(Clone, Copy)]
 enum Way {
     Long,
@@ -36,7 +36,7 @@ enum Way {
     Contradictory,
 }
 
-/// Machines one after the other, each with its number.
+/// The machines in order, each with its number.
 pub fn machines() -> impl Iterator<Item = (usize, made::Case)> + Send {
     ROUNDS.into_iter().flat_map(made::round).enumerate()
 }
@@ -87,9 +87,9 @@ fn changed(run: &RunTable, change: impl Fn(&str, &[f64]) -> Vec<f64>) -> RunTabl
     RunTable::new(run.meta().clone(), Trace::from_columns(channels, columns)).unwrap()
 }
 
-/// A column in another unit, or with the other sign: by turns, so that every check meets one.
+/// A column in another unit or with the opposite sign, in turn, so that every check is triggered.
 fn contradictory(run: &RunTable) -> RunTable {
-    let (name, factor) = match (run.kind(), run.len() % 3) {
+    let (name, scale) = match (run.kind(), run.len() % 3) {
         (Kind::Friction, 0) => ("motor_current_a", 1e3),
         (Kind::Friction, 1) => ("link_torque_nm", -1.0),
         (Kind::Friction, _) => ("motor_velocity_rad_s", 180.0 / std::f64::consts::PI),
@@ -100,8 +100,8 @@ fn contradictory(run: &RunTable) -> RunTable {
         (Kind::Brake, _) => ("brake_torque_nm", 1e3),
     };
     changed(run, |column, values| {
-        let factor = if column == name { factor } else { 1.0 };
-        values.iter().map(|v| factor * v).collect()
+        let scale = if column == name { scale } else { 1.0 };
+        values.iter().map(|v| scale * v).collect()
     })
 }
 
@@ -115,7 +115,7 @@ fn formula(kind: Kind) -> OwnEffect {
     OwnEffect::inline(kind, text).unwrap()
 }
 
-/// Strokes that a bench might make next: slow, fast, loaded, warm.
+/// Possible next runs: slow, fast, loaded, warm strokes.
 pub fn menu(run: &RunTable) -> Vec<Choice> {
     let stroke = |name: &str, speeds: &[f64], load_nm: f64, brake_current_a: f64, warmer_k: f64| {
         let ways = speeds.iter().chain(speeds).flat_map(|speed| [*speed, -speed]);
@@ -147,7 +147,7 @@ pub fn menu(run: &RunTable) -> Vec<Choice> {
     }
 }
 
-/// Measurements of others, those that are there.
+/// The published measurements that are present.
 pub fn recordings(data: &Path) -> Vec<Case> {
     let mut folders: Vec<String> = std::fs::read_dir(data)
         .unwrap()

@@ -1,12 +1,12 @@
-//! Whether answers are the same as before: digests of `diagnose`, `discover`, `fit`, `residuals` and `next_run` over
-//! hundreds of runs, held against those that this folder keeps.
+//! Regression test of answers: digests of `diagnose`, `discover`, `fit`, `residuals` and `next_run` over hundreds of
+//! runs, compared with those in this folder.
 //!
-//! A change that means to change answers writes them anew, and says so in its commit:
+//! A change that intends to change answers renews the digests, and its commit says so:
 //!
 //! `JOINTBENCH_DIGESTS=write cargo test -p jointbench-model --test digests`
 //!
-//! They hold for every number of threads (`RAYON_NUM_THREADS=1`). Libraries of other machines may round sines another
-//! way: where the first line of a file is another, its answers are not compared.
+//! The digests hold for every number of threads (`RAYON_NUM_THREADS=1`). Libraries of other machines may round sines
+//! differently: if the first line of a file differs, its answers are not compared.
 
 mod answers;
 mod arithmetic;
@@ -22,7 +22,7 @@ use cases::Case;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// Fewer runs would leave ways through the diagnosis untried.
+/// With fewer runs, some paths of the diagnosis would not be tested.
 const FEWEST: usize = 400;
 
 #[test]

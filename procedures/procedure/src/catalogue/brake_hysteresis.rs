@@ -1,12 +1,14 @@
-//! The brake's torque over its current with all its history (thesis, figure 3.6).
+//! Torque of a brake over its current and its whole current history (thesis, figure 3.6).
 //!
-//! First the brake is demagnetised. Then come the major loop, first-order reversal curves from every current of a grid
-//! down to zero, nested minor loops, and a random history that takes no part in the model and judges it. Each is one
-//! unbroken step at constant speed from no current to none: a fall to zero while turning wipes out what was before.
+//! The run demagnetises the brake first. Then it measures the major loop, first-order reversal curves from every
+//! current of a grid down to zero, and nested minor loops. A random history is left out of the model and validates
+//! it. Each of these is one uninterrupted step at constant speed. It starts and ends at zero current, because a fall
+//! to zero during rotation erases the history.
 //!
-//! The model is Preisach's in Everett's form: the torque that a fall from one current to another takes away is measured
-//! on the reversal curves, and every history is a sum of such falls and rises (Mayergoyz, *Mathematical Models of
-//! Hysteresis*, chapter 1). No shape is assumed. Its inverse gives the current for a torque after any history.
+//! The model is the Preisach model in Everett's form. The reversal curves measure the torque reduction by a fall
+//! between two currents. Every history is a sum of such falls and rises (Mayergoyz, *Mathematical Models of
+//! Hysteresis*, chapter 1). No function shape is assumed. The inverse gives the current for a torque after any
+//! history.
 
 mod everett;
 mod identify;
@@ -39,7 +41,7 @@ const SCHEMA: &[Parameter] = &[
     Parameter::count("order_seed", "Random seed (history)", 1, [0, 1_000_000]),
 ];
 
-/// What a sweep is for: kept in the column `repeat`.
+/// Purpose of a sweep, stored in the column `repeat`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
     Demagnetise,
@@ -84,7 +86,7 @@ impl Procedure for BrakeHysteresis {
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
         legs.repeat = Part::Demagnetise as u32;
         legs.demagnetise(wanted_rad_s, top_a, 2.0, bench);
-        // Each sweep turns towards where the first began.
+        // Each sweep turns towards the position where the first one began.
         let mut way_rad = 0.0;
         for (part, label, currents) in &sweeps {
             legs.repeat = *part as u32;
@@ -110,13 +112,13 @@ impl Procedure for BrakeHysteresis {
     }
 }
 
-/// The model that a run of this procedure has found; `None` where it did not come so far.
+/// The model from a run of this procedure; `None` if the run ended too early.
 pub fn brake_model(run: &RunTable) -> Option<BrakeModel> {
     run.column("brake_torque_nm")?;
     identify::model(run).ok()
 }
 
-/// The currents of every sweep, each from 0 and back to it.
+/// The currents of every sweep, each from 0 and back to 0.
 fn sweeps(values: &Values, top_a: f64) -> Vec<(Part, String, Vec<f64>)> {
     let levels = values.count("levels");
     let grid = |level: u32| top_a * f64::from(level) / f64::from(levels);
@@ -131,7 +133,7 @@ fn sweeps(values: &Values, top_a: f64) -> Vec<(Part, String, Vec<f64>)> {
     let minor = [0.85, 0.3, 0.7, 0.3, 0.7, 0.4, 0.6, 0.4, 0.6, 0.3, 0.85];
     sweeps.push((Part::Minor, "minor loops".to_owned(), minor.map(|share| share * top_a).to_vec()));
     let mut rng = ChaCha8Rng::seed_from_u64(u64::from(values.count("order_seed")));
-    // Up to a random current, down to one, and so on.
+    // Alternately up and down to random currents.
     let (mut at, mut random) = (0.0, Vec::new());
     for turn in 0..values.count("random_turns") {
         at = if turn % 2 == 0 { rng.random_range(at..1.0) } else { rng.random_range(0.05 * at..at) };

@@ -1,9 +1,9 @@
-//! What the procedures of a brake share: what they need of a bench, and the facts of a brake run.
+//! Shared functions of the brake procedures: requirements on the bench, and the facts of a brake run.
 
 use crate::plan::{BenchFacts, PlanFault};
 use jointbench_instrument::{Kind, Meta};
 
-/// The link turns no further than this share of its range in one step.
+/// Largest share of the link's range that one step may use.
 const RANGE_SHARE: f64 = 0.9;
 
 pub(super) fn check(bench: &BenchFacts) -> Result<(), PlanFault> {
@@ -29,7 +29,7 @@ pub(super) fn meta(bench: &BenchFacts, rate_hz: f64) -> Meta {
     meta
 }
 
-/// The wanted speed (motor), or the highest at which a step of `duration_s` stays within the link's range.
+/// The desired motor speed, or the highest one at which a step of `duration_s` stays within the link's range.
 pub(super) fn speed_rad_s(wanted_rad_s: f64, duration_s: f64, bench: &BenchFacts) -> f64 {
     let room_rad = bench.constants.link_range_rad.map_or(f64::INFINITY, |range_rad| RANGE_SHARE * range_rad);
     wanted_rad_s.min(room_rad * bench.constants.gear_ratio / duration_s)

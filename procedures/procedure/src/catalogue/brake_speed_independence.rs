@@ -1,4 +1,4 @@
-//! Does the brake's torque depend on speed (thesis, figures 3.3 to 3.5)? Constant currents, each over all speeds.
+//! Speed dependence of the brake torque (thesis, figures 3.3 to 3.5): constant currents, each at all speeds.
 
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
@@ -27,7 +27,7 @@ const SCHEMA: &[Parameter] = &[
     Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
 ];
 
-/// The last part of a hold, behind the wind-up of the brake's rotor.
+/// Last share of a hold, after the wind-up of the brake's rotor.
 const SETTLED: f64 = 0.6;
 
 impl Procedure for BrakeSpeedIndependence {
@@ -155,7 +155,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     })
 }
 
-/// Highest less lowest of the means of both directions: their difference is no matter of speed.
+/// Range of the means of both directions, because their difference does not depend on speed.
 fn change(points: &[(f64, f64)]) -> f64 {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));

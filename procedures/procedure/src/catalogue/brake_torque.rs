@@ -1,8 +1,9 @@
-//! Torque commanded through the inverse of the brake's hysteresis, after random histories, held against the sensor.
+//! Torque commands through the inverse hysteresis model of the brake, after random histories, compared with the
+//! sensor.
 //!
-//! The model is that of an earlier run of `brake_hysteresis`. Each history begins at a demagnetised brake and goes through
-//! torques drawn evenly from all that the brake can give; for each the inverse says the current, from what the current has
-//! gone through so far. What the sensor then feels is compared with what was asked for.
+//! The model is that of an earlier run of `brake_hysteresis`. Each history begins with a demagnetised brake and
+//! passes torques that are drawn uniformly from the brake's range. The inverse model gives the current for each
+//! torque, depending on the history of the current. The measured torque is compared with the commanded one.
 
 use super::brake_run;
 use super::demagnetise::rated_nm;
@@ -36,9 +37,9 @@ const SCHEMA: &[Parameter] = &[
     Parameter::count("order_seed", "Random seed (histories)", 1, [0, 1_000_000]),
 ];
 
-/// Name of the fact that tells which torque each current was meant to give: a list for each history, of pairs.
+/// Name of the fact that assigns a torque to each current: a list of pairs for each history.
 const COMMANDED: &str = "commanded_a_nm";
-/// A current that was read back from the table is the commanded one within this.
+/// Tolerance of a current in the table relative to the commanded one.
 const SAME_A: f64 = 1e-3;
 
 impl Procedure for BrakeTorque {
@@ -79,7 +80,7 @@ impl Procedure for BrakeTorque {
         })?;
         let rate_hz = values.number("sample_rate_hz");
         let dwell_s = values.number("dwell_s");
-        // Half the room is enough: a run may begin beside the middle.
+        // Half of the range is sufficient, because a run may begin off the middle.
         let longest_s = 2.0 * f64::from(values.count("torques") + 2) * dwell_s;
         let wanted_rad_s =
             (values.number("speed_rad_s") * bench.constants.gear_ratio).min(0.95 * bench.limits.motor_velocity_rad_s);
@@ -113,16 +114,16 @@ impl Procedure for BrakeTorque {
     }
 }
 
-/// Currents with the torques that they are to give, one after the other from a demagnetised brake.
+/// Currents with the commanded torques, in sequence from a demagnetised brake.
 fn random(model: &Everett, torques: u32, rng: &mut ChaCha8Rng) -> Vec<(f64, f64)> {
     let mut history = History::default();
     let (drag_nm, most_nm) = (model.torque_nm(&history), model.torque_nm(&history.after(model.top_a())));
-    // A current that the supply cannot tell from none is no command.
+    // A current below the resolution of the supply is no command.
     let least_nm = drag_nm + 0.02 * (most_nm - drag_nm);
     let mut pairs = Vec::new();
     while pairs.len() < torques as usize {
         let torque_nm = rng.random_range(least_nm..most_nm);
-        // The lowest torques are not reached by every fall.
+        // Not every fall can reach the lowest torques.
         let Some(current_a) = model.current_a(&history, torque_nm) else { continue };
         history.go(current_a);
         pairs.push((current_a, torque_nm));
@@ -130,7 +131,7 @@ fn random(model: &Everett, torques: u32, rng: &mut ChaCha8Rng) -> Vec<(f64, f64)
     pairs
 }
 
-/// One torque that was asked for, and what the sensor felt.
+/// A commanded torque with the measured one.
 struct Point {
     asked_nm: f64,
     felt_nm: f64,

@@ -1,9 +1,9 @@
 //! Stiction: the motor current rises until the joint breaks away, at many positions and in both directions.
 //!
-//! Document 000 raises the current until five samples in a row show the encoder increasing. Each position is one step,
-//! the approach included: the joint always arrives in the direction in which it will break away. A joint whose friction
-//! falls with speed creeps before it breaks away, and the faster the torque rises the lower it does (Canudas de Wit,
-//! Olsson, Åström, Lischinsky 1995): only a slow ramp comes near the friction at rest.
+//! Document 000 raises the current until the encoder increases in five consecutive samples. Each position is one step
+//! that includes the approach: the joint always arrives in the direction in which it will break away. A joint whose
+//! friction falls with speed creeps before it breaks away. A faster torque ramp then gives a lower breakaway torque
+//! (Canudas de Wit, Olsson, Åström, Lischinsky 1995). Only a slow ramp approximates the friction at rest.
 
 use super::legs::{ACCELERATION, Legs, sample_rate, stroke};
 use super::{Findable, Procedure, findable};
@@ -28,9 +28,9 @@ const SCHEMA: &[Parameter] = &[
     sample_rate(250.0),
 ];
 
-/// Between the approach and the ramp the joint rests under no torque for so long.
+/// Rest without torque between the approach and the ramp [s].
 const REST_S: f64 = 0.4;
-/// A joint that has broken away is caught at this speed at the latest (motor).
+/// Highest motor speed after the breakaway, at which the velocity loop takes over.
 const RUNAWAY_RAD_S: f64 = 10.0;
 
 impl Procedure for Breakaway {
@@ -74,7 +74,7 @@ impl Procedure for Breakaway {
                 legs.drive_of_last(Drive::Current { from_s, current_a, until });
             }
         }
-        // The last of them is caught before the run ends.
+        // The velocity loop stops the joint after the last breakaway before the run ends.
         legs.push("rest".into(), Profile::from(0.0).hold(REST_S), Profile::constant(0.0));
         Ok(legs.friction_plan(self, values, bench, rate_hz))
     }
@@ -88,23 +88,23 @@ impl Procedure for Breakaway {
     }
 }
 
-/// Where and at which torque a joint broke away.
+/// Position and torque of a breakaway.
 struct Broke {
     link_rad: f64,
     torque_nm: f64,
     sign: f64,
 }
 
-/// Where a ramp of motor current has moved the joint.
+/// Position at which a ramp of motor current moved the joint.
 pub(super) struct Onset {
-    /// The first of the increases in a row, and the end of the ramp's rows.
+    /// First row of the consecutive increases, and the end of the ramp's rows.
     pub row: usize,
     pub end: usize,
     pub current_a: f64,
 }
 
-/// The ramps of a run at whose end the joint moved, and the number of those that reached `top_a` before it did. A ramp that
-/// a pause has cut off, with the joint still at rest, is neither.
+/// The ramps that ended with motion of the joint, and the number of ramps that reached `top_a` without motion. A ramp
+/// that a pause interrupted at rest is neither.
 pub(super) fn onsets(run: &RunTable, setpoint_a: &[f64], increases: usize, top_a: f64) -> (Vec<Onset>, usize) {
     let (mut onsets, mut held, mut start) = (Vec::new(), 0, 0);
     let position = run.column("motor_position_rad").unwrap_or_default();
@@ -122,7 +122,7 @@ pub(super) fn onsets(run: &RunTable, setpoint_a: &[f64], increases: usize, top_a
     (onsets, held)
 }
 
-/// How many of the steps from row to row go in the current's direction. One that runs away is caught before all of them do.
+/// Number of row-to-row steps in the direction of the current. A fast breakaway ends before all increases occurred.
 fn onward(position_rad: &[f64], current_a: f64) -> usize {
     position_rad.windows(2).filter(|pair| (pair[1] - pair[0]) * current_a > 0.0).count()
 }
@@ -152,7 +152,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let (Some(mean), Some(forward), Some(backward)) = (Mean::of(&all), Mean::of(&of(1.0)), Mean::of(&of(-1.0))) else {
         return Err(Unusable::TooLittle("Too few breakaway events.", "Increase top_torque_nm."));
     };
-    // From row to row the torque rises by a step: equal readings tell it no closer.
+    // The torque rises by one step between rows, which limits the resolution of equal readings.
     let step_nm = values.number("ramp_nm_s") / values.number("sample_rate_hz");
     let [mean, forward, backward] = [mean, forward, backward]
         .map(|Mean { value, ci95: [low, high] }| Mean { value, ci95: [low - step_nm, high + step_nm] });

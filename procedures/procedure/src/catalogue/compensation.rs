@@ -1,8 +1,8 @@
-//! Friction compensation fed forward into the motor current, judged on a reference trajectory (thesis, sections 4.2.2 to
-//! 4.2.6, table 4.7).
+//! Friction compensation by feedforward of motor current, evaluated on a reference trajectory (thesis, sections 4.2.2
+//! to 4.2.6, table 4.7).
 //!
-//! The same oscillation is followed with each way of compensating. What is fed forward is planned from the friction that
-//! the parameters state, and never exceeds it: over-compensation makes the controller active.
+//! The same oscillation is followed with each compensation method. The feedforward is planned from the friction in
+//! the parameters and never exceeds it, because over-compensation makes the controller active.
 
 mod identify;
 
@@ -33,16 +33,16 @@ const SCHEMA: &[Parameter] = &[
     sample_rate(250.0),
 ];
 
-/// Around standstill the jump of Coulomb friction is left out, or made a line (thesis, section 4.2.3; link side).
+/// Around zero velocity the jump of Coulomb friction is omitted or linearised (thesis, section 4.2.3; link side).
 const RAMP_RAD_S: f64 = 0.05;
-/// The full model knows what happens there: its line is as steep as the velocity set-point is sure.
+/// The full model includes that region: its slope is limited only by the uncertainty of the velocity set-point.
 const STEEP_RAD_S: f64 = 0.002;
-/// Of the observer.
+/// Corner frequency of the observer.
 const CORNER_HZ: f64 = 10.0;
 /// Points of a planned current in one period.
 const POINTS: u32 = 1000;
 
-/// The ways of compensating, in the order of table 4.7; the column `repeat` numbers them.
+/// The compensation methods, in the order of table 4.7; the column `repeat` numbers them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Way {
     None,
@@ -68,7 +68,7 @@ impl Way {
     }
 }
 
-/// The friction that the parameters state, over the link's velocity; motor torque.
+/// Friction from the parameters, over the link velocity; motor torque.
 struct Stated {
     coulomb_nm: f64,
     viscous_nm_s: f64,
@@ -97,7 +97,7 @@ impl Stated {
         (self.coulomb_nm + self.rise_nm * fading + speed_nm).copysign(link_rad_s)
     }
 
-    /// What is fed forward, before the share. `None`: nothing that could be planned.
+    /// Planned feedforward before scaling. `None`: the method has no planned feedforward.
     fn fed_nm(&self, way: Way, link_rad_s: f64) -> Option<f64> {
         let line = |over: f64| (link_rad_s / over).clamp(-1.0, 1.0);
         let viscous_nm = self.viscous_nm_s * self.gear_ratio * link_rad_s;
@@ -155,7 +155,7 @@ impl Procedure for Compensation {
         let profile = |value: &dyn Fn(f64) -> f64| {
             (1..=points).fold(Profile::from(0.0), |profile, i| profile.to(value(link_rad_s(i)), step_s))
         };
-        // The last point of a sine is rest but for rounding.
+        // The last point of a sine is zero except for rounding.
         let velocity = profile(&|v| constants.gear_ratio * v).to(0.0, 0.0);
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
         for way in Way::ALL {
@@ -189,8 +189,8 @@ impl Procedure for Compensation {
     }
 }
 
-/// Compensation of the friction that a run has found. Where no rise towards standstill was seen there is none to compensate. Where the directions differ it is that of the easier one: one law stands for both, and
-/// may exceed neither.
+/// Compensation with the friction identified by a run. Without a significant Stribeck rise there is no compensation
+/// for it. If the directions differ, the smaller friction is used, because the feedforward may exceed neither.
 pub(super) fn of_friction(found: &Identification) -> Option<FollowUp> {
     let differ = |name: &str| {
         let ends = found.quantity(&format!("{name}_difference")).and_then(|difference| difference.ci95);
@@ -202,7 +202,7 @@ pub(super) fn of_friction(found: &Identification) -> Option<FollowUp> {
         let way = |way: &str| Some(found.quantity(&format!("{name}_{way}"))?.value.abs());
         let ways = ["positive", "negative"].map(way);
         let least = ways.into_iter().flatten().fold(both, f64::min);
-        // Velocity and exponent are of a shape, not of a size.
+        // Velocity and exponent are nonlinear parameters, not magnitudes.
         let is_size = ["tau_c", "c_v", "tau_h"].contains(&name);
         Some(four_digits(if differ && is_size { least } else { both }))
     };
@@ -221,12 +221,12 @@ pub(super) fn of_friction(found: &Identification) -> Option<FollowUp> {
     Some(FollowUp { procedure: Compensation.id(), parameters, why })
 }
 
-/// As many as a person would type.
+/// Rounds to a number of digits that a person would type.
 fn four_digits(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-/// Refused where more would be fed forward than the stated friction at any speed of the reference.
+/// Rejects a feedforward that exceeds the stated friction at any speed of the reference.
 fn over_compensates(stated: &Stated, way: Way, share: f64, top_rad_s: f64) -> Result<(), PlanFault> {
     let over = (1..=POINTS)
         .map(|i| top_rad_s * f64::from(i) / f64::from(POINTS))
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_that_takes_no_current_beside_a_velocity_is_told_before_anything_moves() {
+    fn a_drive_without_feedforward_is_reported_before_anything_moves() {
         let bench = BenchFacts { feeds_forward: false, ..joint_a() };
         let preview = Compensation.plan(json!({}).as_object().unwrap(), &bench).unwrap().preview(&bench);
         let refused: Vec<_> = preview.checks.iter().filter(|check| !check.ok).collect();

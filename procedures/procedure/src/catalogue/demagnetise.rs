@@ -1,4 +1,4 @@
-//! Takes the poles out of a brake that was unloaded at standstill, and looks whether any are left.
+//! Removes magnetic poles from a brake that was unloaded at standstill, and checks the result.
 
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
@@ -21,11 +21,11 @@ const SCHEMA: &[Parameter] = &[
     sample_rate(250.0),
 ];
 
-/// What may be left, peak to peak, as a share of the rated torque (bench-physics, section 3).
+/// Largest remaining torque ripple, peak to peak, as a share of the rated torque (bench-physics, section 3).
 const LEFT_SHARE: f64 = 0.005;
-/// Places on a turn at which the torque is averaged: several for each of up to 25 poles.
+/// Angles of a turn at which the torque is averaged: several for each of up to 25 poles.
 const PLACES: usize = 120;
-/// The range of so many means of noise spans about this many of their standard deviations.
+/// The range of this number of noise means is about this multiple of their standard deviation.
 const RANGE_OF_NOISE: f64 = 5.2;
 
 impl Procedure for Demagnetise {
@@ -102,7 +102,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             .map(|(place, (sum, n))| ((place as f64 + 0.5) / PLACES as f64 * TAU, sum / n))
             .collect();
         let (low, high) = means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (_, v)| (v.min(l), v.max(h)));
-        // Noise by the differences of neighbours in time, which no pole of the rotor spans.
+        // Noise from differences of consecutive samples, within which the rotor does not pass a pole.
         let steps = torque[rows.clone()].windows(2).map(|w| (w[1] - w[0]).powi(2));
         let sigma_nm = (steps.sum::<f64>() / (2.0 * (rows.len() - 1) as f64)).sqrt();
         left_nm = left_nm.max(high - low);
@@ -140,7 +140,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     })
 }
 
-/// Torque of the brake at rated current, as the bench's description has it.
+/// Torque of the brake at rated current, from the bench description.
 pub(super) fn rated_nm(run: &RunTable) -> Option<f64> {
     run.meta().other.get("rated_torque_nm").and_then(serde_json::Value::as_f64)
 }

@@ -1,16 +1,16 @@
-//! What a procedure can find, so that a demand that no run of it could keep is refused before anything moves.
+//! The quantities that a procedure can identify, so that an impossible limit is rejected before anything moves.
 
-/// A quantity that an identification may hold. What a run does not show is not in it.
+/// A quantity that an identification may contain, if the run determines it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Findable {
-    /// `#` stands for a number from 1 on.
+    /// `#` is a placeholder for a number from 1 on.
     pub name: String,
     /// SI symbol; empty for a share or a count.
     pub unit: &'static str,
 }
 
 impl Findable {
-    /// Whether a quantity of this name is meant.
+    /// Whether a name matches this quantity.
     pub fn is(&self, name: &str) -> bool {
         let plain: Vec<&str> = name.split('_').map(|word| if is_number(word) { "#" } else { word }).collect();
         self.name == name || self.name == plain.join("_")
@@ -21,7 +21,7 @@ fn is_number(word: &str) -> bool {
     !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Of names by unit, with spaces between.
+/// Quantities from lists of names by unit, separated by spaces.
 pub(super) fn findable(by_unit: &[(&'static str, &str)]) -> Vec<Findable> {
     let of_unit = |(unit, names): &(&'static str, &str)| {
         let unit = *unit;
@@ -53,7 +53,7 @@ mod tests {
         assert_eq!(unit_of("identify_joint", "stiffness.beta_0"), Some("rad"));
         assert_eq!(unit_of("identify_joint", "beta_0"), None);
         assert_eq!(unit_of("compensation", "rho_2_full"), Some("rad²"));
-        // A number of a name is no place for any number.
+        // A digit that belongs to a name is no placeholder.
         assert_eq!((unit_of("stiffness", "beta_0"), unit_of("stiffness", "beta_1")), (Some("rad"), None));
     }
 }

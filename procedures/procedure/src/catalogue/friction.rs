@@ -1,13 +1,14 @@
 //! Friction over velocity, load, link angle and temperature (seed-facts, section 4).
 //!
-//! A repeat goes through the loads from none to the highest, so that the brake is always on its ascending branch, and
-//! is demagnetised while turning at its end. At each load the joint makes one *tour*: fast legs out in shuffled order,
-//! the same speeds back in another order, and slow legs at shuffled places in between. A slow leg covers little of a
-//! link turn, so the tours spread them over the link's angle; the fastest leg covers a whole turn, the next a third.
-//! Order and places differ from tour to tour: neither time and temperature nor the link's angle follow speed or load.
+//! A repeat passes the loads from zero to the highest, so that the brake is always on its ascending branch. At its
+//! end the brake is demagnetised during rotation. At each load the joint makes one *tour*: fast legs out in shuffled
+//! order, the same speeds back in another order, and slow legs at shuffled places in between. A slow leg covers
+//! little of a link turn, so that the tours distribute them over the link angle. The fastest leg covers a whole turn,
+//! the next one a third. Order and places differ between tours, so that time, temperature and link angle are not
+//! correlated with speed or load.
 //!
-//! The warm-up before it is part of the table, as segments of its own in repeat 0 (`warm_up_segments` of the meta
-//! facts counts them): it is where temperature changes most, which is what shows an effect of temperature.
+//! The preceding warm-up is part of the table, as separate segments in repeat 0 (`warm_up_segments` of the meta facts
+//! is their number). The temperature changes most there, which makes temperature effects identifiable.
 
 use super::compensation;
 use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
@@ -23,7 +24,7 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 mod identify;
-mod left_open;
+mod inconclusive;
 
 pub(super) struct Friction;
 
@@ -41,12 +42,13 @@ const SCHEMA: &[Parameter] = &[
     Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
 ];
 
-/// Speeds below the expected Stribeck velocity, as shares of it: at least four, or its exponent stays open
+/// Speeds below the expected Stribeck velocity, as shares of it: with fewer than four, its exponent is not identified
 /// (diagnosis, pitfalls).
 const SLOW_SHARES: [f64; 4] = [0.15, 0.3, 0.5, 0.75];
-/// The lowest of the speeds above it.
+/// The lowest of the speeds above it, as a share.
 const FAST_FROM: f64 = 1.3;
-/// The torque of the brake grows slowly at first (bench-physics, section 2): even torques need uneven currents.
+/// The torque of the brake grows slowly at first (bench-physics, section 2), so that even torques need uneven
+/// currents.
 const LOAD_EXPONENT: f64 = 0.7;
 
 impl Procedure for Friction {
@@ -131,7 +133,7 @@ impl Procedure for Friction {
     }
 }
 
-/// The speeds of a tour, motor side, with the time at each.
+/// The speeds of a tour, motor side, with the dwell time at each.
 struct Speeds {
     slow: Vec<(f64, f64)>,
     fast: Vec<(f64, f64)>,
@@ -169,7 +171,7 @@ impl Speeds {
         })
     }
 
-    /// For a change of load: fast enough to turn, slow enough to stay near.
+    /// Speed for a change of load: fast enough to turn, slow enough to stay near.
     fn middle_rad_s(&self) -> f64 {
         self.fast[self.fast.len() / 2].0
     }
@@ -200,7 +202,7 @@ fn tour(legs: &mut Legs, speeds: &Speeds, brake_a: f64, outwards: f64, rng: &mut
     for direction in [outwards, -outwards] {
         let mut fast = speeds.fast.clone();
         fast.shuffle(rng);
-        // The first leg of a half winds up what the reversal has unwound: not the slowest one.
+        // The first leg of a half winds up the joint after the reversal, so that it must not be the slowest one.
         if fast[0] == speeds.fast[0] {
             fast.reverse();
         }
@@ -216,9 +218,9 @@ fn tour(legs: &mut Legs, speeds: &Speeds, brake_a: f64, outwards: f64, rng: &mut
     }
 }
 
-/// Without load a slow leg is a pair, out and back, in every other place: reversals close to each other. Under load the
-/// wind-up of joint and brake outlasts a reversed slow leg (0.04 rad of the link), so that each direction waits for its
-/// half of the tour.
+/// Without load a slow leg is a pair, out and back, at every other place, so that reversals are close to each other.
+/// Under load the wind-up of joint and brake lasts longer than a reversed slow leg (0.04 rad of the link). Therefore
+/// each direction is measured in its half of the tour.
 fn slow(legs: &mut Legs, speeds: &Speeds, number: usize, brake_a: f64, direction: f64, outwards: f64) {
     let (speed_rad_s, dwell_s) = speeds.slow[number];
     if brake_a > 0.0 {

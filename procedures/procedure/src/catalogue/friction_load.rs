@@ -1,7 +1,7 @@
-//! Friction over load and speed: does it grow with the load, and how (thesis, figure 2.6)?
+//! Friction over load and speed: the dependence of friction on the load (thesis, figure 2.6).
 //!
-//! The plan is that of `friction` with more loads and fewer speeds. What the brake takes is measured by the torque
-//! sensor; what friction takes more under load is what the motor gives beyond it.
+//! The plan is that of `friction` with more loads and fewer speeds. The torque sensor measures the brake torque. The
+//! additional motor torque is the load-dependent friction.
 
 use super::friction::Friction;
 use super::legs::sample_rate;
@@ -70,7 +70,7 @@ impl Procedure for FrictionLoad {
     }
 }
 
-/// What may make friction grow with the load, alone or together.
+/// Candidate laws of load-dependent friction, alone or in combination.
 const LAWS: [&[&str]; 4] = [&[], &["load_linear"], &["load_quadratic"], &["load_linear", "load_quadratic"]];
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
@@ -112,7 +112,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     })
 }
 
-/// The law that predicts what it has not seen best, of those whose every part is decided.
+/// The law with the smallest validation error, among those whose parameters are all identified.
 fn choose(table: &RunTable) -> Result<(&'static [&'static str], Fit), Unusable> {
     let mut best = (LAWS[0], under(table, LAWS[0])?);
     for law in &LAWS[1..] {
@@ -128,15 +128,15 @@ fn choose(table: &RunTable) -> Result<(&'static [&'static str], Fit), Unusable> 
     Ok(best)
 }
 
-/// The fit of one law, with a Stribeck part where the run decides it. That is asked under each law anew: beside a load
-/// effect that the law leaves out the rise drowns, and Coulomb and viscous friction would take it up.
+/// The fit of one law, with a Stribeck part if the run identifies it. The Stribeck part is selected for each law
+/// separately: a missing load effect hides the rise and biases Coulomb and viscous friction.
 fn under(table: &RunTable, law: &[&'static str]) -> Result<Fit, ModelError> {
     let with = |more: &[&'static str]| {
         let effects = ["load_transmission", "coulomb", "viscous"].iter().chain(more).chain(law).copied();
         ModelSpec::new(table.kind(), effects).and_then(|spec| fit(table, &spec, &Options::default()))
     };
     let plain = with(&[])?;
-    // A rise that the run does not decide only takes the certainty from Coulomb friction.
+    // A Stribeck part that the run does not identify only widens the interval of Coulomb friction.
     let is_decided = |rich: &Fit| ["tau_s", "omega_s"].iter().all(|name| parameter(rich, "stribeck", name).is_some());
     Ok(match with(&["stribeck"]) {
         Ok(rich) if rich.validation_rms < plain.validation_rms && is_decided(&rich) => rich,
@@ -144,7 +144,7 @@ fn under(table: &RunTable, law: &[&'static str]) -> Result<Fit, ModelError> {
     })
 }
 
-/// What the load adds to friction, as it was fitted.
+/// Fitted load-dependent friction.
 #[derive(Debug, Clone, Copy)]
 struct Law {
     mu: f64,
@@ -157,13 +157,13 @@ impl Law {
         Self { mu: value("load_linear", "mu"), mu_2_per_nm: value("load_quadratic", "mu_2") }
     }
 
-    /// Both on the motor's side [Nm].
+    /// Both on the motor side [Nm].
     fn added_nm(self, load_nm: f64) -> f64 {
         self.mu * load_nm + self.mu_2_per_nm * load_nm * load_nm
     }
 }
 
-/// Steps of a fitted line from no load to the highest.
+/// Points of a fitted line from zero load to the highest.
 const STEPS: u32 = 20;
 
 /// Friction over load with the fitted law, one series for each speed, both directions as magnitudes.
@@ -177,7 +177,7 @@ fn over_load(table: &RunTable, gear: f64, law: Law) -> Result<Figure, Unusable> 
         let label = format!("{:.1} rad/s", same[same.len() / 2].velocity_rad_s.abs());
         let point = |p: &crate::findings::Plateau| ((p.load_nm * gear).abs(), (p.target - p.load_nm).abs());
         let seen: Vec<(f64, f64)> = same.iter().map(point).collect();
-        // What is left without the load is that of the speed.
+        // The part without load depends on the speed only.
         let bare_nm =
             seen.iter().map(|(link_nm, nm)| nm - law.added_nm(link_nm / gear)).sum::<f64>() / seen.len() as f64;
         let top_nm = seen.iter().map(|p| p.0).fold(0.0, f64::max);

@@ -1,7 +1,8 @@
-//! Friction over a warm-up and a cool-down: the lubricant thins as it warms.
+//! Friction over a warm-up and a cool-down: the viscosity of the lubricant falls with temperature.
 //!
-//! The joint is worked until it is warm, then left to cool with a short bout of legs now and then. Up and down the same
-//! temperatures are passed at different times: what depends on temperature and what merely drifts with time show apart.
+//! The joint is worked until it is warm, then it cools with short groups of legs in between. Warm-up and cool-down
+//! pass the same temperatures at different times, so that effects of temperature and drifts over time can be
+//! separated.
 
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::warm_up;
@@ -25,11 +26,11 @@ const SCHEMA: &[Parameter] = &[
     sample_rate(100.0),
 ];
 
-/// Below this span nothing can be said about temperature.
+/// Least temperature span for a result.
 const LEAST_SPAN_K: f64 = 2.0;
-/// Less of the friction is no change.
+/// A smaller relative change of the friction counts as none.
 const NOTHING: f64 = 0.01;
-/// The temperature that the coefficients of the models count from.
+/// Reference temperature of the coefficients.
 const REFERENCE_C: f64 = 25.0;
 
 impl Procedure for FrictionTemperature {
@@ -128,7 +129,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let figures = vec![over_temperature(run, &points), over_time(&points)];
     let top_rad_s = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let most_nm = points.iter().map(|p| (p.target - p.load_nm).abs()).fold(0.0, f64::max);
-    // Surely, and by more than nothing over all that it warmed, at the highest speed.
+    // Significant, and above the least change over the whole temperature span, at the highest speed.
     let moves = |effect: &str, name: &str, times: f64| {
         let least_nm = NOTHING * most_nm;
         parameter(&fit, effect, name).is_some_and(|p| {

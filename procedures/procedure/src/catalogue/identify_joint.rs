@@ -1,9 +1,10 @@
-//! A joint and its brake in one run, in the order in which physical history asks for it: friction over temperature from the
-//! cold joint on, then, warm, friction, breakaway, presliding, friction under load, the brake, stiffness, compensation.
+//! Identification of a joint and its brake in one run, in the order that their physical history requires. First
+//! friction over temperature from the cold joint on. Then, with the warm joint: friction, breakaway, presliding,
+//! friction under load, the brake, stiffness, compensation.
 //!
-//! Each part is planned by its own procedure and identified by it, on its own rows. Every part begins and ends without
-//! brake current and where the run began, so that the parts need nothing of each other but the warm-up, and compensation
-//! the friction that it feeds forward: it is planned anew when that is known.
+//! Each part is planned and identified by its own procedure, on its own rows. Every part begins and ends without
+//! brake current and at the start position of the run, so that the parts only share the warm-up. Compensation also
+//! needs the identified friction for its feedforward: it is planned when that is known.
 
 mod learn;
 mod part;
@@ -48,10 +49,10 @@ const SCHEMA: &[Parameter] = &[
     sample_rate(250.0),
 ];
 
-/// Name of the fact that tells which rows are whose.
+/// Name of the fact that assigns rows to parts.
 const PARTS: &str = "parts";
 
-/// What the campaign consists of.
+/// The parts of the campaign.
 const PARTS_IN_ORDER: [&str; 9] = [
     "friction_temperature",
     "friction",
@@ -64,12 +65,12 @@ const PARTS_IN_ORDER: [&str; 9] = [
     "compensation",
 ];
 
-/// One procedure of the campaign with the choices that it gets.
+/// The procedures of the campaign with their parameters.
 fn parts(values: &Values, bench: &BenchFacts) -> Vec<(&'static dyn Procedure, Value)> {
     let number = |name: &str| json!(values.number(name));
     let (rate, repeats) = (number("sample_rate_hz"), number("repeats"));
     let (top, stribeck, load) = (number("top_speed_rad_s"), number("stribeck_speed_rad_s"), number("top_load"));
-    // A brake is asked no faster than the joint, and no slower than its procedure can.
+    // The brake runs no faster than the joint, and no slower than its procedure permits.
     let link_rad_s = (values.number("top_speed_rad_s") / bench.constants.gear_ratio).clamp(0.2, 1.5);
     let mut parts: Vec<(&'static dyn Procedure, Value)> = vec![
         (
@@ -146,7 +147,7 @@ impl Procedure for IdentifyJoint {
                 meta: Meta { other: Map::new(), ..part.meta.clone() },
                 ..part.clone()
             });
-            // It is warmed up for once: what the joint has it keeps.
+            // One warm-up is sufficient, because the joint stays warm.
             let is_warm = whole.steps.iter().any(|step| step.phase == Phase::WarmUp);
             whole.steady = whole.steady.or(part.steady);
             let first = whole.steps.len();
@@ -156,7 +157,7 @@ impl Procedure for IdentifyJoint {
             if let Some(warm_up) = part.meta.other.get_mut("warm_up_segments") {
                 *warm_up = json!(first + steps.iter().filter(|step| step.phase == Phase::WarmUp).count());
             }
-            // What is fed forward is not chosen but learnt.
+            // The feedforward is identified, not chosen.
             let parameters = if waits(procedure) { given } else { Value::Object(part.parameters) };
             facts.push(json!({
                 "procedure": procedure.id(), "parameters": parameters, "meta": part.meta,
@@ -187,7 +188,7 @@ impl Procedure for IdentifyJoint {
     }
 }
 
-/// The steps of a part with their names and numbers in the whole.
+/// The steps of a part with their names and numbers in the campaign.
 fn numbered(
     steps: impl IntoIterator<Item = Step>,
     procedure: &dyn Procedure,
@@ -201,7 +202,7 @@ fn numbered(
     })
 }
 
-/// Whether the steps of a part wait for what another one finds.
+/// Whether the steps of a part depend on the result of another part.
 fn waits(procedure: &dyn Procedure) -> bool {
     procedure.id() == Compensation.id()
 }
@@ -213,7 +214,7 @@ fn parts_of(run: &RunTable) -> Result<&[Value], Unusable> {
     Ok(run.meta().other.get(PARTS).and_then(Value::as_array).ok_or(FOREIGN)?)
 }
 
-/// A part's procedure, and what it makes of its rows. `None`: it has none.
+/// A part's procedure and its result from its rows. `None`: it has no identification.
 fn found(
     run: &RunTable,
     facts: &[Value],
@@ -265,7 +266,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     Ok(whole)
 }
 
-/// A part without rows, behind those before it.
+/// A part without rows, after the earlier ones.
 fn none_of(part: &dyn Procedure, before: &Identification) -> Identification {
     match before.verdict {
         Verdict::Inconclusive if waits(part) => Identification {
@@ -298,7 +299,7 @@ mod tests {
             assert!(plan.steady.is_some(), "the warm-up ends when the joint is warm");
             let steps: i64 = parts.iter().filter_map(|part| part["segments"].as_i64()).sum();
             assert_eq!(steps as usize, plan.steps.len());
-            // Every part leaves the brake without current.
+            // Every part ends without brake current.
             for part in parts {
                 let last = part["first_segment"].as_u64().unwrap() + part["segments"].as_u64().unwrap() - 1;
                 assert_eq!(plan.steps[last as usize].brake.end(), 0.0, "{}", part["procedure"]);
@@ -321,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_another_procedure_is_told_apart() {
+    fn a_run_of_another_procedure_is_recognised() {
         let mut trace = Trace::new(["time_s", "motor_position_rad", "motor_current_a"].map(Channel::new).into());
         (0..20).for_each(|i| trace.push_row(&[f64::from(i), 0.0, 0.0]));
         let run = RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap();

@@ -1,4 +1,4 @@
-//! What the procedures of a joint share: numbered steps, legs of constant speed, the facts of a friction run.
+//! Shared functions of the joint procedures: numbered steps, legs of constant speed, the facts of a friction run.
 
 use super::Procedure;
 use crate::parameter::{Parameter, Values};
@@ -8,25 +8,25 @@ use crate::profile::Profile;
 use jointbench_instrument::{Kind, Meta};
 use std::f64::consts::TAU;
 
-/// A leg that should cover a part of a link turn is cut off here: a very slow gear has to do with less.
+/// Longest leg that covers a part of a link turn; a very slow gear has to cover less.
 const LONGEST_LEG_S: f64 = 15.0;
 
-/// A shorter plateau holds no settled motion.
+/// A shorter leg contains no steady state.
 const SHORTEST_LEG_S: f64 = 0.5;
-/// No leg takes more of the link's range.
+/// Largest share of the link's range in one leg.
 const RANGE_SHARE: f64 = 0.9;
 
-/// A rising brake current: the ramp, and the time that supply and coil lag behind (118 ms and 80 ms; bench-physics,
-/// section 2).
+/// A rise of the brake current: its ramp, and the delay of supply and coil (118 ms and 80 ms; bench-physics, section
+/// 2).
 const RAISE_S: f64 = 0.8;
 const LAG_S: f64 = 0.6;
-/// A falling one is spread over at least this time and a whole link turn (bench-physics, section 3).
+/// A fall of the brake current takes at least this time and a whole link turn (bench-physics, section 3).
 const UNLOAD_S: f64 = 2.0;
 
-/// What is measured by the torque sensor has its own pace, 1000 a second, wherever that gives two samples to every row.
+/// The torque sensor sends 1000 samples a second if that gives at least two samples in every row.
 const TORQUE_PERIOD_S: f64 = 1e-3;
 
-/// What nearly every procedure lets people set.
+/// A parameter of nearly every procedure.
 pub(super) const ACCELERATION: Parameter =
     Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]);
 
@@ -47,7 +47,7 @@ impl Legs {
         Self { acceleration_rad_s2, steps: Vec::new(), phase: Phase::Measure, repeat: 0 }
     }
 
-    /// A plateau at a constant brake current.
+    /// A constant speed at a constant brake current.
     pub fn leg(&mut self, speed_rad_s: f64, dwell_s: f64, brake_a: f64) {
         let label = if brake_a > 0.0 {
             format!("{speed_rad_s:+.1} rad/s at {brake_a:.2} A")
@@ -57,7 +57,7 @@ impl Legs {
         self.push(label, Profile::plateau(speed_rad_s, self.acceleration_rad_s2, dwell_s), Profile::constant(brake_a));
     }
 
-    /// Another brake current while the shaft turns, out and back.
+    /// Changes the brake current during rotation, out and back.
     pub fn change(&mut self, speed_rad_s: f64, from_a: f64, to_a: f64) {
         let velocity = |sign: f64| Profile::plateau(sign * speed_rad_s, self.acceleration_rad_s2, RAISE_S + LAG_S);
         let (out, back) = (velocity(1.0), velocity(-1.0));
@@ -67,8 +67,8 @@ impl Legs {
         self.push(format!("brake at {to_a:.2} A, return"), back, Profile::constant(to_a));
     }
 
-    /// One step at constant speed in which the current goes from 0 through a history of its own and back to 0: an unbroken
-    /// one, so that it is made again as a whole after a pause.
+    /// One step at constant speed in which the current passes a history from 0 back to 0. It is one step, so that it
+    /// is repeated as a whole after a pause.
     pub fn sweep(&mut self, label: String, speed_rad_s: f64, currents_a: &[f64], dwell_s: f64) {
         let turning_s = speed_rad_s.abs() / self.acceleration_rad_s2;
         let mut brake = Profile::from(0.0).hold(turning_s);
@@ -81,7 +81,7 @@ impl Legs {
         self.steps[last].before = Before::Demagnetised;
     }
 
-    /// The rated current, then none over `turns` of the link: no pole keeps what was before.
+    /// The rated current, then zero over `turns` of the link, so that no pole keeps its history.
     pub fn demagnetise(&mut self, speed_rad_s: f64, rated_a: f64, turns: f64, bench: &BenchFacts) {
         let turning_s = speed_rad_s / self.acceleration_rad_s2;
         let ramp_s = (turns * TAU * bench.constants.gear_ratio / speed_rad_s).max(UNLOAD_S);
@@ -92,7 +92,8 @@ impl Legs {
         self.push("back".into(), back, Profile::constant(0.0));
     }
 
-    /// The brake current goes to zero over at least one link turn, as fast as the joint turns, and back without load.
+    /// The brake current falls to zero over at least one link turn, as fast as the joint turns. The joint returns
+    /// without load.
     pub fn unload(&mut self, speed_rad_s: f64, from_a: f64, bench: &BenchFacts) {
         let ramp_s = turn_s(1.0, speed_rad_s, bench, UNLOAD_S);
         let turning_s = speed_rad_s / self.acceleration_rad_s2;
@@ -102,7 +103,7 @@ impl Legs {
         self.leg(-speed_rad_s, ramp_s + LAG_S, 0.0);
     }
 
-    /// Back to where a way began, without brake current.
+    /// Back to the start of a motion, without brake current.
     pub fn way_back(&mut self, way_rad: f64, top_rad_s: f64) {
         if way_rad != 0.0 {
             let velocity = stroke(-way_rad, top_rad_s, self.acceleration_rad_s2);
@@ -110,12 +111,12 @@ impl Legs {
         }
     }
 
-    /// The plan of a friction procedure without a warm-up of its own.
+    /// The plan of a friction procedure without its own warm-up.
     pub fn friction_plan(self, procedure: &dyn Procedure, values: &Values, bench: &BenchFacts, rate_hz: f64) -> Plan {
         self.plan(procedure, values, friction_meta(bench, rate_hz), rate_hz)
     }
 
-    /// The plan that these legs make, with the facts about its run.
+    /// The plan of these legs, with the facts about its run.
     pub fn plan(self, procedure: &dyn Procedure, values: &Values, meta: Meta, rate_hz: f64) -> Plan {
         let measures_torque = matches!(procedure.kind(), Kind::Stiffness | Kind::Brake);
         Plan {
@@ -140,7 +141,7 @@ impl Legs {
         }
     }
 
-    /// How far the last step turns the motor [rad].
+    /// Rotation of the motor by the last step [rad].
     pub fn way_of_last(&self) -> f64 {
         self.steps.last().and_then(|step| step.velocity.integral().last().copied()).unwrap_or(0.0)
     }
@@ -162,26 +163,26 @@ impl Legs {
     }
 }
 
-/// A stroke of a given way, as fast as it may be within its acceleration.
+/// A stroke of a given length, as fast as its acceleration permits.
 pub(super) fn stroke(way_rad: f64, top_rad_s: f64, acceleration_rad_s2: f64) -> Profile {
     let speed_rad_s = top_rad_s.min((0.5 * way_rad.abs() * acceleration_rad_s2).sqrt());
     let dwell_s = way_rad.abs() / speed_rad_s - speed_rad_s / acceleration_rad_s2;
     Profile::plateau(speed_rad_s.copysign(way_rad), acceleration_rad_s2, dwell_s.max(0.0))
 }
 
-/// How long a plateau has to be to cover a share of a link turn, and at least `least_s`.
+/// Duration of a leg that covers a share of a link turn, at least `least_s`.
 pub(super) fn turn_s(share: f64, speed_rad_s: f64, bench: &BenchFacts, least_s: f64) -> f64 {
     (share * TAU * bench.constants.gear_ratio / speed_rad_s.abs()).min(LONGEST_LEG_S).max(least_s)
 }
 
-/// A dwell, cut off where the leg would leave the link's range.
+/// A dwell time, limited by the link's range.
 pub(super) fn within_range_s(dwell_s: f64, speed_rad_s: f64, acceleration_rad_s2: f64, bench: &BenchFacts) -> f64 {
     let range_rad = bench.constants.link_range_rad.unwrap_or(f64::INFINITY);
     let room_rad = RANGE_SHARE * range_rad * bench.constants.gear_ratio;
     dwell_s.min(room_rad / speed_rad_s - speed_rad_s / acceleration_rad_s2).max(SHORTEST_LEG_S)
 }
 
-/// The facts that a friction table needs, and the model to start from.
+/// The facts of a friction table, and the baseline model.
 pub(super) fn friction_meta(bench: &BenchFacts, rate_hz: f64) -> Meta {
     let constants = &bench.constants;
     let mut baseline = vec!["inertia", "load_transmission", "coulomb", "viscous"];

@@ -1,4 +1,4 @@
-//! The procedures that the product knows.
+//! The procedures of the product.
 
 mod brake_hysteresis;
 mod brake_run;
@@ -32,45 +32,46 @@ use crate::plan::{BenchFacts, Plan, PlanFault, Step};
 use jointbench_instrument::{Kind, RunTable};
 use serde_json::{Map, Value};
 
-/// Steps planned while their run is on.
+/// Steps that were planned during their run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Learnt {
     pub steps: Vec<Step>,
-    /// With what, in a sentence for the journal.
+    /// The values that were used, in a sentence for the journal.
     pub said: String,
 }
 
-/// Decides what a bench shall do; the engine does it. Pure and deterministic: the same choices on the same bench give
-/// the same plan.
+/// A measurement method: it plans the steps of a run, and the engine performs them. Pure and deterministic: the same
+/// parameters on the same bench give the same plan.
 pub trait Procedure: Sync {
     fn id(&self) -> &'static str;
     fn title(&self) -> &'static str;
     /// One or two plain sentences.
     fn summary(&self) -> &'static str;
-    /// The kind of run table that it brings.
+    /// The kind of its run table.
     fn kind(&self) -> Kind;
     fn schema(&self) -> &'static [Parameter];
     /// Plans with checked values.
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault>;
-    /// Whether the models of its kind describe its run. Not where the run shows something else, such as the zero of a sensor.
+    /// Whether the models of its kind describe its run. False if the run shows something else, such as the zero of a
+    /// sensor.
     fn is_modelled(&self) -> bool {
         true
     }
-    /// What `identify` may find.
+    /// The quantities that `identify` can return.
     fn finds(&self) -> Vec<Findable>;
-    /// What a run of this procedure shows, with the values that it was planned with. Pure; a run that ended early or a
-    /// table that says nothing gets its verdict too. `None`: nothing but samples is asked of it.
+    /// Result of a run of this procedure, with the values of its plan. Pure; a run that ended early or an unusable
+    /// table gets a verdict too. `None`: the procedure only records samples.
     fn identify(&self, _values: &Values, _run: &RunTable) -> Option<Identification> {
         None
     }
 
-    /// The steps that wait for what the run finds ([`Plan::lesson`]), planned from what it has measured so far. `Err` says
-    /// why they are left out.
+    /// Plans the steps that depend on results of the run ([`Plan::lesson`]) from the rows so far. `Err` states why
+    /// they are omitted.
     fn learn(&self, _run: &RunTable, _bench: &BenchFacts) -> Result<Learnt, String> {
         Err(format!("{} has no steps that are planned during the run", self.title()))
     }
 
-    /// The run that uses what was found.
+    /// The run that uses the results.
     fn follow_up(&self, _found: &Identification) -> Option<FollowUp> {
         None
     }
@@ -80,23 +81,23 @@ pub trait Procedure: Sync {
         None
     }
 
-    /// Whether what is left of a run that did not come to its end may be made in another one later. `Err` says what of the
-    /// first run's history cannot be had again.
+    /// Whether the rest of an incomplete run may be measured in a later one. `Err` states which part of the history
+    /// cannot be restored.
     fn goes_on(&self) -> Result<(), &'static str> {
         Ok(())
     }
 
-    /// Checks the choices against the schema, fills in the defaults and plans. Nothing moves.
+    /// Checks the parameters against the schema, adds the defaults and plans. Nothing moves.
     fn plan(&self, parameters: &Map<String, Value>, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         self.build(&Values::parse(self.schema(), parameters)?, bench)
     }
 }
 
-/// Every procedure, in the order in which a list shows them.
+/// Every procedure, in the order of lists.
 pub fn catalogue() -> &'static [&'static dyn Procedure] {
     &[
         &friction::Friction,
-        // What a Puma's bench can make comes first there.
+        // The procedure for a Puma's bench is listed first there.
         &puma_friction::PumaFriction,
         &friction_load::FrictionLoad,
         &friction_temperature::FrictionTemperature,

@@ -1,8 +1,8 @@
-//! Friction before it slides: the motor current swings to and fro below breakaway, at several amplitudes.
+//! Presliding friction: the motor current oscillates below breakaway, at several amplitudes.
 //!
-//! Every swing begins after a stroke that ends in the same direction and a rest without torque, so that the contacts
-//! start from the same state. The torque is commanded and the motor's encoder tells the way: a joint moves by a few counts
-//! of it only, so the moments count at which a reading changes.
+//! Every oscillation begins after a stroke in the same direction and a rest without torque. The contacts then start
+//! from the same state. The torque is commanded, and the motor encoder measures the displacement. The joint moves by
+//! only a few counts, so that the times at which a reading changes are evaluated.
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
@@ -28,13 +28,13 @@ const SCHEMA: &[Parameter] = &[
     sample_rate(250.0),
 ];
 
-/// The stroke before a swing (motor), far enough to renew every contact.
+/// The stroke before an oscillation (motor), long enough to renew every contact.
 const STROKE_RAD: f64 = 1.3;
 const STROKE_RAD_S: f64 = 10.0;
 const FURTHER: f64 = 1e-3;
-/// After the stroke the joint rests without torque for so long.
+/// Rest without torque after the stroke [s].
 const REST_S: f64 = 0.4;
-/// A joint that breaks away is caught when it has gone on for so many samples, or at this speed (motor).
+/// Limits of a breakaway: this number of consecutive increases, or this motor speed.
 const UNTIL: Until = Until { increases: 50, speed_rad_s: 10.0 };
 
 impl Procedure for Presliding {
@@ -75,7 +75,8 @@ impl Procedure for Presliding {
                     current_a =
                         current_a.to(share * top_a, quarter_s).to(-share * top_a, 2.0 * quarter_s).to(0.0, quarter_s);
                 }
-                // Out and back, and a little further each time: swings all at one place would see one part of a count only.
+                // Out and back, and a little farther each time, so that the oscillations cover different parts of a
+                // count.
                 let further = 1.0 + FURTHER * f64::from(repeat * amplitudes + amplitude);
                 let out = Profile::plateau(-STROKE_RAD_S, legs.acceleration_rad_s2, dwell_s);
                 let back = Profile::plateau(STROKE_RAD_S, legs.acceleration_rad_s2, dwell_s * further);
@@ -89,7 +90,7 @@ impl Procedure for Presliding {
                 legs.drive_of_last(Drive::Current { from_s, current_a, until: UNTIL });
             }
         }
-        // The last of them is held before the run ends.
+        // The velocity loop holds the joint after the last oscillation before the run ends.
         legs.push("rest".into(), Profile::from(0.0).hold(REST_S), Profile::constant(0.0));
         Ok(legs.friction_plan(self, values, bench, rate_hz))
     }

@@ -1,13 +1,15 @@
-//! Friction of an arm's axis as document 000 measures it (section 3.1): a work-out first, then the mean motor current at
-//! constant speeds over a short arc about the pose in which the link has no weight, a line for each direction, a test
-//! whether the directions differ, and stiction: the current raised until the encoder increases five times in a row.
+//! Friction of an arm's axis by the method of document 000 (section 3.1). A work-out comes first. Then the mean motor
+//! current is measured at constant speeds over a short arc around the pose without gravity torque. The results are a
+//! line for each direction, a test for a difference of the directions, and stiction. For stiction the current rises
+//! until the encoder increases five times in a row.
 //!
-//! The run begins where the encoder is 0, with the link upright. Every speed is held over the same arc in both
-//! directions, from one end to the other, so that what is left of the weight is the same in both and has no mean.
+//! The run begins at the encoder position 0, with the link upright. Every speed is held over the same arc in both
+//! directions, from end to end. The remaining gravity torque is then the same in both, with a zero mean.
 //!
-//! The current of the first increase is what the document calls stiction. The joint has begun to creep before its encoder
-//! shows it, while the current rose: on the mock bench the figure lies above the friction at rest, by 1.0 to 3.1 % at the
-//! default ramp (30 arms) and by 2.1 to 5.7 % at three times of it (20 arms). Its interval is the scatter between tries.
+//! The document's stiction is the current of the first increase. The joint creeps before its encoder shows it, while
+//! the current still rises. The figure therefore exceeds the friction at rest. On the mock bench the excess is 1.0 to
+//! 3.1 % at the default ramp (30 arms), and 2.1 to 5.7 % at three times the ramp (20 arms). Its interval is the
+//! scatter between tries.
 
 use super::legs::{ACCELERATION, Legs, friction_meta, stroke};
 use super::{Findable, Procedure, findable};
@@ -41,12 +43,14 @@ const SCHEMA: &[Parameter] = &[
     Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
 ];
 
-/// Strokes of one cycle of the work-out whose currents are compared: two out, two back.
+/// Strokes of one work-out cycle whose currents are compared: two out, two back.
 const CYCLE_STEPS: usize = 4;
-/// Before the current rises the joint rests for so long, and backs off by so much (link) to arrive in its direction.
+/// Rest before the current ramp, and distance of the approach (link), so that the joint arrives in the direction of
+/// the ramp.
 const REST_S: f64 = 0.4;
 const BACK_OFF_RAD: f64 = 0.02;
-/// Motor-side speed of what is not measured, and the one at which a joint that broke away is caught at the latest.
+/// Motor speed of motions that are not measured, and highest motor speed after the breakaway, at which the velocity
+/// loop takes over.
 const MOVE_SHARE: f64 = 0.5;
 const RUNAWAY_RAD_S: f64 = 10.0;
 
@@ -165,7 +169,7 @@ fn speeds(values: &Values) -> Result<impl Iterator<Item = f64> + use<>, PlanFaul
     Ok((0..count).map(move |i| low + (top - low) * f64::from(i) / f64::from(count - 1)))
 }
 
-/// Stiction at the upright pose, arrived at in the direction in which the joint will break away.
+/// Stiction at the upright pose; the joint arrives in the direction in which it will break away.
 fn break_away(legs: &mut Legs, values: &Values, bench: &BenchFacts) {
     let top_a = values.number("top_torque_nm") / bench.constants.torque_constant_nm_per_a;
     let ramp_s = values.number("top_torque_nm") / values.number("ramp_nm_s");
@@ -185,7 +189,7 @@ fn break_away(legs: &mut Legs, values: &Values, bench: &BenchFacts) {
             legs.drive_of_last(Drive::Current { from_s, current_a, until });
         }
     }
-    // The last of them is caught before the run ends.
+    // The velocity loop stops the joint after the last breakaway before the run ends.
     legs.push("rest".into(), Profile::from(0.0).hold(REST_S), Profile::constant(0.0));
 }
 

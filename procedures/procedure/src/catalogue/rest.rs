@@ -1,4 +1,4 @@
-//! The steps of a plan that are left after a run that did not come to its end, behind what restores their history.
+//! The remaining steps of a plan after an incomplete run, preceded by steps that restore their history.
 
 use super::legs::Legs;
 use crate::continuing::{Continues, Done};
@@ -9,15 +9,15 @@ use crate::recorder::RunId;
 use jointbench_instrument::RunTable;
 use std::sync::Arc;
 
-/// The brake is ramped down over so many turns of the link before anything is measured again.
+/// Link turns over which the brake current is ramped down before measurements continue.
 const DEMAGNETISING_TURNS: f64 = 2.0;
 
 impl Plan {
-    /// What is left of the plan from a step on. Before it: the warm-up again, where the plan has one; the brake, which was
-    /// shut down wherever the link stood, demagnetised while turning; and the current that the step begins with, approached
-    /// from below. `first_segment` is the first number that no row has yet.
+    /// The rest of the plan from a step on. Before it: the warm-up, if the plan has one; demagnetisation of the brake
+    /// during rotation, because it was switched off at an unknown position; and the current of the step, approached
+    /// from below. `first_segment` is the first unused segment number.
     ///
-    /// `None` where nothing is left, or nothing but the warm-up was done.
+    /// `None` if nothing remains, or if only the warm-up was done.
     pub fn rest(mut self, run: RunId, from_step: usize, first_segment: u32, bench: &BenchFacts) -> Option<Plan> {
         let (done, left) = self.steps.split_at_checked(from_step)?;
         if left.is_empty() || done.iter().all(|step| step.phase == Phase::WarmUp) {
@@ -28,7 +28,7 @@ impl Plan {
         let begins_a = left[0].brake.at(0.0);
         let mut legs = Legs::new(self.acceleration_rad_s2);
         legs.steps.extend(done.iter().filter(|step| step.phase == Phase::WarmUp).cloned());
-        // Ways out with their ways back.
+        // Motions out with their motions back.
         legs.steps.truncate(legs.steps.len() / 2 * 2);
         if top_a > 0.0 && speed_rad_s > 0.0 {
             legs.demagnetise(speed_rad_s, top_a, DEMAGNETISING_TURNS, bench);
@@ -37,7 +37,7 @@ impl Plan {
             }
         }
         let begins_rad: f64 = done.iter().filter_map(|step| step.velocity.integral().last().copied()).sum();
-        // Out and back, towards the middle of the range: of a warm-up the way back comes first.
+        // Out and back, towards the middle of the range: in a warm-up the motion back comes first.
         if begins_rad > 0.0 {
             let warm = legs.steps.iter().filter(|step| step.phase == Phase::WarmUp).count();
             legs.steps[..warm].chunks_exact_mut(2).for_each(<[Step]>::reverse);
@@ -51,7 +51,7 @@ impl Plan {
         }
         let restored = legs.steps.len();
         let mut left = left.to_vec();
-        // Where the stage was told to be last.
+        // The last commanded pose of the stage.
         let place = done.iter().rev().find_map(|step| match step.place {
             Place::At(pose) => Some(pose),
             Place::AsLeft | Place::Edge(_) => None,
@@ -67,7 +67,7 @@ impl Plan {
         Some(self)
     }
 
-    /// With what the runs before have measured, and which of it they finished, where the steps left learn from it.
+    /// Adds the earlier measurements and their finished steps, if the remaining steps depend on them.
     pub fn recalling(mut self, measured: RunTable, done: Done) -> Plan {
         if let Some(lesson) = &mut self.lesson {
             lesson.earlier = Some(Arc::new((measured, done)));

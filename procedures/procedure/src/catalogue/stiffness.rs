@@ -1,6 +1,6 @@
-//! The joint's flexibility (thesis, section 4.3, table 4.8): load steps at constant speed in alternating direction.
+//! Flexibility of the joint (thesis, section 4.3, table 4.8): load steps at constant speed in alternating direction.
 //!
-//! Loads rise from none to the highest and fall again. What the bearing behind the joint gives is taken off:
+//! Loads rise from zero to the highest and fall again. The compliance of the bearing behind the joint is subtracted:
 //! 1/k_joint = 1/k_measured − 1/k_bearing.
 
 mod identify;

@@ -1,7 +1,7 @@
-//! A few speeds under one load, out and back: the short run that settles one question.
+//! A few speeds under one load, out and back: a short run for one question.
 //!
-//! Every leg returns to where it began, so that a joint or a slide with little room can be measured. A leg ends when its
-//! time or its way is up, whichever comes first.
+//! Every leg returns to its start, so that a joint or slide with a short range can be measured. A leg ends when its
+//! time or its distance is reached, whichever is first.
 
 use super::legs::{Legs, sample_rate};
 use super::{Findable, Procedure, findable};
@@ -36,17 +36,17 @@ const SCHEMA: &[Parameter] = &[
     Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
 ];
 
-/// The brake is magnetised and demagnetised at this share of the highest speed at least, however slow the strokes are.
+/// Least speed for magnetising and demagnetising the brake, as a share of the highest speed.
 const TURNING_SHARE: f64 = 0.5;
 
-/// A plateau shorter than this, or than so many times both ramps together, holds no settled motion that is found.
+/// Shortest dwell, absolute and relative to both ramps together, that contains a detectable steady state.
 const SHORTEST_S: f64 = 0.3;
 const OF_RAMPS: f64 = 1.0;
-/// A leg that is faster than the strokes by this ratio magnetises or demagnetises the brake.
+/// A leg faster than the strokes by this ratio magnetises or demagnetises the brake.
 const FASTER: f64 = 1.05;
 /// Error probability of the test for gravity.
 const ALPHA: f64 = 0.05;
-/// An offset whose interval reaches so far, as a share of its size, is not determined.
+/// Relative half interval from which on an offset is not determined.
 const VAGUE: f64 = 0.5;
 
 impl Procedure for Strokes {
@@ -117,15 +117,16 @@ impl Procedure for Strokes {
 /// Speed and friction of each stroke of one direction, and the line through them.
 type Side = (Vec<(f64, f64)>, Option<Line>);
 
-/// What the strokes of both directions say.
+/// Results of both directions.
 struct Lines {
     /// Positive direction, then negative.
     sides: [Side; 2],
-    /// Half the difference of both offsets with its interval: gravity is not in it. Where no sensor measures the load.
+    /// Half the difference of both offsets with its interval, which excludes gravity. For a bench without a load
+    /// sensor.
     half_difference: Option<(f64, [f64; 2])>,
 }
 
-/// A line through the strokes of each direction, under the load that they were made under.
+/// A line through the strokes of each direction, under the load of the run.
 fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
     let legs = legs(run);
     let heaviest = legs.iter().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
@@ -156,8 +157,8 @@ fn waves(link_rad: f64) -> [f64; 2] {
     [link_rad.sin(), link_rad.cos()]
 }
 
-/// Both lines and the gravity of the link, which no sensor measures: least squares over all settled rows, with intervals of a
-/// jackknife over the strokes. `None` where gravity is not significant (Wald test).
+/// Both lines and the unmeasured gravity of the link: least squares over all steady-state rows, with intervals of a
+/// jackknife over the strokes. `None` if gravity is not significant (Wald test).
 fn without_gravity(prepared: &Prepared, points: &[Plateau], fastest_rad_s: f64) -> Option<Lines> {
     let (problem, view) = (&prepared.main, &prepared.main.view);
     let (speed, link) = (view.get(Signal::Velocity), view.get(Signal::Link));
@@ -277,7 +278,7 @@ fn identification(points: &[Plateau], lines: &Lines, planned_rad_s: f64) -> Iden
     }
 }
 
-/// Motor speeds with the time at each.
+/// Motor speeds with the dwell time at each.
 fn speeds(values: &Values, bench: &BenchFacts) -> Result<Vec<(f64, f64)>, PlanFault> {
     let (low_rad_s, top_rad_s) = (values.number("low_speed_rad_s"), values.number("top_speed_rad_s"));
     if low_rad_s > top_rad_s {

@@ -1,8 +1,9 @@
-//! The torque sensor's zero and its drift, of each of its ranges, and whether the ranges agree.
+//! Zero and drift of the torque sensor in each of its ranges, and the agreement of the ranges.
 //!
-//! A resting line is never free of torque: what it was wound up with stays in it. So the joint goes out and back slowly
-//! without load, and the zero is half the sum of both directions: drag has the sign of motion, the zero has not. Then the
-//! brake loads the line in both directions, as far as the smaller range goes: both ranges feel the same torque there.
+//! A shaft line at rest always contains some torque from its wind-up. Therefore the joint moves out and back slowly
+//! without load. The zero is half the sum of both directions, because drag has the sign of the motion and the zero
+//! has not. Then the brake loads the line in both directions up to the smaller range, where both ranges measure the
+//! same torque.
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
@@ -27,9 +28,9 @@ const SCHEMA: &[Parameter] = &[
     sample_rate(100.0),
 ];
 
-/// The settled end of a hold: the brake's rotor winds up first.
+/// Steady-state share at the end of a hold, after the wind-up of the brake's rotor.
 const SETTLED: f64 = 0.6;
-/// Share of the run at its end that the zero and its drift are taken from.
+/// Last share of the run, from which the zero and its drift are estimated.
 const END: f64 = 1.0 / 3.0;
 
 impl Procedure for TorqueSensorZero {
@@ -107,7 +108,7 @@ fn compare(legs: &mut Legs, speed_rad_s: f64, values: &Values, bench: &BenchFact
     legs.unload(speed_rad_s, before_a, bench);
 }
 
-/// A range's zero over the time [min], and what its last part comes to.
+/// The zero of a range over time [min], and its value and drift in the last part.
 struct Zero {
     points: Vec<(f64, f64)>,
     value: Mean,
@@ -117,7 +118,7 @@ struct Zero {
 
 impl Zero {
     fn of(torque: &[f64], time_s: &[f64], held: &[Hold]) -> Result<Self, Unusable> {
-        // A brake that has been loaded keeps some of it.
+        // A brake that was loaded keeps some remanence.
         let idle = &held[..held.iter().position(|hold| hold.brake != 0.0).unwrap_or(held.len())];
         let (mut points, mut drags) = (Vec::new(), Vec::new());
         for pair in idle.chunk_by(|a, b| a.repeat == b.repeat).filter(|pair| pair.len() == 2) {
@@ -188,7 +189,7 @@ fn of_other(zero: &Zero) -> [Quantity; 2] {
     ]
 }
 
-/// Both ranges' word for the same torque, over all that was held.
+/// Readings of both ranges for the same torque, over all holds.
 fn overlap(
     found: &mut Identification,
     held: &[Hold],

@@ -1,4 +1,4 @@
-//! Work the joint until temperature and friction are steady, or the time is up.
+//! Warm-up of the joint until temperature and friction are steady, or the time limit is reached.
 
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::{Findable, Procedure, findable};
@@ -28,8 +28,8 @@ const SCHEMA: &[Parameter] = &[
 
 /// Steps of one cycle: fast and slow, out and back.
 pub(super) const CYCLE_STEPS: usize = 4;
-/// The slow pair of a cycle: viscous friction shows apart from Coulomb friction while both change with temperature. Well above
-/// the Stribeck velocity, or what is left of its rise would count as Coulomb friction.
+/// Speed of the slow pair of a cycle: two speeds separate viscous from Coulomb friction while both change with
+/// temperature. It is well above the Stribeck velocity, because the Stribeck rise would count as Coulomb friction.
 pub(super) const SLOW_SHARE: f64 = 0.5;
 
 impl Procedure for WarmUp {
@@ -86,7 +86,7 @@ fn rule(values: &Values) -> Steady {
     }
 }
 
-/// Fast legs of the three cycles at the end that are judged.
+/// Fast legs of the last three cycles, which are judged.
 const JUDGED: usize = 6;
 
 fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
@@ -95,7 +95,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let fast: Vec<Plateau> = points.into_iter().filter(|p| p.velocity_rad_s.abs() > 0.9 * top).collect();
     let end = &fast[fast.len().saturating_sub(JUDGED)..];
     let rule = rule(values);
-    // By the very rule that ends a warm-up: one that ended by itself has just come below the bound.
+    // The same rule ends a warm-up: one that ended by itself has just fallen below the bound.
     let watch = SteadyWatch::of(rule, run);
     let Some((watch, drift)) = watch.and_then(|watch| watch.drift().map(|drift| (watch, drift))) else {
         return Err(Unusable::TooLittle(
@@ -181,7 +181,8 @@ fn over_minutes([name, title, label, unit]: [&str; 4], series: Vec<Series>) -> F
     }
 }
 
-/// A drift at the end of each cycle, between the bounds within which the joint is warm. `words`: name, title, label and unit.
+/// Drift at the end of each cycle, and the bounds within which the joint is warm. `words`: name, title, label and
+/// unit.
 fn until_steady(words: [&str; 4], watch: &SteadyWatch, bound: f64, of: fn(&Drift) -> f64) -> Figure {
     let points: Vec<(f64, f64)> = watch.drifts().map(|(time_s, drift)| (time_s / 60.0, of(&drift))).collect();
     let ends = [points.first().map_or(0.0, |p| p.0), points.last().map_or(1.0, |p| p.0)];
@@ -193,7 +194,7 @@ fn until_steady(words: [&str; 4], watch: &SteadyWatch, bound: f64, of: fn(&Drift
     over_minutes(words, series)
 }
 
-/// Whole cycles of warm-up steps that take at most `longest_s`, but one at least.
+/// Whole cycles of warm-up steps of at most `longest_s`, but at least one.
 pub(super) fn work(legs: &mut Legs, top_speed_rad_s: f64, longest_s: f64, bench: &BenchFacts) {
     legs.phase = Phase::WarmUp;
     let mut cycle_s = 0.0;

@@ -1,4 +1,4 @@
-//! Before anything moves: who is there, is it healthy, may this plan run here.
+//! Checks before any motion: identity and health of the instruments, and the limits of the plan on this bench.
 
 use super::ending::Ending;
 use super::session::{Session, reported};
@@ -31,7 +31,7 @@ impl Session<'_> {
         let compliance = Volts(self.bench.constants.brake_compliance_v);
         self.ask_brake(|brake| brake.prepare(compliance))?;
         let (speed, current) = (self.bench.limits.motor_velocity_rad_s, self.bench.limits.motor_current_a);
-        // From here on securing has torque to take away, even if the reply to this request is lost.
+        // From here on securing has to remove torque, even if the reply to this request is lost.
         self.armed = true;
         self.ask_joint(|joint| joint.arm(RadPerSec(speed), Amperes(current)))?;
         let health = self.ask_joint(|joint| joint.health())?;
@@ -86,12 +86,12 @@ impl Session<'_> {
         }
         let now_s = self.bench.clock.now_s();
         for (instrument, port, identity) in found {
-            self.journal.tell(now_s, EventKind::Identified { instrument, port, identity });
+            self.journal.log(now_s, EventKind::Identified { instrument, port, identity });
         }
         Ok(())
     }
 
-    /// The plan starts where the joint stands: the whole travel has to fit from there.
+    /// The plan starts at the present position, so that its whole travel has to fit from there.
     fn check_range(&self, reading: &JointReading) -> Result<(), Ending> {
         let constants = &self.bench.constants;
         let Some(range_rad) = constants.link_range_rad else { return Ok(()) };
@@ -99,7 +99,7 @@ impl Session<'_> {
         let (lowest, highest) = self.plan.travel_rad();
         for travel_rad in [lowest, highest] {
             let position_rad = here_rad + travel_rad / constants.gear_ratio;
-            // A position that is not a number does not fit either.
+            // A position of NaN does not fit either.
             let fits = position_rad.abs() <= range_rad;
             if !fits {
                 return Err(Ending::NotReady(format!(
@@ -112,7 +112,7 @@ impl Session<'_> {
     }
 }
 
-/// From the link's own encoder, or through the gear where it has none.
+/// From the link encoder, or through the gear ratio without one.
 pub(super) fn link_position_rad(reading: &JointReading, gear_ratio: f64) -> f64 {
     reading.link_position.map_or(reading.motor_position.0 / gear_ratio, |position| position.0)
 }

@@ -1,17 +1,17 @@
-//! What the drive is asked for in a tick: a velocity, with what is fed forward, or a motor current alone.
+//! The command to the drive in a tick: a velocity with feedforward, or a motor current alone.
 
 use super::session::{Asked, Session};
 use crate::plan::{Drive, Feed, Step, Until};
 use jointbench_instrument::roles::JointReading;
 use std::f64::consts::TAU;
 
-/// Friction as it is felt, low-passed, while a step lasts.
+/// Measured friction, low-pass filtered, during a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct FeltFriction {
     current_a: f64,
 }
 
-/// How often in a row the motor has moved on.
+/// Number of consecutive increases of the motor position.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Moved {
     at_rad: Option<f64>,
@@ -47,7 +47,7 @@ impl Session<'_> {
         }
     }
 
-    /// The motor current that friction takes, by the latest readings: in the direction of motion, never less than none.
+    /// The motor current of friction from the latest readings: in the direction of motion, never negative.
     fn friction_a(&self) -> f64 {
         let Some(joint) = self.joint else { return 0.0 };
         let constants = &self.bench.constants;

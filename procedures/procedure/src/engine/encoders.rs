@@ -1,12 +1,12 @@
-//! What an encoder bench has beside its motor: two counters to read, and a stage to move.
+//! Additional instruments of an encoder bench: two counters and a stage.
 
 use super::ask::ask;
 use super::ending::Ending;
-use super::session::{Asked, Session, Wish, reported, tell};
+use super::session::{Asked, Session, Wish, log, reported};
 use super::steps::Left;
 use crate::encoder_columns::Encoders;
 use crate::event::EventKind;
-use crate::place::{Edge, Hunt, Place};
+use crate::place::{Edge, EdgeSearch, Place};
 use crate::plan::Step;
 use crate::profile::Profile;
 use jointbench_instrument::clock::{Timed, timed};
@@ -14,37 +14,38 @@ use jointbench_instrument::roles::{AlignmentStage, Pose, PositionCounter};
 use jointbench_instrument::{Fault, FaultKind, Kind};
 use std::sync::Arc;
 
-/// An accepted move is not under way yet (gcs2-hexapod, timing).
+/// Time until an accepted move starts (gcs2-hexapod, timing).
 const SET_OFF_S: f64 = 0.2;
-/// The stage is asked this often whether it has arrived.
+/// Polling period of the stage during a move.
 const ARRIVED_EVERY_S: f64 = 0.05;
-/// Longest move, and longest search for the axes' zeros.
+/// Longest move, and longest search for the zeros of the axes.
 const LONGEST_MOVE_S: f64 = 60.0;
 
-/// How well the stage stood where it was told to, whenever it was read.
+/// Deviation of the stage from its commanded pose over all readings.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Stood {
+pub(super) struct PoseDeviation {
     readings: u32,
     off_m: f64,
     off_rad: f64,
     uncertainty_s: f64,
 }
 
-impl Stood {
-    fn add(before: Option<Self>, told: Pose, stood: &Timed<Pose>) -> Self {
+impl PoseDeviation {
+    fn add(before: Option<Self>, commanded: Pose, reached: &Timed<Pose>) -> Self {
         let before = before.unwrap_or_default();
-        let off =
-            |told: [f64; 3], stood: [f64; 3]| told.iter().zip(stood).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let off = |commanded: [f64; 3], reached: [f64; 3]| {
+            commanded.iter().zip(reached).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
         Self {
             readings: before.readings + 1,
-            off_m: before.off_m.max(off(told.shift_m, stood.value.shift_m)),
-            off_rad: before.off_rad.max(off(told.rotation_rad, stood.value.rotation_rad)),
-            uncertainty_s: before.uncertainty_s.max(stood.uncertainty_s),
+            off_m: before.off_m.max(off(commanded.shift_m, reached.value.shift_m)),
+            off_rad: before.off_rad.max(off(commanded.rotation_rad, reached.value.rotation_rad)),
+            uncertainty_s: before.uncertainty_s.max(reached.uncertainty_s),
         }
     }
 
-    /// For people.
-    pub fn told(self) -> String {
+    /// Text for users.
+    pub fn note(self) -> String {
         format!(
             "Stage position after settling ({} readings, time uncertainty ±{:.2} ms): within {:.2} µm and {:.1} µrad \
              of the target.",
@@ -57,7 +58,7 @@ impl Stood {
 }
 
 impl Session<'_> {
-    /// Both encoders, in a run of encoders.
+    /// Reads both encoders in a run of encoders.
     pub(super) fn feel_encoders(&mut self) -> Result<Option<Encoders>, Ending> {
         if self.plan.kind != Kind::Encoder || self.lost.sensor {
             return Ok(None);
@@ -81,7 +82,7 @@ impl Session<'_> {
         let Some(encoder) = encoder else {
             return Err(Ending::NotReady("the bench needs a reference encoder and a test encoder".into()));
         };
-        ask(encoder.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map_err(|fault| {
+        ask(encoder.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map_err(|fault| {
             lost.sensor = true;
             Ending::OtherFault(fault)
         })
@@ -94,10 +95,10 @@ impl Session<'_> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, .. } = self;
         let Some(stage) = &mut bench.stage else { return Err(Ending::NotReady("the bench has no stage".into())) };
-        ask(stage.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map_err(Ending::OtherFault)
+        ask(stage.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map_err(Ending::OtherFault)
     }
 
-    /// Before anything is armed: who is there, and a stage that knows its zeros where the plan needs it.
+    /// Before arming: identity of the encoders, and a stage that knows its zeros if the plan needs it.
     pub(super) fn meet_encoders(&mut self) -> Result<(), Ending> {
         if self.plan.kind == Kind::Encoder {
             for under_test in [false, true] {
@@ -106,7 +107,7 @@ impl Session<'_> {
                 if let Some(encoder) = encoder {
                     let (instrument, port) = (encoder.name().to_owned(), encoder.port().to_owned());
                     let now_s = self.bench.clock.now_s();
-                    self.journal.tell(now_s, EventKind::Identified { instrument, port, identity });
+                    self.journal.log(now_s, EventKind::Identified { instrument, port, identity });
                 }
             }
         }
@@ -130,13 +131,13 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Takes a pose while the shaft goes on as it is told, and waits until it is settled.
+    /// Moves to a pose while the shaft follows its set-points, and waits until the stage is settled.
     pub(super) fn place(&mut self, pose: Pose) -> Result<(), Ending> {
         if self.pose == Some(pose) {
             return Ok(());
         }
         self.ask_stage(|stage| stage.move_to(pose))?;
-        // Nothing is kept until it is there.
+        // No row is kept before the stage has arrived.
         self.pose = Some(pose);
         let here = Profile::from(self.commanded.velocity_rad_s);
         let brake = Profile::constant(self.commanded.brake_a);
@@ -147,8 +148,8 @@ impl Session<'_> {
             |session| session.drive(&here.clone().hold(ARRIVED_EVERY_S), &brake),
         )?;
         let clock = Arc::clone(&self.bench.clock);
-        let stood = self.ask_stage(|stage| timed(&*clock, || stage.pose()))?;
-        self.stood = Some(Stood::add(self.stood, pose, &stood));
+        let reached = self.ask_stage(|stage| timed(&*clock, || stage.pose()))?;
+        self.pose_deviation = Some(PoseDeviation::add(self.pose_deviation, pose, &reached));
         Ok(())
     }
 
@@ -172,14 +173,14 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// One hunt for an edge: the rows of every try are kept, the ways between are not.
-    pub(super) fn hunt(&mut self, step: &Step, segment: u32, edge: &Edge) -> Result<Left, Ending> {
+    /// One edge search: the rows of every try are kept, those of the moves between are not.
+    pub(super) fn search_edge(&mut self, step: &Step, segment: u32, edge: &Edge) -> Result<Left, Ending> {
         self.place(edge.from)?;
         let speed_rad_s =
             step.velocity.knots().iter().map(|(_, v)| *v).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
         let brake = Profile::constant(self.commanded.brake_a);
         self.drive(&self.ramp_to(speed_rad_s), &brake)?;
-        let mut hunt = Hunt::new(*edge);
+        let mut search_edge = EdgeSearch::new(*edge);
         loop {
             self.consistent = true;
             let start_s = self.beat.next_s.max(self.bench.clock.now_s());
@@ -195,9 +196,9 @@ impl Session<'_> {
             if self.wish.take() == Some(Wish::Pause) {
                 return Ok(Left::Paused);
             }
-            let next = hunt.next(self.consistent);
-            if hunt.is_beyond() || next.is_none() {
-                self.place(edge.pose(hunt.good))?;
+            let next = search_edge.next(self.consistent);
+            if search_edge.is_beyond() || next.is_none() {
+                self.place(edge.pose(search_edge.good))?;
             }
             match next {
                 Some(next) => self.place(edge.pose(next))?,

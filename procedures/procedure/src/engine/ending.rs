@@ -1,4 +1,4 @@
-//! Why a run ends, how fast it has to be secured, and what a person reads about it.
+//! Why a run ends, how fast it has to be secured, and the text for users.
 
 use crate::event::EventKind;
 use crate::guard::Refusal;
@@ -11,22 +11,22 @@ use std::fmt;
 pub(super) enum Ending {
     Completed,
     Stopped,
-    /// Nobody holds the sender of the controls any more.
+    /// All senders of controls were dropped.
     Abandoned,
     Aborted,
     EStopped,
-    /// The program that holds the run was told to end.
+    /// The process that owns the run was terminated.
     Quit,
-    /// The part of the program that stores the run has died.
+    /// The process that stores the run has died.
     StorageLost,
     /// Arming found a reason not to move.
     NotReady(String),
-    /// The guard stopped a command before it was sent.
+    /// The guard rejected a command before it was sent.
     CommandRefused(Refusal),
-    /// The guard saw a sample that must not be.
+    /// The guard rejected a sample.
     SampleRefused(Refusal),
     JointFault(Fault),
-    /// Of any other instrument: the joint still obeys.
+    /// A fault of another instrument: the joint still obeys.
     OtherFault(Fault),
     Unrecorded(RecorderFault),
     Panicked(String),
@@ -43,12 +43,12 @@ impl Ending {
     }
 }
 
-/// How much time securing may take, from most to least.
+/// Time that securing may take, from most to least.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Urgency {
-    /// Unload the brake while the shaft turns, then come to rest.
+    /// Unloads the brake during rotation, then stops the shaft.
     Orderly,
-    /// The shaft ramps down, and the brake's current is taken away behind it.
+    /// The shaft ramps down, and the brake current is removed after that.
     Quick,
     /// Drive torque off first.
     Cut,
@@ -86,7 +86,7 @@ impl Ending {
         (!matches!(self, Ending::Completed)).then(|| self.to_string())
     }
 
-    /// What the journal says about it. Faults have told of themselves where they happened.
+    /// The journal entry of the ending. Instrument faults were already reported when they occurred.
     pub fn event(&self) -> Option<EventKind> {
         match self {
             Ending::Completed | Ending::JointFault(_) | Ending::OtherFault(_) => None,

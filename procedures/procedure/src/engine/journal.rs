@@ -1,4 +1,4 @@
-//! What is not yet handed over: the rows and events since the last commit, in order.
+//! Data that is not yet committed: rows and events since the last commit, in order.
 
 use super::ending::Ending;
 use crate::event::{Event, EventKind};
@@ -6,9 +6,9 @@ use crate::recorder::{Commit, Live, Progress, Recorder, RecorderFault, RunId};
 use crate::state::{RunState, Transition};
 use jointbench_instrument::Trace;
 
-/// Rows are handed over to be kept after this much bench time at the latest.
+/// Longest bench time between two commits.
 const COMMIT_EVERY_S: f64 = 2.0;
-/// The newest rows are shown this often: the 30 frames of a second.
+/// Period of live updates: 30 frames in a second.
 const LIVE_EVERY_S: f64 = 1.0 / 30.0;
 
 pub(super) struct Journal<'a> {
@@ -49,27 +49,27 @@ impl<'a> Journal<'a> {
         self.recorder.blocked()
     }
 
-    /// Gives the rows their columns, before the first one comes.
+    /// Sets the columns before the first row.
     pub fn set_columns(&mut self, empty: Trace) {
         self.newest = empty.clone();
         self.rows = empty;
     }
 
-    pub fn tell(&mut self, now_s: f64, kind: impl Into<Option<EventKind>>) {
+    pub fn log(&mut self, now_s: f64, kind: impl Into<Option<EventKind>>) {
         if let Some(kind) = kind.into() {
             self.events.push(Event { at_s: now_s - self.started_s, kind });
         }
     }
 
-    /// The one place where a run changes its state.
+    /// The only function that changes the state of a run.
     pub fn enter(&mut self, now_s: f64, transition: Transition, reason: Option<String>) -> Result<(), Ending> {
         self.state = self.state.after(transition).map_err(Ending::Illegal)?;
         tracing::info!(run.id = self.run, state = %self.state, "run state");
-        self.tell(now_s, EventKind::State { state: self.state, reason });
+        self.log(now_s, EventKind::State { state: self.state, reason });
         Ok(self.commit(now_s)?)
     }
 
-    /// Rows kept or about to be.
+    /// Rows that are kept or pending.
     pub fn rows(&self) -> u64 {
         self.kept_rows + self.rows.len() as u64
     }

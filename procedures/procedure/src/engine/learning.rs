@@ -1,4 +1,4 @@
-//! Steps that are planned anew from what the run has measured, on another thread while the steps in between are made.
+//! Plans steps again from the results of the run, on another thread while the steps in between are performed.
 
 use super::ending::Ending;
 use super::session::{Session, panic_text};
@@ -10,15 +10,15 @@ use jointbench_instrument::{RunTable, TableFault, Trace};
 use std::borrow::Cow;
 use std::thread::JoinHandle;
 
-/// The shaft stands for so long between two looks whether the planning is done.
+/// Polling period while the shaft waits for the planning.
 const LOOK_EVERY_S: f64 = 0.1;
 
 #[derive(Default)]
 pub(super) struct Learning {
-    /// What is learnt from.
+    /// Rows that the planning uses.
     rows: Trace,
     begun: Option<JoinHandle<Result<Learnt, String>>>,
-    /// None where they are left out.
+    /// `None` if the steps are omitted.
     steps: Option<Vec<Step>>,
 }
 
@@ -27,7 +27,7 @@ impl Learning {
         self.rows = empty;
     }
 
-    /// A step that was made again after a pause has a number behind all others.
+    /// A step that was repeated after a pause has a number above all others.
     pub fn keep(&mut self, lesson: Option<&Lesson>, segment: u32, row: &[f64]) {
         if lesson.is_some_and(|lesson| segment >= lesson.from.start) && self.begun.is_none() && self.steps.is_none() {
             self.rows.push_row(row);
@@ -36,7 +36,7 @@ impl Learning {
 }
 
 impl Session<'_> {
-    /// The step as it is to be made. `None`: it is left out.
+    /// The final version of a step. `None`: it is omitted.
     pub(super) fn learnt<'s>(&mut self, index: usize, step: &'s Step) -> Result<Option<Cow<'s, Step>>, Ending> {
         let plan = self.plan;
         let Some(lesson) = &plan.lesson else { return Ok(Some(Cow::Borrowed(step))) };
@@ -73,7 +73,7 @@ impl Session<'_> {
     }
 }
 
-/// What this run and the one before it have measured together.
+/// The measurements of this run and of the one that it continues.
 fn measured(now: Result<RunTable, TableFault>, lesson: &Lesson) -> Result<RunTable, TableFault> {
     match (&lesson.earlier, now) {
         (None, now) => now,

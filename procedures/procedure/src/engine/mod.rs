@@ -1,4 +1,4 @@
-//! Carries a plan out on a bench: arm, run, secure. One thread, one ordinary loop, no exit without the safe state.
+//! Runs a plan on a bench: arm, run, secure. One thread, one loop, and every exit leads to the safe state.
 
 mod arm;
 mod ask;
@@ -24,7 +24,7 @@ use crate::event::{Demand, EventKind, Safe};
 use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
 use crate::state::{RunState, Transition};
-use encoders::Stood;
+use encoders::PoseDeviation;
 use ending::Ending;
 use jointbench_instrument::Bench;
 pub use safe_state::{Secured, secure};
@@ -37,20 +37,21 @@ pub use tick::SLOW_EVERY_S;
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunEnd {
-    /// Final.
+    /// Final state.
     pub state: RunState,
     pub safe: Safe,
-    /// Why, where the run was not completed.
+    /// Why the run was not completed.
     pub reason: Option<String>,
-    /// Rows that the recorder has taken.
+    /// Rows that the recorder has accepted.
     pub rows: u64,
     pub duration_s: f64,
 }
 
-/// Runs a plan to its end, whatever the end is. Never panics and never returns before securing was tried.
+/// Runs a plan to its end. Never panics, and never returns before securing was attempted.
 ///
-/// The caller owns the bench on this thread. A dropped sender of `controls` is an orderly stop: nobody could stop the
-/// run any more. The recorder sees every state from `arming` to the final one; where it fails, the run fails.
+/// The caller owns the bench on this thread. A dropped sender of `controls` is an orderly stop, because the run could
+/// not be stopped any more. The recorder receives every state from `arming` to the final one; if it fails, the run
+/// fails.
 pub fn run(
     bench: &mut Bench,
     plan: &Plan,
@@ -76,22 +77,22 @@ impl Session<'_> {
 
     fn finish(&mut self, mut ending: Ending) -> RunEnd {
         let now_s = self.bench.clock.now_s();
-        self.journal.tell(now_s, ending.event());
-        // Rows that this commit cannot keep are lost: such a run is not complete.
+        self.journal.log(now_s, ending.event());
+        // Rows that this commit cannot store are lost, so that the run is not complete.
         if let Err(unkept) = self.enter(Transition::Secure)
             && matches!(ending, Ending::Completed)
         {
             ending = unkept;
         }
-        let told = [self.skews.and_then(Skews::told), self.stood.map(Stood::told)];
-        told.into_iter().flatten().for_each(|told| self.note(told));
+        let notes = [self.skews.and_then(Skews::note), self.pose_deviation.map(PoseDeviation::note)];
+        notes.into_iter().flatten().for_each(|note| self.note(note));
         let safe = self.make_safe(&ending);
-        std::mem::take(&mut self.shaft).told().into_iter().for_each(|told| self.note(told));
-        let _told = self.caught(Session::stop_torque_stream);
+        std::mem::take(&mut self.shaft).notes().into_iter().for_each(|note| self.note(note));
+        let _stopped = self.caught(Session::stop_torque_stream);
         self.look_behind(&mut ending);
         self.identify_again(&mut ending);
         let now_s = self.bench.clock.now_s();
-        self.journal.tell(now_s, Some(EventKind::Safe { safe }));
+        self.journal.log(now_s, Some(EventKind::Safe { safe }));
         if let Err(unkept) = self.end(&ending) {
             tracing::error!(run.id = self.journal.run, "the end of the run was not kept: {unkept}");
             if matches!(ending, Ending::Completed) {

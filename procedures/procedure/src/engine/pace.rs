@@ -1,4 +1,4 @@
-//! How long a run still takes: the plan's durations, corrected by what the steps so far really took.
+//! Remaining time of a run: the planned durations, corrected by the actual durations of the finished steps.
 
 use crate::plan::{Phase, Plan, Step};
 use crate::recorder::Progress;
@@ -26,7 +26,7 @@ pub(super) struct Pace {
     steps: Vec<(f64, bool)>,
     /// From the start of each step to the end of the plan, and 0 at the end.
     left_s: Vec<Durations>,
-    /// First step after those that a steady joint needs no more.
+    /// First step after those that a steady joint does not need.
     warm: usize,
     step: usize,
     label: String,
@@ -71,12 +71,12 @@ impl Pace {
         self.step_started_s = now_s;
     }
 
-    /// A step that was not needed says nothing about the pace.
+    /// A skipped step does not change the pace.
     pub fn step_skipped(&mut self) {
         self.step += 1;
     }
 
-    /// While a step waits, its own share of the remaining time does not fall.
+    /// While a step waits, its share of the remaining time is constant.
     pub fn progress(&self, started_s: f64, now_s: f64, moving: bool) -> Progress {
         let mut left = self.left_s[self.step];
         if let Some((longest_s, open)) = self.steps.get(self.step).filter(|_| moving) {

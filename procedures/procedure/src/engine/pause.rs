@@ -1,4 +1,4 @@
-//! A pause: ramp to rest, hold, go back to where the interrupted step began; behind a long one, warm up again.
+//! A pause: ramp to rest, hold, return to the start of the interrupted step; after a long pause, warm up again.
 
 use super::ending::Ending;
 use super::session::{Session, Wish};
@@ -6,17 +6,17 @@ use crate::plan::{Before, Step};
 use crate::profile::Profile;
 use crate::state::Transition;
 
-/// Gain of the way back: the approach is exponential with a quarter of a second.
+/// Gain of the return: an exponential approach with a time constant of a quarter of a second.
 const RETURN_PER_S: f64 = 4.0;
-/// Close enough to the start of the step, motor side.
+/// Tolerance at the start of the step, motor side.
 const RETURNED_RAD: f64 = 0.2;
-/// The way back is given up after twice the time that it should take, and this.
+/// Additional time of the return, after twice the expected time, before it is given up.
 const RETURN_GRACE_S: f64 = 5.0;
 
 impl Session<'_> {
-    /// Returns when the step may begin again; the brake current is the one that the pause began with [A].
+    /// Returns when the step may begin again, with the brake current at the start of the pause [A].
     pub(super) fn pause(&mut self, step: &Step, start_rad: Option<f64>) -> Result<f64, Ending> {
-        // A constant current through standstill and restart leaves no cogging behind (bench-physics, section 3).
+        // A constant current through standstill and restart causes no cogging (bench-physics, section 3).
         let mut brake_a = self.commanded.brake_a;
         let mut rested_s = 0.0;
         loop {
@@ -43,7 +43,7 @@ impl Session<'_> {
         }
     }
 
-    /// Set-points over their time; the rows are shown, not kept.
+    /// Follows set-points over time; the rows are shown, but not kept.
     pub(super) fn drive(&mut self, velocity: &Profile, brake: &Profile) -> Result<(), Ending> {
         let start_s = self.beat.next_s.max(self.bench.clock.now_s());
         let duration_s = velocity.duration_s().max(brake.duration_s());
@@ -57,14 +57,14 @@ impl Session<'_> {
         }
     }
 
-    /// From the commanded velocity to another, with the acceleration of the plan.
+    /// From the commanded velocity to another one, with the acceleration of the plan.
     pub(super) fn ramp_to(&self, velocity_rad_s: f64) -> Profile {
         let from_rad_s = self.commanded.velocity_rad_s;
         let seconds = (velocity_rad_s - from_rad_s).abs() / self.plan.acceleration_rad_s2;
         Profile::from(from_rad_s).to(velocity_rad_s, seconds)
     }
 
-    /// A step's travel was planned from its start, and so was the range that it needs.
+    /// The travel and range of a step were planned from its start.
     pub(super) fn go_back(&mut self, speed_rad_s: f64, start_rad: Option<f64>, brake_a: f64) -> Result<(), Ending> {
         let Some(start_rad) = start_rad else { return Ok(()) };
         let away_rad = |session: &Self| session.joint.map_or(0.0, |reading| start_rad - reading.motor_position.0);

@@ -1,4 +1,4 @@
-//! An encoder that loses its power on purpose: by the bench's own switch, or by a person's hand while the run waits.
+//! A power cycle of an encoder: by a switch of the bench, or by a person while the run waits.
 
 use super::ending::Ending;
 use super::session::{Session, Wish, reported};
@@ -8,18 +8,18 @@ use crate::state::Transition;
 use jointbench_instrument::{Fault, FaultKind};
 use std::f64::consts::TAU;
 
-/// A counter that is switched on again answers within this.
+/// Longest boot time of a counter after power-up.
 const BOOT_S: f64 = 20.0;
 const LOOK_EVERY_S: f64 = 0.2;
-/// How fast (motor), and how far at most, an index is looked for.
+/// Motor speed and largest distance of the search for an index.
 const SEEK_RAD_S: f64 = TAU;
 const SEEK_TURNS: f64 = 2.5;
 
 impl Session<'_> {
-    /// Ends with the encoder under test on, and counting from its index.
+    /// Ends with the encoder under test switched on, and counting from its index.
     pub(super) fn power_anew(&mut self) -> Result<(), Ending> {
         self.drive(&self.ramp_to(0.0), &Profile::constant(self.commanded.brake_a))?;
-        // What has no power is not read.
+        // An instrument without power is not read.
         self.lost.sensor = true;
         loop {
             let name = self.bench.test_encoder.as_ref().map_or("", |encoder| encoder.name()).to_owned();
@@ -40,7 +40,7 @@ impl Session<'_> {
         self.seek_index()
     }
 
-    /// Waits in standstill until a person says that it is done.
+    /// Waits at standstill until a person confirms.
     fn ask_for_hand(&mut self, name: &str) -> Result<(), Ending> {
         self.note(format!("Switch {name} and its counter off and on, then resume the run."));
         self.enter(Transition::Pause)?;
@@ -51,7 +51,7 @@ impl Session<'_> {
         self.enter(Transition::Resume)
     }
 
-    /// Asks the encoder under test who it is until it answers. `true` where it said that its state is lost.
+    /// Polls the identity of the encoder under test until it answers. Returns whether it reported a lost state.
     fn meet_again(&mut self) -> Result<bool, Ending> {
         let give_up_s = self.bench.clock.now_s() + BOOT_S;
         let mut lost = false;
@@ -61,7 +61,7 @@ impl Session<'_> {
                 Ok(identity) => {
                     let (instrument, port) = (encoder.name().to_owned(), encoder.port().to_owned());
                     let now_s = self.bench.clock.now_s();
-                    self.journal.tell(now_s, EventKind::Identified { instrument, port, identity });
+                    self.journal.log(now_s, EventKind::Identified { instrument, port, identity });
                     return Ok(lost);
                 }
                 Err(Fault { kind: FaultKind::Reported { .. }, .. }) if !lost => lost = true,
@@ -73,7 +73,7 @@ impl Session<'_> {
         }
     }
 
-    /// Turns until the index of the encoder under test has gone by.
+    /// Turns until the index of the encoder under test has passed.
     fn seek_index(&mut self) -> Result<(), Ending> {
         let brake_a = self.commanded.brake_a;
         self.drive(&self.ramp_to(SEEK_RAD_S), &Profile::constant(brake_a))?;

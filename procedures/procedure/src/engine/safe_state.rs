@@ -1,4 +1,4 @@
-//! The safe state itself: drive torque off, brake current gone, both read back.
+//! The safe state: drive torque off and brake current zero, both verified by reading.
 
 use super::ask::ask;
 use super::session::panic_text;
@@ -8,34 +8,34 @@ use jointbench_instrument::units::Amperes;
 use jointbench_instrument::{Bench, Clock};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Motor-side speed that counts as rest.
+/// Motor speed that counts as rest.
 const REST_RAD_S: f64 = 1.0;
-/// Share of the rated brake current that counts as none.
+/// Share of the rated brake current that counts as zero.
 const NO_CURRENT: f64 = 0.02;
-/// A current that is still there at the end is taken away over this time.
+/// A remaining current is removed over this time.
 const RAMP_S: f64 = 0.5;
 const RAMP_STEPS: u32 = 5;
-/// An unloaded supply may take 0.8 s to fall, and a shaft some time to run out: read back for this long.
+/// Longest time of verification: an unloaded supply may take 0.8 s to fall, and a shaft some time to stop.
 const SETTLE_S: f64 = 3.0;
 const POLL_S: f64 = 0.05;
 
-/// What securing has reached, and what a person should know about it.
+/// Result of securing, with notes for users.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Secured {
     pub safe: Safe,
     pub notes: Vec<String>,
 }
 
-/// Takes the drive torque away at once, then the brake current, and reads both back. Starts no movement.
+/// Removes the drive torque at once, then the brake current, and verifies both. Starts no motion.
 ///
-/// The last act of every run, and the first of a server that finds a run it did not end. Works on any bench in any
-/// state; a lost joint does not keep the brake from being ramped down, nor a panic in one driver the other instrument
-/// from being secured.
+/// It is the last act of every run, and the first of a server that finds a run without an end. It works on any bench
+/// in any state. A lost joint does not prevent the ramp of the brake, and a panic in one driver does not prevent
+/// securing the other instrument.
 pub fn secure(bench: &mut Bench) -> Secured {
     let clock = bench.clock.clone();
     let rated_a = bench.constants.brake_rated_current_a;
     let mut notes = Vec::new();
-    // Both are commanded before either is read back: a brake must not wait for a shaft that runs out.
+    // Both are commanded before either is verified, because the brake must not wait until the shaft has stopped.
     let disarmed = survive(&mut notes, |notes| disarm(bench.joint.as_mut(), notes)).unwrap_or(false);
     let unloaded = bench.brake.as_mut().map(|brake| {
         survive(&mut notes, |notes| take_current_away(brake.as_mut(), &*clock, rated_a, notes)).unwrap_or(false)
@@ -62,7 +62,7 @@ fn survive<T>(notes: &mut Vec<String>, work: impl FnOnce(&mut Vec<String>) -> T)
         .ok()
 }
 
-/// Whether the command was accepted.
+/// Returns whether the command was accepted.
 fn disarm(joint: &mut dyn JointController, notes: &mut Vec<String>) -> bool {
     let disarmed = ask(joint, |joint| joint.disarm(), |_| {});
     if let Err(fault) = &disarmed {
@@ -71,7 +71,7 @@ fn disarm(joint: &mut dyn JointController, notes: &mut Vec<String>) -> bool {
     disarmed.is_ok()
 }
 
-/// Whether the commands were accepted.
+/// Returns whether the commands were accepted.
 fn take_current_away(brake: &mut dyn CurrentSource, clock: &dyn Clock, rated_a: f64, notes: &mut Vec<String>) -> bool {
     let before = ask(brake, |brake| brake.read(), |_| {}).map(|reading| reading.current.0);
     if before.is_err() {
@@ -102,7 +102,7 @@ fn take_current_away(brake: &mut dyn CurrentSource, clock: &dyn Clock, rated_a: 
     off.is_ok()
 }
 
-/// A stage on its way stops where it is.
+/// Stops a moving stage at its position.
 fn hold_stage(stage: &mut dyn AlignmentStage, notes: &mut Vec<String>) {
     let held = match ask(stage, |stage| stage.is_settled(), |_| {}) {
         Ok(true) => Ok(()),
@@ -128,7 +128,7 @@ fn verify_joint(joint: &mut dyn JointController, clock: &dyn Clock, disarmed: bo
             (Err(fault), _) if disarmed => (format!("The drive could not be read back: {fault}"), Safe::SafeCommanded),
             (Err(fault), _) => (format!("The drive does not answer: {fault}"), Safe::UnsafeUnknown),
         };
-        // A silent instrument had its second chance in `ask`.
+        // A silent instrument already had its second request in `ask`.
         if health.is_err() || speed.is_err() || clock.now_s() >= deadline_s {
             notes.push(what);
             return reached;

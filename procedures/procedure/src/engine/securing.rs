@@ -1,4 +1,4 @@
-//! The way from wherever a run is to the safe state: as gently as its ending allows.
+//! The path from any state of a run to the safe state, as gentle as its ending permits.
 
 use super::ending::{Ending, Urgency};
 use super::safe_state::secure;
@@ -10,23 +10,23 @@ use jointbench_instrument::Fault;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// The brake is unloaded over at least this time and one link turn, so that every pole is reached (bench-physics,
-/// section 3).
+/// Least duration of unloading the brake, and one link turn, so that every pole is reached (bench-physics, section
+/// 3).
 const UNLOAD_S: f64 = 2.0;
-/// A plan that only creeps does not get a whole turn.
+/// Longest duration: a plan that only creeps does not get a whole turn.
 const LONGEST_UNLOAD_S: f64 = 15.0;
-/// Fastest link speed for it: 60 rpm (same place).
+/// Fastest link speed of unloading: 60 rpm (bench-physics, section 3).
 const UNLOAD_LINK_RAD_S: f64 = TAU;
-/// The supply's dead time and the coil's lag, before the shaft may stop behind a falling current.
+/// Dead time of the supply and delay of the coil, before the shaft may stop after a falling current.
 const BRAKE_LAG_S: f64 = 0.5;
-/// A plug that is put in again is a port after this, and is looked for so often.
+/// Time until a reconnected plug is a port, and polling period.
 const PLUGGED_S: f64 = 1.0;
 const LOOK_EVERY_S: f64 = 0.2;
 /// Shortest ramp of an abort.
 const QUICK_S: f64 = 0.3;
 
 impl Session<'_> {
-    /// Never fails: what cannot be done gently is done hard, and what was reached is told.
+    /// Never fails: if the gentle path fails, the hard one follows, and the result is reported.
     pub(super) fn make_safe(&mut self, ending: &Ending) -> Safe {
         let mut urgency = if self.armed { ending.urgency() } else { Urgency::Cut };
         if urgency == Urgency::Orderly {
@@ -38,7 +38,7 @@ impl Session<'_> {
                 }
             }
         }
-        // A supply that answers no more is told at once, while the shaft still turns.
+        // A supply that no longer answers is switched off at once, while the shaft still turns.
         if self.lost.brake
             && let Some(Err(fault)) = self.bench.brake.as_mut().map(|brake| brake.command_off())
         {
@@ -54,7 +54,7 @@ impl Session<'_> {
         secured.safe
     }
 
-    /// An instrument that is gone may have been exchanged for another: what answers in its place now is the reason then.
+    /// A lost instrument may have been exchanged: another instrument that answers at its port becomes the reason.
     pub(super) fn look_behind(&mut self, ending: &mut Ending) {
         let Some(gone) = ending.fault_mut().filter(|fault| fault.is_port_lost()) else { return };
         let clock = Arc::clone(&self.bench.clock);
@@ -72,12 +72,13 @@ impl Session<'_> {
             && found.is_wrong_instrument()
         {
             *gone = found.clone();
-            self.journal.tell(clock.now_s(), EventKind::Fault { fault: found, recovered: false });
+            self.journal.log(clock.now_s(), EventKind::Fault { fault: found, recovered: false });
         }
     }
 
-    /// Another instrument can answer behind a port that was never lost. Each identifies itself once more when the bench is
-    /// safe: during the steps there is no time for it. A run that ended by a fault has its reason.
+    /// Another instrument can answer at a port that was never lost. Each instrument is identified again when the
+    /// bench is safe, because there is no time for it during the steps. A run that ended with a fault already has its
+    /// reason.
     pub(super) fn identify_again(&mut self, ending: &mut Ending) {
         if !self.armed || ending.fault_mut().is_some() {
             return;
@@ -87,7 +88,7 @@ impl Session<'_> {
         let now_s = self.bench.clock.now_s();
         for fault in exchanged {
             let name = fault.instrument.clone();
-            self.journal.tell(now_s, EventKind::Fault { fault: fault.clone(), recovered: false });
+            self.journal.log(now_s, EventKind::Fault { fault: fault.clone(), recovered: false });
             self.warn(format!("{name} was exchanged during the run: its readings may come from either instrument"));
             if matches!(ending, Ending::Completed) {
                 *ending = Ending::OtherFault(fault);
@@ -95,7 +96,7 @@ impl Session<'_> {
         }
     }
 
-    /// Takes the brake current away while the shaft turns, then lets it come to rest.
+    /// Removes the brake current during rotation, then stops the shaft.
     pub(super) fn unload(&mut self) -> Result<(), Ending> {
         let brake_a = self.commanded.brake_a;
         let speed_rad_s = self.unload_speed_rad_s();
@@ -111,7 +112,7 @@ impl Session<'_> {
         self.drive(&self.ramp_to(0.0), &Profile::constant(self.commanded.brake_a))
     }
 
-    /// No faster than the plan was allowed to be; towards the middle of the range where there is one.
+    /// At most the highest speed of the plan, towards the middle of the range if there is one.
     pub(super) fn unload_speed_rad_s(&self) -> f64 {
         let constants = &self.bench.constants;
         let speed_rad_s = self.plan.top_speed_rad_s().min(UNLOAD_LINK_RAD_S * constants.gear_ratio);
@@ -123,9 +124,9 @@ impl Session<'_> {
         speed_rad_s.copysign(ahead)
     }
 
-    /// The shaft comes to rest, and nothing is sped up for it. The brake's current stays for securing to take away: no supply
-    /// answers in time for the shaft to turn until it has fallen, and what a fall at standstill leaves is told there, with the
-    /// current that has left it.
+    /// Stops the shaft without speeding up first. Securing removes the brake current, because no supply answers in
+    /// time to keep the shaft turning until the current has fallen. Securing also reports the remanence of a fall at
+    /// standstill, with the current that caused it.
     fn come_to_rest(&mut self) -> Result<(), Ending> {
         let velocity_rad_s = self.commanded.velocity_rad_s;
         let rest_s = QUICK_S.max(velocity_rad_s.abs() / self.plan.acceleration_rad_s2);

@@ -1,7 +1,7 @@
-//! The state of one run while it lasts.
+//! The state of one run.
 
 use super::ask::{Trouble, ask};
-use super::encoders::Stood;
+use super::encoders::PoseDeviation;
 use super::ending::Ending;
 use super::journal::Journal;
 use super::learning::Learning;
@@ -23,7 +23,7 @@ use jointbench_instrument::{Bench, Fault};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Receiver;
 
-/// A link that has to be recovered more often than this in one step is not worth trusting.
+/// Largest number of link recoveries in one step; more of them end the run.
 pub(super) const RECOVERIES_PER_STEP: u32 = 3;
 
 pub(super) struct Session<'a> {
@@ -34,78 +34,78 @@ pub(super) struct Session<'a> {
     pub guard: Guard,
     pub pace: Pace,
     pub warm: Option<SteadyWatch>,
-    /// Decided at arming, when it is known what the bench can measure.
+    /// Set at arming, when the measurable quantities of the bench are known.
     pub columns: Option<Columns>,
     pub commanded: Commanded,
     pub held: Held,
-    /// The latest reading of the thermometer, its channels in the order of the bench description; empty where there is none.
+    /// Latest reading of the thermometer, in the channel order of the bench description; empty without one.
     pub felt_c: Vec<f64>,
     pub felt_at_s: f64,
     pub felt_next_s: f64,
     pub beat: Beat,
     pub wish: Option<Wish>,
-    /// Whether the drive may hold torque: securing has something to ramp down.
+    /// Whether the drive may apply torque, so that securing has to ramp it down.
     pub armed: bool,
-    /// The latest reading of the joint.
+    /// Latest reading of the joint.
     pub joint: Option<JointReading>,
-    /// Where the motor stood when the warm-up began.
+    /// Motor position at the start of the warm-up.
     pub warm_from_rad: Option<f64>,
-    /// The latest reading of the torque sensor.
+    /// Latest reading of the torque sensor.
     pub link_torque_nm: Option<f64>,
     pub skews: Option<Skews>,
-    /// What the instruments of one shaft have told of it.
+    /// Positions of one shaft from several instruments.
     pub shaft: Shaft,
-    /// While the torque sensor sends by itself.
+    /// Set while the torque sensor streams.
     pub streaming: Option<Streaming>,
-    /// Time of the newest row, which the next one has to exceed.
+    /// Time of the latest row, which the next one has to exceed.
     pub row_s: f64,
     pub next_segment: u32,
     pub lost: Lost,
-    /// Where the stage was told to hold the sensor, in a plan that moves it.
+    /// Commanded pose of the stage, for a plan that moves it.
     pub pose: Option<Pose>,
-    pub stood: Option<Stood>,
+    pub pose_deviation: Option<PoseDeviation>,
     pub learning: Learning,
-    /// The encoder under test has not been seen inconsistent since this was last set.
+    /// Whether the encoder under test was consistent since this was last set.
     pub consistent: bool,
-    /// Replies that were missed and asked for again in this step.
+    /// Repeated requests in this step.
     pub recoveries: u32,
 }
 
-/// What the instruments were told last.
+/// The latest commands to the instruments.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Commanded {
-    /// The set-point of the velocity loop; while there is none, the speed that it would have to start from.
+    /// Set-point of the velocity loop; without one, the speed from which it would have to start.
     pub velocity_rad_s: f64,
-    /// Of the motor, alone or fed forward.
+    /// Motor current, alone or as feedforward.
     pub motor_current_a: f64,
     pub brake_a: f64,
     pub brake_at_s: f64,
 }
 
-/// What the drive is to hold in one tick.
+/// Command to the drive in one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Asked {
-    /// A velocity with a motor current fed forward.
+    /// A velocity with a feedforward of motor current.
     Velocity { rad_s: f64, fed_a: f64 },
     /// A motor current alone.
     Current { a: f64 },
 }
 
-/// The brake's current, and the moment at which it was measured.
+/// The brake current with the time of its measurement.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FeltCurrent {
     pub a: f64,
     pub at_s: f64,
 }
 
-/// Readings that are taken seldom and held.
+/// Slow readings that are held between updates.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Held {
     pub temperature_c: Option<f64>,
     pub brake: Option<FeltCurrent>,
     pub next_s: f64,
     pub brake_next_s: f64,
-    /// Since when every reading found the supply unable to hold the commanded current.
+    /// Time since which every reading found the supply unable to hold the commanded current.
     pub unregulated_since_s: Option<f64>,
 }
 
@@ -114,10 +114,10 @@ pub(super) struct Held {
 pub(super) struct Beat {
     pub period_s: f64,
     pub next_s: f64,
-    pub late: u64,
+    pub late_ticks: u64,
 }
 
-/// Instruments that failed for good: while the joint comes to rest they are asked no more.
+/// Instruments that failed permanently: they are not read while the joint stops.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Lost {
     pub sensor: bool,
@@ -125,7 +125,7 @@ pub(super) struct Lost {
     pub thermometer: bool,
 }
 
-/// What a person asked for that a step cannot do by itself.
+/// A request of a person that a step cannot perform by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Wish {
     Pause,
@@ -154,7 +154,7 @@ impl<'a> Session<'a> {
             felt_c: Vec::new(),
             felt_at_s: now_s,
             felt_next_s: now_s,
-            beat: Beat { period_s: 1.0 / plan.rate_hz, next_s: now_s, late: 0 },
+            beat: Beat { period_s: 1.0 / plan.rate_hz, next_s: now_s, late_ticks: 0 },
             wish: None,
             armed: false,
             joint: None,
@@ -167,7 +167,7 @@ impl<'a> Session<'a> {
             next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),
             lost: Lost::default(),
             pose: None,
-            stood: None,
+            pose_deviation: None,
             learning: Learning::default(),
             consistent: true,
             recoveries: 0,
@@ -179,23 +179,23 @@ impl<'a> Session<'a> {
         self.journal.enter(self.bench.clock.now_s(), transition, None)
     }
 
-    /// The last state, with why it came to that.
+    /// The final state with its reason.
     pub fn end(&mut self, ending: &Ending) -> Result<(), Ending> {
         self.journal.enter(self.bench.clock.now_s(), Transition::End(ending.outcome()), ending.reason())
     }
 
     pub fn note(&mut self, text: impl Into<String>) {
         let now_s = self.bench.clock.now_s();
-        self.journal.tell(now_s, EventKind::Note { text: text.into() });
+        self.journal.log(now_s, EventKind::Note { text: text.into() });
     }
 
-    /// A precondition of the result is broken.
+    /// Reports that a precondition of the result is violated.
     pub fn warn(&mut self, text: impl Into<String>) {
         let now_s = self.bench.clock.now_s();
-        self.journal.tell(now_s, EventKind::Warning { text: text.into() });
+        self.journal.log(now_s, EventKind::Warning { text: text.into() });
     }
 
-    /// Work that may panic: what it leaves behind is only looked at by securing, which trusts nothing.
+    /// Work that may panic: afterwards only securing uses this state, and it verifies everything.
     pub fn caught(&mut self, work: impl FnOnce(&mut Self) -> Result<(), Ending>) -> Result<(), Ending> {
         catch_unwind(AssertUnwindSafe(|| work(self))).unwrap_or_else(|panic| Err(Ending::Panicked(panic_text(&*panic))))
     }
@@ -206,11 +206,11 @@ impl<'a> Session<'a> {
     ) -> Result<T, Ending> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, .. } = self;
-        ask(bench.joint.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble))
+        ask(bench.joint.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble))
             .map_err(Ending::JointFault)
     }
 
-    /// `None` where the bench has no brake.
+    /// `None` if the bench has no brake.
     pub fn ask_brake<T>(
         &mut self,
         request: impl FnMut(&mut (dyn CurrentSource + 'static)) -> Result<T, Fault>,
@@ -218,13 +218,13 @@ impl<'a> Session<'a> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, lost, .. } = self;
         let Some(brake) = &mut bench.brake else { return Ok(None) };
-        ask(brake.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
+        ask(brake.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
             lost.brake = true;
             Ending::OtherFault(fault)
         })
     }
 
-    /// `None` where the bench has no torque sensor.
+    /// `None` if the bench has no torque sensor.
     pub fn ask_torque_sensor<T>(
         &mut self,
         request: impl FnMut(&mut (dyn TorqueSensor + 'static)) -> Result<T, Fault>,
@@ -232,13 +232,13 @@ impl<'a> Session<'a> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, lost, .. } = self;
         let Some(sensor) = &mut bench.torque_sensor else { return Ok(None) };
-        ask(sensor.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
+        ask(sensor.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
             lost.sensor = true;
             Ending::OtherFault(fault)
         })
     }
 
-    /// `None` where the bench has no thermometer.
+    /// `None` if the bench has no thermometer.
     pub fn ask_thermometer<T>(
         &mut self,
         request: impl FnMut(&mut (dyn Thermometer + 'static)) -> Result<T, Fault>,
@@ -246,7 +246,7 @@ impl<'a> Session<'a> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, lost, .. } = self;
         let Some(thermometer) = &mut bench.thermometer else { return Ok(None) };
-        ask(thermometer.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map(Some).map_err(
+        ask(thermometer.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map(Some).map_err(
             |fault| {
                 lost.thermometer = true;
                 Ending::OtherFault(fault)
@@ -255,9 +255,9 @@ impl<'a> Session<'a> {
     }
 }
 
-pub(super) fn tell(journal: &mut Journal<'_>, recoveries: &mut u32, now_s: f64, trouble: Trouble) {
+pub(super) fn log(journal: &mut Journal<'_>, recoveries: &mut u32, now_s: f64, trouble: Trouble) {
     *recoveries += u32::from(trouble.recovered);
-    journal.tell(now_s, EventKind::Fault { fault: trouble.fault, recovered: trouble.recovered });
+    journal.log(now_s, EventKind::Fault { fault: trouble.fault, recovered: trouble.recovered });
 }
 
 pub(super) fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
@@ -265,7 +265,7 @@ pub(super) fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without a message".to_owned())
 }
 
-/// Name and port of an instrument, for a fault that the engine itself finds.
+/// Name and port of an instrument, for a fault that the engine itself detects.
 pub(super) fn reported<I: Instrument + ?Sized>(instrument: &I, what: impl Into<String>) -> Fault {
     jointbench_instrument::FaultKind::Reported { what: what.into() }.at(instrument.name(), instrument.port())
 }

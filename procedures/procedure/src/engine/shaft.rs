@@ -1,22 +1,21 @@
-//! Instruments that tell the position of one shaft: how much later they tell it than the first by the bench's clock, and by
-//! what they tell.
+//! Delays between instruments that measure the position of one shaft, by the bench's clock and by their readings.
 //!
-//! Only such are held against each other. What torque and current tell of one motion differs by friction, compliance and the
-//! drive's own control: a lag between them is physics.
+//! Only instruments on one shaft are compared. Torque and current of one motion differ by friction, compliance and
+//! the drive's control, so that a lag between them is physical.
 
 use super::skew::Skews;
 use crate::encoder_columns::Encoders;
-use crate::findings::{Lag, Told, lag};
+use crate::findings::{Lag, ReadingPair, lag};
 use jointbench_instrument::roles::JointReading;
 use jointbench_instrument::skew::Skew;
 
-/// More rows than this tell a lag no better.
+/// More rows do not improve the estimate of a lag.
 const MOST_ROWS: usize = 50_000;
 
-/// One instrument against the reference encoder.
+/// One instrument compared with the reference encoder.
 #[derive(Debug, Clone, Default)]
 struct Pair {
-    told: Vec<Told>,
+    readings: Vec<ReadingPair>,
     skews: Option<Skews>,
 }
 
@@ -32,30 +31,31 @@ impl Shaft {
         let motor = (joint.at_s, joint.uncertainty_s, joint.motor_position.0);
         let test = (test.at_s, test.uncertainty_s, test.position.0);
         for (pair, (at_s, uncertainty_s, rad)) in [(&mut self.motor, motor), (&mut self.test, test)] {
-            if pair.told.len() == MOST_ROWS {
+            if pair.readings.len() == MOST_ROWS {
                 continue;
             }
             let skew = Skew { s: at_s - reference.at_s, uncertainty_s: uncertainty_s + reference.uncertainty_s };
             pair.skews = Some(Skews::add(pair.skews, skew));
             let (first_s, first_rad) = (reference.at_s, reference.position.0);
-            pair.told.push(Told { stretch, first_s, first_rad, second_s: at_s, second_rad: rad });
+            pair.readings.push(ReadingPair { stretch, first_s, first_rad, second_s: at_s, second_rad: rad });
         }
     }
 
-    /// For people. Nothing where no two instruments were on one shaft.
-    pub fn told(&self) -> Vec<String> {
+    /// Texts for users. Empty without two instruments on one shaft.
+    pub fn notes(&self) -> Vec<String> {
         let motor = ("the motor's own encoder", &self.motor, UNKNOWN);
         let test = ("the encoder under test", &self.test, OWN);
-        let told = |(name, pair, beyond): (&str, &Pair, &str)| Some(told(name, pair.skews?, lag(&pair.told), beyond));
-        [motor, test].into_iter().filter_map(told).collect()
+        let note =
+            |(name, pair, beyond): (&str, &Pair, &str)| Some(note(name, pair.skews?, lag(&pair.readings), beyond));
+        [motor, test].into_iter().filter_map(note).collect()
     }
 }
 
-/// What causes a lag that the time stamps do not show.
+/// Cause of a lag that the time stamps do not show.
 const UNKNOWN: &str = "Unrecorded latency: check filters, buffers and adapters";
 const OWN: &str = "Cause: delay of this encoder (measure it with encoder_delay) or an unrecorded latency";
 
-fn told(name: &str, skews: Skews, lag: Option<Lag>, beyond: &str) -> String {
+fn note(name: &str, skews: Skews, lag: Option<Lag>, beyond: &str) -> String {
     let by_clock = format!("Skew of {name} by time stamps: {} than the reference encoder.", skews.span());
     let Some(Lag { s, reach_s }) = lag else {
         return format!("{by_clock} The signals do not determine it, because the motion is too small or too uniform.");

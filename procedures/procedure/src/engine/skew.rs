@@ -1,10 +1,11 @@
-//! How much later one instrument is read than another, by the bench's clock: earlier, where a stream has sent it before.
+//! Delay between the readings of two instruments, by the bench's clock; negative if a stream has sent the reading
+//! earlier.
 
 use jointbench_instrument::clock::Timed;
 use jointbench_instrument::roles::JointReading;
 use jointbench_instrument::skew::Skew;
 
-/// All skews of a run.
+/// Range of all delays of a run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Skews {
     least_s: f64,
@@ -26,8 +27,9 @@ impl Skews {
         }
     }
 
-    /// For people. `None` where the clock stood still between the two, as that of a mock bench without a pace does.
-    pub fn told(self) -> Option<String> {
+    /// Text for users. `None` if the clock did not advance between the readings, as on a mock bench without real
+    /// time.
+    pub fn note(self) -> Option<String> {
         let Self { least_s, most_s, .. } = self;
         if (least_s, most_s) == (0.0, 0.0) {
             return None;
@@ -52,7 +54,7 @@ mod tests {
     use jointbench_instrument::units::{Amperes, RadPerSec, Radians};
 
     #[test]
-    fn what_is_told_holds_for_every_reading() {
+    fn the_note_holds_for_every_reading() {
         let joint = JointReading {
             at_s: 10.0,
             uncertainty_s: 0.5e-3,
@@ -65,12 +67,12 @@ mod tests {
         let first = felt(10.0015, 0.5e-3);
         assert!((first.s - 1.5e-3).abs() < 1e-9 && (first.uncertainty_s - 1e-3).abs() < 1e-9, "{first:?}");
         let skews = Skews::add(Some(Skews::add(None, first)), felt(10.003, 2e-3));
-        let told = skews.told().unwrap();
-        assert!(told.contains("1.50 to 3.00 ms") && told.contains("±2.50 ms"), "{told}");
+        let note = skews.note().unwrap();
+        assert!(note.contains("1.50 to 3.00 ms") && note.contains("±2.50 ms"), "{note}");
         let still = JointReading { uncertainty_s: 0.0, ..joint };
         let now = Timed { value: (), at_s: 10.0, uncertainty_s: 0.0 };
-        assert_eq!(Skews::add(None, of(&still, &now)).told(), None);
+        assert_eq!(Skews::add(None, of(&still, &now)).note(), None);
         let streamed = Skews::add(Some(Skews::add(None, felt(9.997, 1e-4))), felt(9.998, 1e-4));
-        assert!(streamed.told().unwrap().contains("2.00 to 3.00 ms (±0.60 ms) earlier"), "{streamed:?}");
+        assert!(streamed.note().unwrap().contains("2.00 to 3.00 ms (±0.60 ms) earlier"), "{streamed:?}");
     }
 }

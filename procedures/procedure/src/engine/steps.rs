@@ -1,4 +1,4 @@
-//! The steps of a plan, one after the other. A step's end is a checkpoint.
+//! Runs the steps of a plan in order. The end of a step is a checkpoint.
 
 use super::drive::{FeltFriction, Moved};
 use super::ending::Ending;
@@ -7,7 +7,7 @@ use crate::event::EventKind;
 use crate::place::Place;
 use crate::plan::{Before, Drive, Phase, Step};
 
-/// How a step was left.
+/// How a step ended.
 pub(super) enum Left {
     Done,
     Paused,
@@ -27,24 +27,25 @@ impl Session<'_> {
             };
             self.run_step(index, &step)?;
             if step.phase == Phase::WarmUp {
-                self.tell_warmth(index);
+                self.note_warmth(index);
             }
         }
         Ok(())
     }
 
-    /// Once through the step, and again from its beginning after every pause.
+    /// Runs a step, and repeats it from its beginning after every pause.
     fn run_step(&mut self, index: usize, step: &Step) -> Result<(), Ending> {
         let start_rad = self.joint.map(|reading| reading.motor_position.0);
         if step.phase == Phase::WarmUp {
             self.warm_from_rad = self.warm_from_rad.or(start_rad);
         }
         let mut segment = step.segment;
-        // The brake keeps what a pause has left, until the repeated step asks for more: it is approached from below.
+        // The brake keeps its current from the pause until the repeated step needs more, because a current is
+        // approached from below.
         let mut least_brake_a = 0.0;
         while let Left::Paused = self.attempt(index, step, segment, least_brake_a)? {
             least_brake_a = self.pause(step, start_rad)?;
-            // A segment is one unbroken stretch of the run table.
+            // A segment is one uninterrupted section of the run table.
             segment = self.next_segment;
             self.next_segment += 1;
         }
@@ -59,13 +60,13 @@ impl Session<'_> {
             self.place(pose)?;
         }
         let start_s = self.beat.next_s.max(self.bench.clock.now_s());
-        (self.beat.late, self.recoveries) = (0, 0);
+        (self.beat.late_ticks, self.recoveries) = (0, 0);
         let rows_before = self.journal.rows();
         self.pace.step_started(index, &step.label, start_s);
         let label = step.label.clone();
-        self.journal.tell(start_s, EventKind::StepStarted { step: index, segment, repeat: step.repeat, label });
+        self.journal.log(start_s, EventKind::StepStarted { step: index, segment, repeat: step.repeat, label });
         if let Place::Edge(edge) = &step.place {
-            return match self.hunt(step, segment, edge)? {
+            return match self.search_edge(step, segment, edge)? {
                 Left::Done => self.checkpoint(index, segment, rows_before),
                 paused => Ok(paused),
             };
@@ -98,7 +99,7 @@ impl Session<'_> {
                 return Ok(Left::Paused);
             }
         }
-        // The tick that was waited for belongs to the next step.
+        // The last tick belongs to the next step.
         self.beat.next_s -= self.beat.period_s;
         self.checkpoint(index, segment, rows_before)
     }
@@ -106,13 +107,13 @@ impl Session<'_> {
     fn checkpoint(&mut self, index: usize, segment: u32, rows_before: u64) -> Result<Left, Ending> {
         let now_s = self.bench.clock.now_s();
         self.pace.step_done(now_s);
-        let (rows, late_ticks) = (self.journal.rows() - rows_before, self.beat.late);
-        self.journal.tell(now_s, EventKind::StepFinished { step: index, segment, rows, late_ticks });
+        let (rows, late_ticks) = (self.journal.rows() - rows_before, self.beat.late_ticks);
+        self.journal.log(now_s, EventKind::StepFinished { step: index, segment, rows, late_ticks });
         self.journal.commit(now_s)?;
         Ok(Left::Done)
     }
 
-    fn tell_warmth(&mut self, index: usize) {
+    fn note_warmth(&mut self, index: usize) {
         let Some(watch) = &mut self.warm else { return };
         watch.step_done();
         let Some(drift) = watch.drift() else { return };

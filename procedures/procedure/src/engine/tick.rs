@@ -1,4 +1,4 @@
-//! One control period: obey, command, feel, check, keep.
+//! One control period: obey controls, command, read, check, record.
 
 use super::arm::link_position_rad;
 use super::ending::Ending;
@@ -14,38 +14,41 @@ use jointbench_instrument::units::{Amperes, RadPerSec};
 use std::sync::Arc;
 use std::sync::mpsc::TryRecvError;
 
-/// A supply needs up to 118 ms for a new current (scpi-current-source, timing): more commands would only queue.
+/// A supply needs up to 118 ms for a new current (scpi-current-source, timing), so that faster commands would only
+/// queue.
 const BRAKE_EVERY_S: f64 = 0.1;
-/// Temperature and supply are read this often and held in between.
+/// Period of temperature and supply readings, which are held in between.
 pub const SLOW_EVERY_S: f64 = 0.5;
-/// A supply is good for 10 to 20 readings a second (scpi-current-source, timing): so often while its current changes.
+/// Reading period while the brake current changes: a supply can deliver 10 to 20 readings in a second
+/// (scpi-current-source, timing).
 const CHANGING_EVERY_S: f64 = 0.1;
-/// A new current has come to rest this long after its command: supply and coil.
+/// Time until a new current is steady after its command: supply and coil.
 const CHANGES_FOR_S: f64 = 1.0;
-/// A resistance thermometer in a housing takes 10 to 30 s to follow, and its reply several ticks.
+/// Reading period of the thermometer: a resistance thermometer in a housing has a time constant of 10 to 30 s, and
+/// its reply takes several ticks.
 const WARMTH_EVERY_S: f64 = 2.0;
-/// The supply may be out of regulation for so long: CV for more than 0.5 s at a commanded CC is a fault (bench-physics,
-/// section 5), and a rising current needs the full voltage for a moment.
+/// Longest time without regulation of the supply. CV for more than 0.5 s at a commanded CC is a fault (bench-physics,
+/// section 5). A rising current needs the full voltage for a moment.
 const UNREGULATED_S: f64 = 1.0;
 
 impl Session<'_> {
-    /// Waits for the next tick and tells its time.
+    /// Waits for the next tick and returns its time.
     pub(super) fn wait(&mut self) -> f64 {
         self.bench.clock.sleep_until_s(self.beat.next_s);
         let now_s = self.bench.clock.now_s();
         if now_s > self.beat.next_s + self.beat.period_s {
-            self.beat.late += 1;
+            self.beat.late_ticks += 1;
         }
         self.beat.next_s = (self.beat.next_s + self.beat.period_s).max(now_s);
         now_s
     }
 
-    /// A tick at a velocity whose row is shown and forgotten.
+    /// A tick at a velocity, whose row is shown but not kept.
     pub(super) fn tick(&mut self, now_s: f64, velocity_rad_s: f64, brake_a: f64) -> Result<(), Ending> {
         self.tick_asking(now_s, Asked::Velocity { rad_s: velocity_rad_s, fed_a: 0.0 }, brake_a, None)
     }
 
-    /// `keep` names segment and repeat of the row; without it the row is shown and forgotten.
+    /// `keep` has segment and repeat of the row; without it the row is shown but not kept.
     pub(super) fn tick_asking(
         &mut self,
         now_s: f64,
@@ -76,7 +79,7 @@ impl Session<'_> {
                 Err(TryRecvError::Disconnected) if self.journal.state() == RunState::Securing => return Ok(()),
                 Err(TryRecvError::Disconnected) => return Err(Ending::Abandoned),
             };
-            self.journal.tell(now_s, EventKind::Control { control, by });
+            self.journal.log(now_s, EventKind::Control { control, by });
             match control {
                 Control::EStop => return Err(Ending::EStopped),
                 Control::Abort => return Err(Ending::Aborted),
@@ -90,8 +93,8 @@ impl Session<'_> {
         }
     }
 
-    /// A wish takes back the opposite one that was not yet granted. One that the state does not allow is told and
-    /// forgotten.
+    /// A request cancels an opposite one that is still pending. A request that the state does not permit is reported
+    /// and dropped.
     fn wish_for(&mut self, wish: Wish, transition: Transition) {
         if self.wish.take_if(|pending| *pending != wish).is_some() {
             return;
@@ -107,7 +110,7 @@ impl Session<'_> {
         self.guard.check_velocity(velocity_rad_s).map_err(Ending::CommandRefused)?;
         self.guard.check_motor_current(fed_a).map_err(Ending::CommandRefused)?;
         let recovered_before = self.recoveries;
-        // Sent on every tick: it feeds the drive's own watchdog.
+        // Sent in every tick, because it feeds the drive's watchdog.
         self.ask_joint(|joint| joint.set_velocity_fed(RadPerSec(velocity_rad_s), Amperes(fed_a)))?;
         self.commanded.velocity_rad_s = velocity_rad_s;
         self.commanded.motor_current_a = fed_a;
@@ -179,7 +182,8 @@ impl Session<'_> {
         })
     }
 
-    /// The thermometer's channels, where there is one. The first stands for the joint's temperature where the joint tells none.
+    /// Reads the thermometer if there is one. The first channel replaces the joint's temperature if the joint has
+    /// none.
     pub(super) fn feel_warmth(&mut self) -> Result<(), Ending> {
         if self.lost.thermometer {
             return Ok(());
@@ -216,7 +220,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// The drive still holds torque and reports no error.
+    /// Checks that the drive still applies torque and reports no error.
     fn check_drive(&mut self) -> Result<(), Ending> {
         let health = self.ask_joint(|joint| joint.health())?;
         if !health.armed || !health.errors.is_empty() {
@@ -228,7 +232,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// While a link was being recovered nobody fed the drive's watchdog.
+    /// The drive's watchdog was not fed while a link was recovered.
     fn trust_joint(&mut self, recovered_before: u32) -> Result<(), Ending> {
         if self.recoveries == recovered_before {
             return Ok(());
@@ -259,8 +263,8 @@ impl Session<'_> {
     }
 
     fn keep(&mut self, now_s: f64, moment: &Moment, keep: Option<(u32, u32)>) {
-        // A reading that is not newer than the row before is that row again; without an instrument, or what it feels, it is
-        // no row.
+        // A reading that is not newer than the previous row is a duplicate. Without an instrument, or without its
+        // reading, there is no row.
         let felt = moment.torque.is_some() || self.bench.torque_sensor.is_none();
         let is_row = moment.time_s > self.row_s && felt && !self.lost.sensor;
         let Some(columns) = self.columns.as_mut().filter(|_| is_row) else { return };

@@ -1,8 +1,8 @@
-//! The torque of a tick: one reading, or all that a stream has sent since the tick before.
+//! The torque of a tick: one reading, or the mean of the stream since the previous tick.
 
 use super::ask::Trouble;
 use super::ending::Ending;
-use super::session::{RECOVERIES_PER_STEP, Session, tell};
+use super::session::{RECOVERIES_PER_STEP, Session, log};
 use super::skew::{self, Skews};
 use crate::columns::TorqueMoment;
 use jointbench_instrument::clock::{Timed, timed};
@@ -11,10 +11,10 @@ use jointbench_instrument::units::Seconds;
 use jointbench_instrument::{Clock, Fault, FaultKind};
 use std::sync::Arc;
 
-/// The first sample of a stream is one period away, and a little longer under way.
+/// Periods until the first sample of a stream, including its transmission.
 const FIRST_PERIODS: f64 = 2.0;
 
-/// What has come of a stream so far.
+/// Statistics of a stream.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Streaming {
     period: Seconds,
@@ -22,7 +22,7 @@ pub(super) struct Streaming {
     missing: u64,
 }
 
-/// Torque as one tick feels it.
+/// Torque of one tick.
 #[derive(Debug, Clone, Copy)]
 struct Felt {
     nm: f64,
@@ -31,7 +31,7 @@ struct Felt {
 }
 
 impl Session<'_> {
-    /// Lets the sensor send by itself, where the plan wants that and the sensor can.
+    /// Starts the torque stream if the plan requires it and the sensor supports it.
     pub(super) fn start_torque_stream(&mut self) -> Result<(), Ending> {
         let Some(period_s) = self.plan.torque_period_s else { return Ok(()) };
         let clock = Arc::clone(&self.bench.clock);
@@ -46,7 +46,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Single readings again, and a word on what has come.
+    /// Returns to single readings, and reports the statistics of the stream.
     pub(super) fn stop_torque_stream(&mut self) -> Result<(), Ending> {
         let Some(Streaming { period, samples, missing }) = self.streaming.take() else { return Ok(()) };
         let rate_hz = 1.0 / period.0;
@@ -61,7 +61,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// `None`: no sensor, or nothing has come of its stream.
+    /// `None`: no sensor, or no sample of its stream.
     pub(super) fn feel_torque(&mut self, joint: &JointReading) -> Result<Option<TorqueMoment>, Ending> {
         if self.lost.sensor {
             return Ok(None);
@@ -84,7 +84,7 @@ impl Session<'_> {
         self.ask_torque_sensor(|sensor| timed(&*clock, || read(sensor)))
     }
 
-    /// The mean of the samples of one period of the run, at the middle of their moments.
+    /// The mean of the samples of one period of the run, at the mean of their times.
     fn collect_torque(&mut self) -> Result<Option<Timed<Felt>>, Ending> {
         let clock = Arc::clone(&self.bench.clock);
         let Some(period) = self.streaming.map(|streaming| streaming.period) else { return Ok(None) };
@@ -106,7 +106,7 @@ impl Session<'_> {
             streaming.samples += samples.len() as u64;
         }
         let Some(newest_s) = samples.last().map(|sample| sample.at_s) else { return Ok(None) };
-        // What is older belongs to a tick that has not been.
+        // Older samples belong to a tick that was skipped.
         samples.retain(|sample| sample.at_s > newest_s - self.beat.period_s);
         let count = samples.len() as f64;
         let mean = |of: fn(&TorqueSample) -> f64| samples.iter().map(of).sum::<f64>() / count;
@@ -122,13 +122,13 @@ impl Session<'_> {
         Ok(Some(Timed { value, at_s: mean(|sample| sample.at_s), uncertainty_s }))
     }
 
-    /// A gap stays one: nothing stands in for what is missing. The stream itself goes on.
+    /// A gap is not filled. The stream continues.
     fn pass_gap(&mut self, gap: Fault) -> Result<(), Ending> {
         if let (FaultKind::StreamGap { count }, Some(streaming)) = (&gap.kind, &mut self.streaming) {
             streaming.missing += count;
         }
         let now_s = self.bench.clock.now_s();
-        tell(&mut self.journal, &mut self.recoveries, now_s, Trouble { fault: gap.clone(), recovered: true });
+        log(&mut self.journal, &mut self.recoveries, now_s, Trouble { fault: gap.clone(), recovered: true });
         if self.recoveries > RECOVERIES_PER_STEP {
             self.lost.sensor = true;
             return Err(Ending::OtherFault(gap));
@@ -137,7 +137,7 @@ impl Session<'_> {
     }
 }
 
-/// Samples, or the gap before those that come next. `anew`: the stream has ended and starts again with this period.
+/// Samples, or the gap before the next ones. `anew`: the stream has ended and restarts with this period.
 fn collect(
     sensor: &mut dyn TorqueSensor,
     anew: Option<Seconds>,

@@ -1,4 +1,4 @@
-//! A joint that rested for long has cooled down: what was warmed up for is warmed up for again.
+//! Repeats the warm-up for a joint that cooled down during a long pause.
 
 use super::ending::Ending;
 use super::session::{Session, Wish};
@@ -6,19 +6,19 @@ use crate::plan::{Phase, Step};
 use crate::profile::Profile;
 use crate::steady::{COOLS_S, SteadyWatch};
 
-/// A rising brake current, and what supply and coil lag behind it (bench-physics, section 2).
+/// Ramp of a rising brake current, and the delay of supply and coil (bench-physics, section 2).
 const RAISE_S: f64 = 0.8;
 const LAG_S: f64 = 0.6;
 
 impl Session<'_> {
-    /// After a pause of so long, in the middle of `step`. `true`: the history of the brake is a new one, which ends at the
-    /// current that the step begins with, approached from below.
+    /// After a pause of this duration in the middle of `step`. Returns whether the brake has a new history, which
+    /// ends at the step's initial current, approached from below.
     pub(super) fn warm_after(&mut self, rested_s: f64, step: &Step) -> Result<bool, Ending> {
         if rested_s < COOLS_S {
             return Ok(false);
         }
         if step.phase == Phase::WarmUp {
-            // Cycles from before and after the pause are not of one warm-up.
+            // Cycles before and after the pause do not belong to one warm-up.
             self.warm = self.plan.steady.map(SteadyWatch::new);
             return Ok(false);
         }
@@ -28,7 +28,7 @@ impl Session<'_> {
         }
         self.note(format!("The joint rested for {rested_s:.0} s. Warm-up is repeated."));
         self.unload()?;
-        // Its way was planned from there.
+        // Its travel was planned from there.
         self.go_back(plan.top_speed_rad_s(), self.warm_from_rad, 0.0)?;
         let mut watch = plan.steady.map(SteadyWatch::new);
         for step in plan.steps.iter().filter(|step| step.phase == Phase::WarmUp) {
@@ -41,7 +41,7 @@ impl Session<'_> {
         Ok(true)
     }
 
-    /// A step of the warm-up whose rows are shown, not kept.
+    /// A step of the warm-up whose rows are shown, but not kept.
     fn work(&mut self, step: &Step, mut watch: Option<&mut SteadyWatch>) -> Result<(), Ending> {
         let plateau_rad_s = step.velocity.largest();
         let start_s = self.beat.next_s.max(self.bench.clock.now_s());
@@ -64,7 +64,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Raises the brake current while the shaft turns, out and back.
+    /// Raises the brake current during rotation, out and back.
     fn load(&mut self, brake_a: f64) -> Result<(), Ending> {
         if brake_a == 0.0 {
             return Ok(());

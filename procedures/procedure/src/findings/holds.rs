@@ -1,4 +1,4 @@
-//! Stretches in which nothing was commanded anew, and means over their settled ends.
+//! Holds: rows with constant set-points, and means over their steady-state ends.
 
 use jointbench_instrument::RunTable;
 use std::ops::Range;
@@ -11,7 +11,7 @@ pub(crate) struct Hold {
     pub rows: Range<usize>,
     /// Motor-side set-point.
     pub velocity_rad_s: f64,
-    /// Commanded: a current in a run of a brake, else the torque that it stands for. 0 where there is no brake.
+    /// Brake command: a current in a brake run, otherwise the corresponding torque. 0 without a brake.
     pub brake: f64,
 }
 
@@ -22,7 +22,7 @@ impl Hold {
         column[tail.clone()].iter().sum::<f64>() / tail.len() as f64
     }
 
-    /// The last `share` of the rows, one at least.
+    /// The last `share` of the rows, at least one.
     pub fn tail(&self, share: f64) -> Range<usize> {
         let rows = ((self.rows.len() as f64 * share) as usize).clamp(1, self.rows.len());
         self.rows.end - rows..self.rows.end

@@ -1,16 +1,16 @@
-//! How much later one instrument tells of a motion than another, from what both have told: what no clock knows.
+//! Delay between two instruments that measure one motion, estimated from their readings, because no clock shows it.
 //!
-//! Where both sit on one shaft, the later one tells where the shaft was a while before: their difference follows the speed. The
-//! lag is the one at which it no longer does, with the first one's positions taken between its readings. What an encoder adds
-//! once and twice a turn is no lag and is fitted beside it; zeros and hysteresis, which differ from one stretch of the motion to
-//! the next, are left to each stretch.
+//! If both are on one shaft, the delayed one reports an earlier position, so that their difference is proportional to
+//! the speed. The estimated lag removes this proportionality, with the first instrument's positions interpolated
+//! between its readings. Errors once and twice in a turn are no lag and are fitted too. Zeros and hysteresis differ
+//! between stretches of motion, so that each stretch has its own offset.
 
 use super::solve::{solve, t95};
 
-/// Readings of both in one tick, each with its moment by the bench's clock.
+/// Readings of both instruments in one tick, each with its time by the bench's clock.
 #[derive(Debug, Clone, Copy)]
-pub struct Told {
-    /// Readings of one stretch follow each other without a break.
+pub struct ReadingPair {
+    /// Readings of one stretch are consecutive.
     pub stretch: u32,
     pub first_s: f64,
     pub first_rad: f64,
@@ -18,30 +18,30 @@ pub struct Told {
     pub second_rad: f64,
 }
 
-/// So much later the second tells than its moments say, with half the width of the 95 % interval.
+/// Delay of the second instrument beyond its time stamps, with half the width of the 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lag {
     pub s: f64,
     pub reach_s: f64,
 }
 
-/// Of the lag: the difference falls with it as the speed rises. Beside it cosine and sine of an angle and of twice the angle.
+/// Derivative with respect to the lag (the difference falls as the speed rises), then cosine and sine of the angle
+/// and of twice the angle.
 type Row = [f64; 5];
 
 const ROUNDS: usize = 10;
-/// A tenth of what a moment is kept in.
+/// A tenth of the resolution of time stamps.
 const FOUND_S: f64 = 1e-7;
-/// The interval is that of the estimates that each leave one of so many parts of the run out: readings near to each other err
-/// alike.
+/// Parts of the run that are left out in turn for the interval, because neighbouring readings have correlated errors.
 const PARTS: usize = 10;
-/// Less than this is no motion to tell a lag from.
+/// Least rotation for an estimate of the lag.
 const TURNED_RAD: f64 = 1.0;
 
-/// `None` where the motion does not tell it to less than half a period of the readings.
-pub fn lag(told: &[Told]) -> Option<Lag> {
-    let stretches: Vec<&[Told]> = told.chunk_by(|a, b| a.stretch == b.stretch).collect();
+/// `None` if the motion does not determine the lag to half a reading period.
+pub fn lag(readings: &[ReadingPair]) -> Option<Lag> {
+    let stretches: Vec<&[ReadingPair]> = readings.chunk_by(|a, b| a.stretch == b.stretch).collect();
     let turned_rad =
-        |stretch: &&[Told]| stretch.windows(2).map(|w| (w[1].first_rad - w[0].first_rad).abs()).sum::<f64>();
+        |stretch: &&[ReadingPair]| stretch.windows(2).map(|w| (w[1].first_rad - w[0].first_rad).abs()).sum::<f64>();
     if stretches.iter().map(turned_rad).sum::<f64>() < TURNED_RAD {
         return None;
     }
@@ -52,26 +52,26 @@ pub fn lag(told: &[Told]) -> Option<Lag> {
         lag_s += step_s;
         if step_s.abs() < FOUND_S {
             let reach_s = reach(&rows, &y)?;
-            return (reach_s < 0.5 * period_s(told)?).then_some(Lag { s: lag_s, reach_s });
+            return (reach_s < 0.5 * period_s(readings)?).then_some(Lag { s: lag_s, reach_s });
         }
     }
     None
 }
 
-fn period_s(told: &[Told]) -> Option<f64> {
-    let mut steps_s: Vec<f64> = told.windows(2).map(|w| w[1].first_s - w[0].first_s).collect();
+fn period_s(readings: &[ReadingPair]) -> Option<f64> {
+    let mut steps_s: Vec<f64> = readings.windows(2).map(|w| w[1].first_s - w[0].first_s).collect();
     steps_s.sort_by(f64::total_cmp);
     steps_s.get(steps_s.len() / 2).copied()
 }
 
-/// What is left between both if the second lags by this.
-fn equations(stretches: &[&[Told]], lag_s: f64) -> (Vec<Row>, Vec<f64>) {
+/// The remaining difference for a lag of the second instrument.
+fn equations(stretches: &[&[ReadingPair]], lag_s: f64) -> (Vec<Row>, Vec<f64>) {
     let (mut rows, mut y) = (Vec::new(), Vec::new());
     for stretch in stretches {
         let start = rows.len();
         let mut behind = 1;
-        for told in *stretch {
-            let moment_s = told.second_s - lag_s;
+        for pair in *stretch {
+            let moment_s = pair.second_s - lag_s;
             while behind < stretch.len() && stretch[behind].first_s < moment_s {
                 behind += 1;
             }
@@ -83,7 +83,7 @@ fn equations(stretches: &[&[Told]], lag_s: f64) -> (Vec<Row>, Vec<f64>) {
             let angle_rad = a.first_rad + speed_rad_s * (moment_s - a.first_s);
             let twice_rad = 2.0 * angle_rad;
             rows.push([-speed_rad_s, angle_rad.cos(), angle_rad.sin(), twice_rad.cos(), twice_rad.sin()]);
-            y.push(told.second_rad - angle_rad);
+            y.push(pair.second_rad - angle_rad);
         }
         about_their_mean(&mut rows[start..], &mut y[start..]);
     }
@@ -98,7 +98,7 @@ fn about_their_mean(rows: &mut [Row], y: &mut [f64]) {
     y.iter_mut().for_each(|y| *y -= mean_y);
 }
 
-/// The jackknife's, with whole parts of the run left out.
+/// Half width of the jackknife interval over parts of the run.
 fn reach(rows: &[Row], y: &[f64]) -> Option<f64> {
     let without = |part: usize| {
         let [from, to] = [part, part + 1].map(|end| end * rows.len() / PARTS);
@@ -118,9 +118,9 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Strokes there and back at 250 Hz, with a once-a-turn error and counts, the second `lag_s` behind its moments, which are
-    /// 0.8 ms behind the first's.
-    fn strokes(lag_s: f64, top_rad_s: f64) -> Vec<Told> {
+    /// Strokes back and forth at 250 Hz, with a once-per-turn error and counts. The second instrument has a lag of
+    /// `lag_s` against its time stamps, which are 0.8 ms after those of the first.
+    fn strokes(lag_s: f64, top_rad_s: f64) -> Vec<ReadingPair> {
         let counted = |rad: f64, counts: f64| (rad / TAU * counts).floor() / counts * TAU;
         let shaft = |t_s: f64| -top_rad_s / 3.0 * (3.0 * t_s).cos();
         let tick = |i: u32| {
@@ -128,7 +128,13 @@ mod tests {
             let second_s = first_s + 0.8e-3;
             let truly_rad = shaft(second_s - lag_s);
             let second_rad = counted(truly_rad + 4e-3 * (truly_rad + 1.0).sin() + 0.3, 262_144.0);
-            Told { stretch: i / 500, first_s, first_rad: counted(shaft(first_s), 16_384.0), second_s, second_rad }
+            ReadingPair {
+                stretch: i / 500,
+                first_s,
+                first_rad: counted(shaft(first_s), 16_384.0),
+                second_s,
+                second_rad,
+            }
         };
         (0..3000).map(tick).collect()
     }
@@ -143,15 +149,19 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_move_tells_no_lag() {
+    fn without_motion_there_is_no_lag() {
         for top_rad_s in [0.0, 1e-4, 1e-2] {
             assert_eq!(lag(&strokes(1e-3, top_rad_s)), None, "{top_rad_s} rad/s");
         }
         assert_eq!(lag(&[]), None);
-        // At one speed a lag and a shifted zero are one and the same.
-        let even: Vec<Told> = strokes(0.0, 0.0)
+        // At one speed a lag and a zero offset are identical.
+        let even: Vec<ReadingPair> = strokes(0.0, 0.0)
             .iter()
-            .map(|told| Told { first_rad: 40.0 * told.first_s, second_rad: 40.0 * told.second_s - 0.01, ..*told })
+            .map(|pair| ReadingPair {
+                first_rad: 40.0 * pair.first_s,
+                second_rad: 40.0 * pair.second_s - 0.01,
+                ..*pair
+            })
             .collect();
         assert_eq!(lag(&even), None);
     }

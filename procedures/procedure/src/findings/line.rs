@@ -1,4 +1,4 @@
-//! A straight line through means, with the intervals of its two figures.
+//! A straight line through means, with the intervals of its two parameters.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -33,7 +33,7 @@ impl Mean {
 }
 
 impl Line {
-    /// `None` below three points, or where all have one x.
+    /// `None` below three points, or if all have the same x.
     pub fn through(points: &[(f64, f64)]) -> Option<Self> {
         let n = points.len() as f64;
         let mean = |pick: fn(&(f64, f64)) -> f64| points.iter().map(pick).sum::<f64>() / n;

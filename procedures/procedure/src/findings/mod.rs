@@ -1,4 +1,4 @@
-//! What identifications share: parts of a run, means of its settled stretches, straight lines, small least squares,
+//! Shared functions of identifications: parts of a run, steady-state means, straight lines, small least squares,
 //! parameters as quantities.
 
 mod holds;
@@ -10,7 +10,7 @@ mod say;
 mod solve;
 
 pub(crate) use holds::{Hold, holds};
-pub(crate) use lag::{Lag, Told, lag};
+pub(crate) use lag::{Lag, ReadingPair, lag};
 pub(crate) use line::{Line, Mean};
 pub(crate) use part::{Leg, keep, keep_rows, legs};
 pub(crate) use plateaus::{Plateau, plateaus, settled};

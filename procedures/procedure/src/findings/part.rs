@@ -1,4 +1,4 @@
-//! The steps of a run as stretches of its table, and tables of some of them.
+//! The steps of a run as ranges of its table, and tables of some of them.
 
 use jointbench_instrument::{RunTable, TableFault, Trace};
 use std::ops::Range;
@@ -8,13 +8,13 @@ use std::ops::Range;
 pub(crate) struct Leg {
     pub segment: i64,
     pub rows: Range<usize>,
-    /// +1 or −1, the way in which the motor turned; 0 where it ended where it began.
+    /// +1 or −1, the direction of the motor; 0 if it ended at its start.
     pub direction: f64,
-    /// Commanded torque of the brake where it was held, and `None` where it changed. 0 where there is no brake.
+    /// Commanded brake torque if it was constant, and `None` if it changed. 0 without a brake.
     pub brake_nm: Option<f64>,
 }
 
-/// Every leg of a run that carries segment numbers.
+/// Every leg of a run with segment numbers.
 pub(crate) fn legs(run: &RunTable) -> Vec<Leg> {
     let segment = run.column("segment").unwrap_or_default();
     let position = run.column("motor_position_rad");
@@ -27,7 +27,7 @@ pub(crate) fn legs(run: &RunTable) -> Vec<Leg> {
         let way = position.map_or(0.0, |q| q[rows.end - 1] - q[rows.start]);
         let brake_nm = brake.map_or(Some(0.0), |nm| {
             let nm = &nm[rows.clone()];
-            // The first command of a step reaches the supply a moment into it.
+            // The first command of a step reaches the supply a moment after the start of the step.
             nm[nm.len() / 4..].iter().all(|v| *v == nm[nm.len() - 1]).then(|| nm[nm.len() - 1])
         });
         let direction = if way == 0.0 { 0.0 } else { way.signum() };
@@ -41,7 +41,7 @@ pub(crate) fn keep<'a>(run: &RunTable, legs: impl IntoIterator<Item = &'a Leg>) 
     keep_rows(run, &legs.into_iter().map(|leg| leg.rows.clone()).collect::<Vec<_>>())
 }
 
-/// The table of some stretches only, in their order.
+/// The table of some ranges only, in their order.
 pub(crate) fn keep_rows(run: &RunTable, rows: &[Range<usize>]) -> Result<RunTable, TableFault> {
     let column = |all: &Vec<f64>| rows.iter().flat_map(|rows| &all[rows.clone()]).copied().collect();
     let columns = run.trace().columns().iter().map(column).collect();

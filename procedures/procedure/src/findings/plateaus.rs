@@ -1,17 +1,17 @@
-//! The settled stretch of every leg as one point: what a figure shows and a line is drawn through.
+//! The steady state of every leg as one point, for figures and lines.
 
 use jointbench_instrument::RunTable;
 use jointbench_model::preprocess::{Prepared, prepare};
 use jointbench_model::signal::Signal;
 use jointbench_model::{ModelError, Options, ResidualKind};
 
-/// Means over the settled stretch of one segment, as the model prepares it.
+/// Means over the steady state of one segment, as preprocessed by the model.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Plateau {
     pub segment: i64,
     pub time_s: f64,
     pub velocity_rad_s: f64,
-    /// What a model of this kind predicts: motor torque, torsion, braking torque.
+    /// Response of the models of this kind: motor torque, torsion, braking torque.
     pub target: f64,
     /// Friction: τ_link/N [Nm]. Stiffness: τ_link [Nm].
     pub load_nm: f64,
@@ -20,12 +20,12 @@ pub(crate) struct Plateau {
     chunks: f64,
 }
 
-/// A run for its settled stretches.
+/// Preprocesses a run for its steady states.
 pub(crate) fn settled(run: &RunTable) -> Result<Prepared, ModelError> {
     prepare(run, &Options { residual: Some(ResidualKind::PlateauMean), ..Options::default() })
 }
 
-/// Of a run as [`settled`] prepares it, in its order. A segment without settled motion has none.
+/// Steady states of a run preprocessed by [`settled`], in its order. A segment without a steady state has none.
 pub(crate) fn plateaus(prepared: &Prepared) -> Vec<Plateau> {
     let (problem, view) = (&prepared.main, &prepared.main.view);
     let mut plateaus: Vec<Plateau> = Vec::new();

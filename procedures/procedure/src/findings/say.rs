@@ -5,7 +5,7 @@ use jointbench_instrument::TableFault;
 use jointbench_model::words;
 use jointbench_model::{Fit, ModelError, Parameter, ParameterState};
 
-/// A parameter that the run decides.
+/// A parameter that the run identifies.
 pub(crate) fn parameter<'f>(fit: &'f Fit, effect: &str, name: &str) -> Option<&'f Parameter> {
     fit.parameters.iter().find(|p| p.effect == effect && p.name == name && p.state != ParameterState::Unidentified)
 }
@@ -16,8 +16,8 @@ pub(crate) fn interval_of(parameter: &Parameter, scale: f64) -> (f64, [f64; 2]) 
     (parameter.value * scale, [ends[0].min(ends[1]), ends[0].max(ends[1])])
 }
 
-/// The sum of two figures. Their estimates share the noise of the same points, of which one gains what the other loses:
-/// taken as independent, the interval of the sum is rather too wide than too narrow.
+/// The sum of two figures. Their estimates share the noise of the same points with opposite signs. The interval
+/// assumes independent estimates, so that it is rather too wide than too narrow.
 pub(crate) fn combined(a: (f64, [f64; 2]), b: (f64, [f64; 2]), sign: f64) -> (f64, [f64; 2]) {
     let value = a.0 + sign * b.0;
     let reach = (0.5 * (a.1[1] - a.1[0])).hypot(0.5 * (b.1[1] - b.1[0]));
@@ -34,22 +34,22 @@ pub(crate) fn scatter(label: &str, points: impl IntoIterator<Item = (f64, f64)>)
     Series::new(label, Mark::Points, x, y)
 }
 
-/// A line through `steps` + 1 places from one end to the other. The last is the end itself and not an ulp beyond, where a
-/// power of what should be 0 is no number.
+/// A line through `steps` + 1 points from end to end. The last point is exactly the end, because a rounding error
+/// beyond it could make a power of a negative number NaN.
 pub(crate) fn curve(label: &str, [from, to]: [f64; 2], steps: u32, y: impl Fn(f64) -> f64) -> Series {
     let x: Vec<f64> = (0..=steps).map(|i| from + (to - from) * (f64::from(i) / f64::from(steps))).collect();
     let y = x.iter().map(|x| y(*x)).collect();
     Series::new(label, Mark::Line, x, y)
 }
 
-/// Why a run says nothing, with what to do about it.
+/// Why a run is not usable, with advice.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Unusable {
     #[error(transparent)]
     Model(#[from] ModelError),
     #[error(transparent)]
     Table(#[from] TableFault),
-    /// What is lacking, and what to do about it, each as a sentence.
+    /// Missing data and advice, each as a sentence.
     #[error("{0} {1}")]
     TooLittle(&'static str, &'static str),
     #[error("{} {SCATTERED}", scattered(*.rest_nm))]
@@ -65,7 +65,7 @@ fn scattered(rest_nm: f64) -> String {
 }
 
 impl Unusable {
-    /// What is lacking and what to do about it, each as a sentence.
+    /// Missing data and advice, each as a sentence.
     fn said(&self) -> [String; 2] {
         match self {
             Self::TooLittle(lacking, cure) => [lacking, cure].map(|said| (*said).to_owned()),
@@ -85,7 +85,7 @@ fn sentence(text: &str) -> String {
     letters.next().map(|first| format!("{}{}.", first.to_uppercase(), letters.as_str())).unwrap_or_default()
 }
 
-/// A run that says nothing gets its verdict too.
+/// An unusable run gets a verdict too.
 pub(crate) fn verdict(found: Result<Identification, Unusable>) -> Option<Identification> {
     let failed = |fault: Unusable| {
         let [lacking, cure] = fault.said();
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_curve_ends_where_it_is_told_to() {
+    fn a_curve_ends_at_its_given_end() {
         for i in 0..1000 {
             let top = 160.0 + f64::from(i) * 0.0137;
             let drawn = curve("model, negative", [-top, 0.0], 200, |v| (-v).powf(0.8));

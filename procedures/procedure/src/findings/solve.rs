@@ -1,4 +1,4 @@
-//! Least squares with few parameters and the intervals of their figures.
+//! Least squares with few parameters and their intervals.
 
 use nalgebra::{SMatrix, SVector};
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -16,7 +16,7 @@ impl<const N: usize> Solved<N> {
     }
 }
 
-/// `None` with fewer rows than parameters and one to spare, or where the rows do not tell the parameters apart.
+/// `None` with fewer rows than parameters plus one, or if the rows do not separate the parameters.
 pub fn solve<const N: usize>(rows: &[[f64; N]], y: &[f64]) -> Option<Solved<N>> {
     if rows.len() <= N || rows.len() != y.len() {
         return None;
@@ -38,7 +38,7 @@ pub fn solve<const N: usize>(rows: &[[f64; N]], y: &[f64]) -> Option<Solved<N>> 
     Some(Solved { values: values.into(), reach })
 }
 
-/// Half the width of a 95 % interval, in standard errors.
+/// Half width of a 95 % interval, in standard errors.
 pub fn t95(freedom: f64) -> f64 {
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
 }

@@ -1,22 +1,22 @@
-//! Friction: the ordinary run, short strokes at speeds and loads of their own, and a warm-up.
+//! Menu of friction runs: the standard run, short strokes at specific speeds and loads, and a warm-up.
 
 use super::{Menu, rounded};
 use jointbench_instrument::RunTable;
 use serde_json::{Value, json};
 
-/// Shares of the brake's rated current. Uneven, so that no two runs at hand are likely to have the same.
+/// Shares of the brake's rated current. Uneven, so that they differ from the loads of the measured run.
 const LOADS: [f64; 4] = [0.0, 0.3, 0.5, 0.8];
-/// Link side: where the Stribeck part of friction is looked for, and where it is over.
+/// Link side: speeds at which the Stribeck rise is present, and at which it has decayed.
 const SLOW_RAD_S: [f64; 2] = [0.008, 0.07];
 const FASTEST_RATIO: f64 = 8.0;
 const ACCELERATION_RAD_S2: f64 = 400.0;
-/// A stroke holds its speed for so long at least.
+/// Least dwell time of a stroke.
 const HELD_S: f64 = 0.6;
-/// How much an hour's work warms a joint is not known before: so much is counted on [K].
+/// Assumed warming of the joint by an hour of work, because it is unknown beforehand [K].
 const WARMS_BY_K: f64 = 10.0;
 /// Warm-up and cool-down [s].
 const WARMING_S: f64 = 240.0;
-/// Nobody asks for more unasked (motor).
+/// Highest speed without an explicit request (motor).
 const USUAL_RAD_S: f64 = 180.0;
 
 pub fn offer(menu: &mut Menu, run: &RunTable) {
@@ -42,7 +42,7 @@ pub fn offer(menu: &mut Menu, run: &RunTable) {
     ];
     for repeats in [2, 4] {
         for load in LOADS.iter().filter(|load| **load == 0.0 || loads) {
-            // Under load the wind-up of joint and brake outlasts a slow stroke.
+            // Under load the wind-up of joint and brake lasts longer than a slow stroke.
             for (low_rad_s, high_rad_s, dwell_s) in ranges.into_iter().skip(usize::from(*load > 0.0)) {
                 let acceleration_rad_s2 = if *load > 0.0 {
                     ACCELERATION_RAD_S2
@@ -61,7 +61,7 @@ pub fn offer(menu: &mut Menu, run: &RunTable) {
         }
     }
     if run.column("temperature_c").is_some() {
-        // As fast as the bench has room for.
+        // As fast as the range of the bench permits.
         let before = menu.choices.len();
         for top_rad_s in [1.0, 0.5, 0.25].map(|part| rounded(part * menu.top_rad_s().min(USUAL_RAD_S))) {
             if menu.choices.len() == before {

@@ -1,22 +1,22 @@
-//! What a bench could measure next, as the model sees it: plans that its limits allow, as settled stretches.
+//! Possible next runs of a bench for the model: plans within its limits, as steady-state stretches.
 
 mod friction;
-mod laid;
-mod shown;
+mod from_run;
+mod segments;
 
 use crate::catalogue::procedure;
 use crate::parameter::Parameter;
 use crate::plan::BenchFacts;
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::Choice;
-use laid::choice;
+use segments::choice;
 use serde_json::{Map, Value, json};
 
-/// Room to the limits.
+/// Margin to the limits.
 const SHARE_OF_LIMIT: f64 = 0.95;
 
-/// Runs that could be made next, the ordinary one first. `run`: the one at hand, which gives the sample rate; `parameters`:
-/// what it was made with, where it came from a procedure.
+/// Possible next runs, the standard one first. `run`: the measured run, which defines the sample rate; `parameters`:
+/// its parameters, if it came from a procedure.
 pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>) -> Vec<Choice> {
     let mut menu = Menu { bench, parameters, rate_hz: run.rate_hz().round(), choices: Vec::new() };
     match run.kind() {
@@ -31,18 +31,18 @@ pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>)
 struct Menu<'m> {
     bench: &'m BenchFacts,
     parameters: &'m Map<String, Value>,
-    /// Of the run at hand.
+    /// Sample rate of the measured run.
     rate_hz: f64,
     choices: Vec<Choice>,
 }
 
 impl Menu<'_> {
-    /// A run that the bench may make.
+    /// Adds a run that the bench may perform.
     fn offer(&mut self, id: &str, parameters: Value) {
         self.offer_warmed(id, parameters, &|_| 0.0);
     }
 
-    /// The same for one that warms the joint: by so much after so many seconds.
+    /// The same for a run that warms the joint, by an amount that depends on the time.
     fn offer_warmed(&mut self, id: &str, parameters: Value, warmer_k: &dyn Fn(f64) -> f64) {
         let Value::Object(parameters) = parameters else { return };
         let parameters = self.at_rate(id, parameters);
@@ -53,8 +53,8 @@ impl Menu<'_> {
         }
     }
 
-    /// The ordinary run as it was made before, but for `changes`. Benches that only a run has shown may not be known well
-    /// enough to plan for: it is told all the same, for its repeats.
+    /// The standard run with its previous parameters except for `changes`. A bench that is only known from a run may
+    /// not be known well enough for a plan: the run is nevertheless offered, for its repeats.
     fn ordinary(&mut self, id: &str, changes: Value) {
         let parameters = self.before(id, changes);
         self.offer(id, Value::Object(parameters.clone()));
@@ -64,7 +64,7 @@ impl Menu<'_> {
         }
     }
 
-    /// What the run at hand was made with, as far as this procedure knows of it, but for `changes`.
+    /// The parameters of the measured run that this procedure has, except for `changes`.
     fn before(&self, id: &str, changes: Value) -> Map<String, Value> {
         let mut parameters = self.parameters.clone();
         parameters.retain(|name, _| procedure(id).is_some_and(|p| p.schema().iter().any(|s| s.name == name)));
@@ -72,7 +72,7 @@ impl Menu<'_> {
         parameters
     }
 
-    /// Sampled as the run at hand is, or the two could not be looked at together.
+    /// With the sample rate of the measured run, so that both can be evaluated together.
     fn at_rate(&self, id: &str, mut parameters: Map<String, Value>) -> Map<String, Value> {
         let fits = |p: &Parameter| p.name == "sample_rate_hz" && (p.min..=p.max).contains(&self.rate_hz);
         if procedure(id).is_some_and(|p| p.schema().iter().any(fits)) {
@@ -81,18 +81,19 @@ impl Menu<'_> {
         parameters
     }
 
-    /// Another order than last time, or what changed with time then would do so again.
+    /// Another order than in the previous run, so that a drift over time is not correlated with the same conditions.
     fn next_seed(&self) -> f64 {
         self.parameters.get("order_seed").and_then(Value::as_f64).unwrap_or(1.0) + 1.0
     }
 
-    /// Highest speed that is asked for (motor).
+    /// Highest offered speed (motor).
     fn top_rad_s(&self) -> f64 {
         SHARE_OF_LIMIT * self.bench.limits.motor_velocity_rad_s
     }
 }
 
-/// At several speeds both ways a delay, which grows with speed, shows apart from what only changes its sign.
+/// Several speeds in both directions separate a delay, which grows with speed, from an effect that only changes its
+/// sign.
 fn encoder(menu: &mut Menu) {
     let top_rad_s = menu.top_rad_s();
     let mut changes = json!({"repeats": 3});
@@ -104,7 +105,7 @@ fn encoder(menu: &mut Menu) {
     for top_rad_s in [top_rad_s, top_rad_s / 4.0] {
         menu.offer("encoder_delay", json!({"top_speed_rad_s": rounded(top_rad_s), "speeds": 4, "repeats": 2}));
     }
-    // A zero that is another at each power-up is no slip, which comes once.
+    // A zero that changes with every power-up differs from a slip, which occurs once.
     for power_ups in [6, 12] {
         menu.offer("encoder_startup", json!({"power_ups": power_ups, "speed_rad_s": rounded(top_rad_s.min(4.0))}));
     }
@@ -132,7 +133,7 @@ fn stiffness(menu: &mut Menu) {
 
 /// The whole history of the current, or constant currents over speed.
 fn brake(menu: &mut Menu) {
-    // It has no repeats of its own: it is looked at together with the run at hand.
+    // It has no repeats: it is evaluated together with the measured run.
     let seed = menu.next_seed();
     menu.ordinary("brake_hysteresis", json!({"order_seed": seed}));
     let top_rad_s = (menu.top_rad_s() / menu.bench.constants.gear_ratio).min(1.5);
@@ -145,11 +146,11 @@ fn brake(menu: &mut Menu) {
     );
 }
 
-/// Two digits, downwards: what a person would type, and never beyond a limit.
+/// Rounded down to two digits, so that it does not exceed a limit.
 fn rounded(value: f64) -> f64 {
     let unit = 10f64.powf(value.log10().floor() - 1.0);
     let whole = (value / unit * (1.0 + 1e-9)).floor();
-    // Dividing by a whole power gives 0.12 where multiplying by 0.01 gives 0.12000000000000001.
+    // Dividing by an integer power gives 0.12, while multiplying by 0.01 gives 0.12000000000000001.
     if unit < 1.0 { whole / unit.recip().round() } else { whole * unit }
 }
 

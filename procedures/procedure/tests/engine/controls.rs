@@ -6,7 +6,7 @@ use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
 use proptest::prelude::*;
 
-/// Bench time from the control to the last set-point that was not zero.
+/// Bench time from the control to the last non-zero set-point.
 fn moved_on_s(done: &Done, from_s: f64) -> f64 {
     let moving = done.world.commands(|call| matches!(call, Call::SetVelocity(v) if *v != 0.0));
     moving.last().map_or(0.0, |(at_s, _)| at_s - 100.0 - from_s)
@@ -34,27 +34,30 @@ fn abort_comes_to_rest_within_its_ramp() {
         // A step may end one and a half ticks before its last set-point, at rest.
         assert!(jump <= 2.41, "a ramp of 400 rad/s² moves 1.6 rad/s in a tick, not {jump}");
         assert_eq!(values.last(), Some(&0.0));
-        // No supply answers in time for a fall while the shaft turns: what is left in the brake is told.
+        // No supply answers in time for a fall during rotation: the remanence of the brake is reported.
         let brake = done.world.commands(|call| matches!(call, Call::SetCurrent(_) | Call::Disarm));
         let held = brake.iter().take_while(|(_, call)| *call != Call::Disarm).last();
-        let told = match held {
+        let reported = match held {
             Some((_, Call::SetCurrent(a))) if *a > 0.0 => format!("fell from {a:.3} A with the drive off. Demagnetise"),
             _ => String::new(),
         };
         let falls = brake.iter().filter(|(sent_s, call)| *sent_s > 100.0 + at_s + 0.1 && *call != Call::Disarm).count();
         let notes = done.ledger.notes().join("; ");
-        assert!(notes.contains(&told) && told.is_empty() != notes.contains("Demagnetise"), "step {step}: {notes}");
-        assert_eq!(falls, if told.is_empty() { 0 } else { 5 }, "step {step}: {brake:?}");
+        assert!(
+            notes.contains(&reported) && reported.is_empty() != notes.contains("Demagnetise"),
+            "step {step}: {notes}"
+        );
+        assert_eq!(falls, if reported.is_empty() { 0 } else { 5 }, "step {step}: {brake:?}");
     }
 }
 
 #[test]
-fn a_daemon_that_is_told_to_end_aborts_and_says_so() {
+fn a_daemon_that_is_terminated_aborts_and_says_so() {
     let at_s = middles_s(&loaded_plan())[2];
-    let [told, asked] = [Control::Quit, Control::Abort].map(|control| play_controlled(&[(at_s, control)]));
-    told.check_safe(RunState::Aborted).check_no_cogging();
-    assert_eq!(moved_on_s(&told, at_s), moved_on_s(&asked, at_s));
-    assert_eq!(told.end.reason.as_deref(), Some("aborted because the daemon was shut down"));
+    let [reported, asked] = [Control::Quit, Control::Abort].map(|control| play_controlled(&[(at_s, control)]));
+    reported.check_safe(RunState::Aborted).check_no_cogging();
+    assert_eq!(moved_on_s(&reported, at_s), moved_on_s(&asked, at_s));
+    assert_eq!(reported.end.reason.as_deref(), Some("aborted because the daemon was shut down"));
 }
 
 fn speed_of(call: &Call) -> f64 {
@@ -82,7 +85,7 @@ fn an_abort_hurries_a_stop() {
     assert!(moved_on_s(&done, at_s) <= 1.2, "{} s", moved_on_s(&done, at_s));
 }
 
-/// The supply takes a command ten times a second: where the last one would find the shaft at rest, the current stays.
+/// The supply accepts ten commands in a second: if the last one would find the shaft at rest, the current stays.
 #[test]
 fn an_abort_on_the_way_to_rest_drops_no_current_at_standstill() {
     for rate_hz in [50.0, 250.0] {
@@ -95,14 +98,14 @@ fn an_abort_on_the_way_to_rest_drops_no_current_at_standstill() {
 }
 
 #[test]
-fn a_control_that_does_not_fit_is_told_and_changes_nothing() {
+fn a_control_that_does_not_fit_is_reported_and_changes_nothing() {
     let done = play_controlled(&[(0.5, Control::Resume)]);
     done.check_safe(RunState::Completed);
     assert!(done.ledger.notes().contains(&"a run that is running cannot resume"));
 }
 
 #[test]
-fn nobody_left_to_control_is_a_stop() {
+fn a_dropped_sender_of_controls_is_a_stop() {
     let (fakes, mut bench) = crate::fakes::Fakes::quiet();
     let (sender, controls) = std::sync::mpsc::channel();
     drop(sender);
@@ -113,7 +116,8 @@ fn nobody_left_to_control_is_a_stop() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Any sequence of controls at any times and any rate: the run ends, secured, its states legal and its table valid.
+    /// Any sequence of controls at any times and any rate: the run ends, secured, its states legal and its table
+    /// valid.
     #[test]
     fn any_history_ends_safely(
         history in prop::collection::vec((0.0..20.0, 0usize..6), 0..8),
@@ -121,7 +125,7 @@ proptest! {
     ) {
         let all = [Control::Pause, Control::Resume, Control::Stop, Control::Abort, Control::Quit, Control::EStop];
         let mut controls: Vec<_> = history.iter().map(|(at_s, pick)| (*at_s, all[*pick])).collect();
-        // Nobody may be left waiting in a pause.
+        // The run must not stay paused.
         controls.push((21.0, Control::Resume));
         controls.push((60.0, Control::Abort));
         let done = play_controlled_at(rate_hz, &controls);
@@ -137,8 +141,8 @@ proptest! {
     }
 }
 
-/// Too slow to demagnetise: the brake is not let go at standstill while the drive could still turn it, and no time is
-/// spent on a turn that never ends.
+/// Too slow to demagnetise: the brake current is not removed at standstill while the drive could still turn the
+/// shaft, and no time is spent on a turn that never ends.
 #[test]
 fn a_creeping_plan_is_stopped_without_speeding_up() {
     let (fakes, mut bench) = crate::fakes::Fakes::quiet();

@@ -1,4 +1,4 @@
-//! Steps that hold a motor current: caught when the joint breaks away, checked by the guard, and left by every ending.
+//! Steps with a motor current: stopped after a breakaway, checked by the guard, and ended safely by every ending.
 
 use crate::fakes::{Call, FRICTION_A, Fakes};
 use crate::ledger::{Done, loaded_plan, play, play_with};
@@ -34,7 +34,7 @@ fn a_joint_that_breaks_away_is_caught() {
     let table = done.ledger.table();
     let setpoint = table.column("motor_current_setpoint_a").unwrap();
     assert_eq!(setpoint.iter().copied().fold(0.0, f64::max), top_a);
-    // The velocity loop has the joint again, at once.
+    // The velocity loop controls the joint again at once.
     let last = done.world.commands(|call| matches!(call, Call::SetVelocity(_) | Call::SetMotorCurrent(_)));
     assert_eq!(last.last().map(|(_, call)| *call), Some(Call::SetVelocity(0.0)));
 }
@@ -64,7 +64,7 @@ fn a_ramp_is_made_again_from_its_rest_after_a_pause_and_left_by_an_abort() {
         let held = sender.clone();
         let (fakes, mut bench) = Fakes::new(move |_, world| {
             while let Some((_, control)) = due.pop_if(|(at_s, _)| world.now_s >= 100.0 + *at_s) {
-                // A run that has ended listens no more.
+                // A run that has ended ignores controls.
                 let _ = sender.send(control.into());
             }
             Ok(())
@@ -83,7 +83,7 @@ fn a_ramp_is_made_again_from_its_rest_after_a_pause_and_left_by_an_abort() {
 }
 
 #[test]
-fn what_is_fed_forward_is_kept_beside_the_velocity() {
+fn feedforward_current_is_recorded_with_the_velocity() {
     let (fakes, mut bench) = Fakes::new(|_, _| Ok(()));
     let mut plan = loaded_plan();
     plan.steps.truncate(1);

@@ -1,4 +1,4 @@
-//! A bench of fakes: one world, a clock that moves only while somebody waits, and a script that sees every call first.
+//! A bench of fakes: one world, a clock that advances only during waits, and a script that receives every call first.
 
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{
@@ -9,7 +9,7 @@ use jointbench_instrument::units::{Amperes, Celsius, NewtonMetres, RadPerSec, Ra
 use jointbench_instrument::{Bench, Clock, Fault, FaultKind, Limits};
 use std::sync::{Arc, Mutex, MutexGuard};
 
-/// What somebody asks of an instrument.
+/// A request to an instrument.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Call {
     Identify(Role),
@@ -48,7 +48,7 @@ impl Call {
     }
 }
 
-/// The truth about the bench.
+/// The true state of the bench.
 #[derive(Debug, Clone)]
 pub struct World {
     pub now_s: f64,
@@ -58,19 +58,19 @@ pub struct World {
     pub position_rad: f64,
     pub current_a: f64,
     pub torque_nm: f64,
-    /// As the joint tells it, if it does.
+    /// Temperature that the joint reports, if it does.
     pub temperature_c: Option<f64>,
-    /// At the thermometer's two places.
+    /// At the two channels of the thermometer.
     pub warmth_c: [f64; 2],
     pub brake_a: f64,
     pub brake_on: bool,
     pub regulation: Regulation,
     pub errors: Vec<String>,
-    /// Readings of the joint carry this time instead of the clock's.
+    /// Time stamp of the joint's readings instead of the clock's.
     pub stuck_at_s: Option<f64>,
     /// Every command, with its time.
     pub log: Vec<(f64, Call)>,
-    /// Largest share by which the brake current fell while the armed joint stood still.
+    /// Largest share by which the brake current fell while the armed joint was at rest.
     pub standstill_drop: f64,
 }
 
@@ -89,7 +89,7 @@ pub const RATIO: f64 = 50.0;
 pub const FRICTION_A: f64 = 0.6;
 
 impl Fakes {
-    /// The script is asked before every call; a fault that it gives is what the caller gets.
+    /// The script is called before every request; the caller receives its fault.
     pub fn new(script: impl FnMut(Call, &mut World) -> Result<(), FaultKind> + Send + 'static) -> (Fakes, Bench) {
         let world = World {
             now_s: 100.0,
@@ -143,7 +143,7 @@ impl Fakes {
         (fakes, bench)
     }
 
-    /// Gives the bench a thermometer.
+    /// Adds a thermometer to the bench.
     pub fn feel_warmth(&self, bench: &mut Bench) {
         bench.thermometer = Some(Box::new(FakeThermometer(self.clone())));
     }
@@ -152,7 +152,7 @@ impl Fakes {
         Self::new(|_, _| Ok(()))
     }
 
-    /// A script that panics poisons the lock; the world behind it is still the truth.
+    /// A panic of the script poisons the lock; the state behind it is still valid.
     fn stage(&self) -> MutexGuard<'_, Stage> {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
@@ -183,7 +183,7 @@ const NAMES: [(&str, &str); 4] =
     [("joint", "pty0"), ("torque_sensor", "pty1"), ("brake_a", "pty2"), ("thermometer", "pty3")];
 
 impl World {
-    /// Velocity follows at once; friction is plain, the brake proportional, both by their signs.
+    /// Velocity follows at once; friction is constant, the brake proportional, both with the sign of the motion.
     fn advance(&mut self, to_s: f64) {
         let passed_s = to_s - self.now_s;
         if passed_s <= 0.0 {
@@ -269,7 +269,7 @@ impl JointController for FakeJoint {
         self.0.call(Call::SetVelocity(velocity.0), |world| world.setpoint_rad_s = velocity.0)
     }
 
-    /// This joint turns in proportion to what is beyond its friction.
+    /// This joint turns in proportion to the torque in excess of its friction.
     fn set_motor_current(&mut self, current: Amperes) -> Result<(), Fault> {
         self.0.call(Call::SetMotorCurrent(current.0), |world| {
             let beyond_a = (current.0.abs() - FRICTION_A).max(0.0);

@@ -1,4 +1,4 @@
-//! Instruments that miss a reply, go away or panic.
+//! Instruments that miss a reply, are lost or panic.
 
 use crate::fakes::{Call, Fakes, Role, World};
 use crate::ledger::{Done, loaded_plan, play};
@@ -18,7 +18,7 @@ fn scripted(script: impl FnMut(Call, &mut World) -> Result<(), FaultKind> + Send
     play(&fakes, &mut bench, &loaded_plan(), |_| {})
 }
 
-/// From two seconds into the run, while `when` says so, the instrument in a role does not answer.
+/// From two seconds into the run, while `when` returns true, the instrument of a role does not answer.
 fn failing(role: Role, kind: fn() -> FaultKind, when: fn(&Call) -> bool) -> Done {
     scripted(
         move |call, world| {
@@ -73,13 +73,13 @@ fn a_lost_sensor_ends_the_run_safely() {
     let done = failing(Role::Torque, lost, |_| true);
     done.check_safe(RunState::Failed).check_no_cogging();
     assert!(done.end.reason.as_ref().unwrap().contains("torque_sensor on pty1"));
-    // The joint still obeys: it comes to rest on its ramp.
+    // The joint still obeys: it stops with its ramp.
     let setpoints = done.world.commands(|call| matches!(call, Call::SetVelocity(_)));
     assert!(setpoints.last().is_some_and(|(at_s, call)| *call == Call::SetVelocity(0.0) && *at_s < 102.5));
     assert!(!done.ledger.notes().iter().any(|note| note.contains("harder")));
 }
 
-/// A supply that hears and does, but does not answer any more.
+/// A supply that receives and performs commands, but does not answer any more.
 #[test]
 fn a_silent_supply_is_switched_off_blindly_while_the_joint_comes_to_rest() {
     let (fakes, mut bench) = Fakes::new(|call, world| {
@@ -123,8 +123,8 @@ fn nothing_answers() {
     let done = scripted(|_, world| if world.now_s >= 102.0 { Err(lost()) } else { Ok(()) });
     assert_eq!((done.end.state, done.end.safe), (RunState::Failed, Safe::UnsafeUnknown));
     assert!(done.end.duration_s < 10.0, "{} s", done.end.duration_s);
-    let told = done.ledger.events().any(|event| event.kind == EventKind::Safe { safe: Safe::UnsafeUnknown });
-    assert!(told);
+    let reported = done.ledger.events().any(|event| event.kind == EventKind::Safe { safe: Safe::UnsafeUnknown });
+    assert!(reported);
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn commands_that_cannot_be_read_back_are_only_commanded() {
 #[test]
 fn a_drive_that_contradicts_is_not_safe() {
     let done = scripted(|call, world| {
-        // The command is taken, but the drive stays armed.
+        // The command is accepted, but the drive stays armed.
         if call == Call::SetVelocity(0.0) && world.now_s > 110.0 {
             world.errors.clear();
         }
@@ -195,7 +195,7 @@ fn a_position_that_is_not_a_number_fails_the_run() {
     assert_eq!(done.ledger.table().len() as u64, done.end.rows);
 }
 
-/// A panic may strike in any call of any driver.
+/// A panic may occur in any call of any driver.
 #[test]
 fn a_panic_passes_the_safe_state() {
     let quiet = std::panic::take_hook();

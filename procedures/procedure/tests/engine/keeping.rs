@@ -1,4 +1,4 @@
-//! What is kept of a run, and when.
+//! Stored data of a run, and the time of storing.
 
 use crate::fakes::Fakes;
 use crate::ledger::{loaded_plan, play, play_controlled};
@@ -76,7 +76,7 @@ fn a_step_and_its_rows_become_durable_together() {
     assert_eq!(finished, loaded_plan().steps.len());
 }
 
-/// What is lost by a kill is what was not acknowledged: never more than two seconds of the bench.
+/// A kill loses only data without acknowledgement: at most two seconds of the bench.
 #[test]
 fn commits_come_often_enough_and_not_more() {
     let (fakes, mut bench) = Fakes::quiet();
@@ -129,7 +129,7 @@ fn a_blocked_bench_is_not_touched() {
     assert!(done.world.commands(|call| matches!(call, crate::fakes::Call::Arm)).is_empty());
 }
 
-/// All steps are done, but their last rows cannot be kept: that is not a complete run.
+/// All steps are done, but their last rows cannot be stored: the run is not complete.
 #[test]
 fn a_run_whose_end_is_not_kept_is_not_completed() {
     for state in [RunState::Securing, RunState::Completed] {

@@ -1,4 +1,4 @@
-//! A recorder that remembers, and the ways in which the tests run a plan.
+//! A recorder in memory, and helpers that run a plan.
 
 use crate::fakes::{Fakes, World};
 use jointbench_instrument::{Bench, Kind, Meta, RunTable, Trace};
@@ -22,7 +22,7 @@ pub struct Ledger {
     pub live_rows: usize,
     pub progress: Vec<Progress>,
     pub blocked: Option<String>,
-    /// Commits that are acknowledged before the disk is full.
+    /// Number of acknowledged commits before the disk is full.
     pub room: usize,
     /// Commits of this state fail.
     pub refuses: Option<RunState>,
@@ -62,7 +62,7 @@ impl Ledger {
             .collect()
     }
 
-    /// All rows as the run table that an export would give.
+    /// All rows as the run table of an export.
     pub fn table(&self) -> RunTable {
         let mut rows = self.kept.iter().filter(|kept| !kept.rows.channels().is_empty()).map(|kept| kept.rows.clone());
         let mut all = rows.next().expect("a run with rows");
@@ -91,7 +91,7 @@ impl Recorder for Ledger {
     }
 }
 
-/// Up to a load, a plateau under it, down from it, and one without: what a run with a brake consists of.
+/// Up to a load, a leg under it, down from it, and one without: the parts of a run with a brake.
 pub fn loaded_plan() -> Plan {
     let step = |segment: u32, speed: f64, dwell_s: f64, brake: Profile| Step {
         label: format!("step {segment}"),
@@ -137,14 +137,14 @@ pub fn middles_s(plan: &Plan) -> Vec<f64> {
     plan.steps.iter().map(middle).collect()
 }
 
-/// What is left of a run.
+/// Results of a run.
 pub struct Done {
     pub end: RunEnd,
     pub ledger: Ledger,
     pub world: World,
 }
 
-/// Runs a plan on a bench with a recorder that can be prepared.
+/// Runs a plan on a bench with a recorder that `prepare` may modify.
 pub fn play(fakes: &Fakes, bench: &mut Bench, plan: &Plan, prepare: impl FnOnce(&mut Ledger)) -> Done {
     let (_held, controls) = channel();
     play_with(fakes, bench, plan, &controls, prepare)
@@ -163,7 +163,7 @@ pub fn play_with(
     Done { end, ledger, world: fakes.world() }
 }
 
-/// Plays the loaded plan while a person gives controls at times after the start of the run.
+/// Runs the loaded plan while a person gives controls at times after the start of the run.
 pub fn play_controlled(controls: &[(f64, Control)]) -> Done {
     play_controlled_at(loaded_plan().rate_hz, controls)
 }
@@ -175,7 +175,7 @@ pub fn play_controlled_at(rate_hz: f64, controls: &[(f64, Control)]) -> Done {
     due.reverse();
     let (fakes, mut bench) = Fakes::new(move |_, world| {
         while let Some((_, control)) = due.pop_if(|(at_s, _)| world.now_s >= 100.0 + *at_s) {
-            // A run that has ended listens no more.
+            // A run that has ended ignores controls.
             let _ = sender.send(control.into());
         }
         Ok(())
@@ -184,7 +184,7 @@ pub fn play_controlled_at(rate_hz: f64, controls: &[(f64, Control)]) -> Done {
 }
 
 impl Done {
-    /// What every run has to leave behind while the instruments answer.
+    /// Required final state of every run while the instruments answer.
     pub fn check_safe(&self, state: RunState) -> &Self {
         assert_eq!(self.end.state, state, "{:?}", self.end.reason);
         assert_eq!(self.end.safe, Safe::SafeVerified, "{:?}", self.ledger.notes());

@@ -1,4 +1,4 @@
-//! Limits in the engine: nothing that breaks one is sent, nothing that is seen to break one goes on.
+//! Limits in the engine: no command that violates a limit is sent, and no measured violation continues.
 
 use crate::fakes::{Call, Fakes, World};
 use crate::ledger::{loaded_plan, play};
@@ -7,7 +7,7 @@ use jointbench_instrument::roles::Regulation;
 use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
 
-/// Two seconds into the run the world shows something that must not be.
+/// Two seconds into the run the world shows a forbidden state.
 fn check_trips(what: &str, show: fn(&mut World)) -> crate::ledger::Done {
     let (fakes, mut bench) = Fakes::new(move |_, world| {
         if (102.0..103.0).contains(&world.now_s) {
@@ -35,12 +35,12 @@ fn every_limit_trips_in_mid_run() {
     ];
     for (quantity, show) in cases {
         let done = check_trips(quantity.name(), show);
-        let told = done
+        let reported = done
             .ledger
             .events()
             .any(|event| matches!(event.kind, EventKind::Breach { breach } if breach.quantity == quantity));
-        assert!(told, "{}", quantity.name());
-        // Drive torque off before anything else: no set-point between the breach and the disarming.
+        assert!(reported, "{}", quantity.name());
+        // Drive torque off first: no set-point between the violation and the disarming.
         let last = done.world.commands(|call| matches!(call, Call::SetVelocity(_) | Call::Disarm));
         let disarmed_s = last.iter().find(|(_, call)| *call == Call::Disarm).map(|(at_s, _)| *at_s);
         let breach = done.ledger.events().find(|event| matches!(event.kind, EventKind::Breach { .. }));
@@ -95,7 +95,7 @@ fn a_start_too_near_the_stop_is_refused() {
     assert!(done.end.reason.unwrap().contains("towards the centre of the range"));
 }
 
-/// The plan lets the brake fall before the shaft turns: the guard refuses, and the command is never sent.
+/// The plan lets the brake current fall before the shaft turns: the guard refuses, and the command is never sent.
 #[test]
 fn the_brake_does_not_fall_at_standstill() {
     let mut plan = loaded_plan();
@@ -107,7 +107,7 @@ fn the_brake_does_not_fall_at_standstill() {
     assert!(done.world.commands(|call| *call == Call::SetCurrent(0.1)).is_empty());
 }
 
-/// What the dry run cannot see, the guard sees before it is sent.
+/// The guard rejects, before it is sent, what the dry run cannot predict.
 #[test]
 fn a_set_point_that_is_not_a_number_is_never_sent() {
     let mut plan = loaded_plan();

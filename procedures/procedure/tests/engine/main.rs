@@ -1,4 +1,4 @@
-//! The engine on a scripted bench: whatever happens, a run ends in the safe state and says what was reached.
+//! The engine on a scripted bench: every run ends in the safe state and reports its result.
 
 mod controls;
 mod currents;

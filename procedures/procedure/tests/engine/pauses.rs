@@ -16,7 +16,7 @@ fn every_step_survives_a_pause() {
         let paused = [RunState::Running, RunState::Paused, RunState::Running];
         assert!(done.ledger.states().windows(3).any(|states| states == paused));
 
-        // The interrupted attempt keeps its number, the repeated one has its own and is whole.
+        // The interrupted attempt keeps its number, the repeated one has a new number and is complete.
         let table = done.ledger.table();
         let rows = |segment: usize| {
             table.column("segment").unwrap().iter().filter(|found| **found == segment as f64).count() as f64
@@ -26,7 +26,7 @@ fn every_step_survives_a_pause() {
         assert!((rows(repeated) - whole).abs() <= 2.0, "step {step}: {} of {whole} rows", rows(repeated));
         assert!((rows(step) - 0.5 * whole).abs() <= 4.0, "step {step}: {} of half {whole} rows", rows(step));
 
-        // It begins where the step began, and so the run ends where it would have.
+        // It begins at the start of the step, so that the run ends at the planned position.
         let segments = table.column("segment").unwrap();
         let first_of = |number: usize| segments.iter().position(|found| *found == number as f64).unwrap();
         let position_rad = table.column("motor_position_rad").unwrap();
@@ -74,7 +74,7 @@ fn the_estimate_of_the_rest_leaves_the_pause_out() {
 
 #[test]
 fn every_attempt_is_one_unbroken_segment() {
-    // The second pause falls into the way back of the first.
+    // The second pause occurs during the return of the first.
     let controls = [0.5, 2.0, 7.0, 12.0].map(|at_s| [(at_s, Control::Pause), (at_s + 0.8, Control::Resume)]);
     let done = play_controlled(controls.as_flattened());
     done.check_safe(RunState::Completed).check_no_cogging();
@@ -97,7 +97,7 @@ fn a_resume_takes_back_a_pause_that_was_not_yet_granted() {
     assert!(done.end.duration_s < loaded_plan().duration_s() + 0.5, "{} s", done.end.duration_s);
 }
 
-/// A sweep counts on a brake without history: resuming takes the poles out before it begins again from no current.
+/// A sweep requires a brake without history: resuming demagnetises it before the sweep begins again at zero current.
 #[test]
 fn a_sweep_begins_again_with_a_demagnetised_brake() {
     let mut plan = loaded_plan();
@@ -110,7 +110,7 @@ fn a_sweep_begins_again_with_a_demagnetised_brake() {
     let mut due = vec![(3.0, Control::Resume), (1.2, Control::Pause)];
     let (fakes, mut bench) = Fakes::new(move |_, world| {
         while let Some((_, control)) = due.pop_if(|(at_s, _)| world.now_s >= 100.0 + *at_s) {
-            // A run that has ended listens no more.
+            // A run that has ended ignores controls.
             let _ = sender.send(control.into());
         }
         Ok(())
@@ -123,7 +123,7 @@ fn a_sweep_begins_again_with_a_demagnetised_brake() {
     let (segment, command) = (column("segment"), column("brake_torque_command_nm"));
     let second = segment.iter().position(|s| *s != segment[0]).unwrap();
     assert!(command[second - 1] > 1.0 && command[second] == 0.0, "{} {}", command[second - 1], command[second]);
-    // On the way there the current fell in many small steps, not at once.
+    // Before that the current fell in many small steps, not at once.
     let falls = done.world.commands(|call| matches!(call, Call::SetCurrent(a) if *a > 0.0 && *a < 0.5 && *a != 0.2));
     assert!(falls.len() >= 5, "{falls:?}");
 }

@@ -1,4 +1,4 @@
-//! The safe state for a server that finds a bench in the middle of a run it did not end.
+//! The safe state for a server that finds a bench in the middle of another process's run.
 
 use crate::fakes::{Call, Fakes};
 use jointbench_procedure::{Safe, secure};

@@ -1,4 +1,4 @@
-//! Procedures of the catalogue, carried out.
+//! Procedures of the catalogue, run on the fakes.
 
 use crate::fakes::{Fakes, World};
 use crate::ledger::{Done, middles_s, play, play_with};
@@ -54,7 +54,7 @@ fn friction_runs_from_warm_up_to_the_last_leg() {
     assert!(done.world.position_rad.abs() < 1.0, "ends {} rad from where it began", done.world.position_rad);
 }
 
-/// Friction with a pause in the middle of a loaded step; the plan, that step, and what was left.
+/// Friction with a pause in the middle of a loaded step: the plan, that step, and the result.
 fn paused_under_load(pause_s: f64) -> (Plan, usize, Done) {
     let (sender, controls) = channel();
     let held = sender.clone();
@@ -63,13 +63,13 @@ fn paused_under_load(pause_s: f64) -> (Plan, usize, Done) {
     let given = json!({"warm_up_s": 30.0, "load_levels": 2, "repeats": 2});
     let plan = procedure("friction").unwrap().plan(given.as_object().unwrap(), &BenchFacts::of(&bench)).unwrap();
     let loaded = plan.steps.iter().position(|step| step.brake.at(0.0) > 0.1).unwrap();
-    // All of the warm-up but the first three cycles is left out, which are steady.
+    // All of the warm-up but the first three cycles, which are steady, is skipped.
     let skipped = plan.steps.iter().filter(|step| step.phase == Phase::WarmUp).skip(12);
     let at_s = middles_s(&plan)[loaded] - skipped.map(|step| step.duration_s()).sum::<f64>();
     due.extend([(at_s + pause_s, Control::Resume), (at_s, Control::Pause)]);
     let (fakes, mut bench) = Fakes::new(move |_, world| {
         while let Some((_, control)) = due.pop_if(|(at_s, _)| world.now_s >= 100.0 + *at_s) {
-            // A run that has ended listens no more.
+            // A run that has ended ignores controls.
             let _ = sender.send(control.into());
         }
         Ok(())
@@ -93,7 +93,7 @@ fn a_joint_that_rested_for_long_is_warmed_up_again() {
     let again = plan.steps.len() as f64;
     assert_eq!(segments.iter().filter(|segment| **segment == again).count(), 1);
     assert!(segments.contains(&f64::from(plan.steps[loaded].segment)));
-    // The step begins under the load that it had, approached from none.
+    // The step begins under its previous load, approached from zero.
     let first = table.column("segment").unwrap().iter().position(|segment| *segment == again).unwrap();
     let nm = table.column("brake_torque_command_nm").unwrap()[first];
     assert!((nm / 13.0 * 0.6 - plan.steps[loaded].brake.at(0.0)).abs() < 1e-3, "{nm} Nm");

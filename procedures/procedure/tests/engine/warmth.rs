@@ -1,4 +1,4 @@
-//! A bench with a thermometer: what it feels is in every run.
+//! A bench with a thermometer: its readings are in every run.
 
 use crate::fakes::{Call, Fakes, World};
 use crate::ledger::{Done, loaded_plan, play};
@@ -12,7 +12,7 @@ fn felt(script: impl FnMut(Call, &mut World) -> Result<(), FaultKind> + Send + '
 }
 
 #[test]
-fn every_channel_is_a_column_beside_the_joints_own_temperature() {
+fn every_channel_is_a_column_next_to_the_joints_own_temperature() {
     let done = felt(|_, world| {
         world.warmth_c = [world.now_s - 100.0, 20.0];
         Ok(())
@@ -24,7 +24,7 @@ fn every_channel_is_a_column_beside_the_joints_own_temperature() {
     let behind = |(felt_c, at_s): (&f64, &f64)| (-1e-5..=2.01).contains(&(at_s - felt_c));
     let (felt_c, time_s) = (table.column("thermometer_1_c").unwrap(), table.column("time_s").unwrap());
     assert!(felt_c.iter().zip(time_s).all(behind), "never older than two seconds");
-    // As kept, each row tells when; as read, it is moved to the rows' moments.
+    // A stored row has the time of its reading; a table has it moved to the time of the row.
     for kept in done.ledger.kept.iter().filter(|kept| !kept.rows.is_empty()) {
         let [felt_c, time_s, skew_s] =
             ["thermometer_1_c", "time_s", "thermometer_skew_s"].map(|name| kept.rows.column(name).unwrap());
@@ -38,7 +38,7 @@ fn every_channel_is_a_column_beside_the_joints_own_temperature() {
 }
 
 #[test]
-fn the_first_channel_stands_for_a_joint_that_tells_no_temperature() {
+fn the_first_channel_replaces_the_temperature_of_a_joint_without_one() {
     let done = felt(|_, world| {
         world.temperature_c = None;
         Ok(())

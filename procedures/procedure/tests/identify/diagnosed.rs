@@ -1,4 +1,4 @@
-//! What the diagnosis says of runs that procedures make on the mock bench, whose parts are those of the documents.
+//! Diagnoses of procedure runs on the mock bench, whose parts are those of the documents.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::RunTable;
@@ -21,7 +21,7 @@ fn seeded(seed: u64, joint: Joint, hidden: &[&str], id: &str, parameters: Value)
     conduct(&mut bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap().table
 }
 
-/// The effects that a run is found to show beside its baseline.
+/// The effects that the diagnosis adds to the baseline of a run.
 fn shown(run: &RunTable) -> Vec<String> {
     let baseline = ModelSpec::baseline(run).unwrap();
     let mut added = discover(run, &baseline, &Options::default(), 6, |_| {}).unwrap().model;
@@ -40,10 +40,11 @@ fn diagnosis(run: &RunTable) -> Diagnosis {
 
 #[test]
 fn a_brake_saturates_and_remembers() {
-    // The supply tells the current ten times a second at best: held readings would hide both.
+    // The supply reports the current at most ten times a second: held readings would hide both.
     let given = json!({"levels": 6, "loops": 1, "random_turns": 6, "speed_rad_s": 3.0});
     assert_eq!(found(Joint::JointA, "brake_hysteresis", given), ["hysteresis", "saturation"]);
-    // At one speed a dependence on it is the torque itself, and what only the largest loop tells is not asked of the others.
+    // At one speed a speed dependence equals the torque itself, and only the largest loop determines its own
+    // remanence.
     assert_eq!(found(Joint::JointB, "brake_hysteresis", json!({})), ["hysteresis", "saturation"]);
 }
 
@@ -61,22 +62,22 @@ fn what_a_brake_of_the_bench_reaches_is_no_slip_of_a_unit() {
 fn an_encoder_has_waves_over_the_turn_and_over_the_pole_pair_and_a_play() {
     let expected = ["direction_hysteresis", "harmonic_1", "harmonic_2", "pole_period"];
     assert_eq!(found(Joint::EncoderShaft, "encoder_linearity", json!({})), expected);
-    // At 52 rad/s a sample comes 30 times a turn, where 64 periods look like four.
+    // At 52 rad/s there are 30 samples in a turn, where 64 periods look like four.
     assert_eq!(found(Joint::EncoderShaft, "encoder_delay", json!({})), expected);
 }
 
 #[test]
 fn a_stiff_joint_lacks_nothing_and_a_soft_one_hardens() {
     assert_eq!(found(Joint::JointA, "stiffness", json!({"load_levels": 4})), Vec::<String>::new());
-    // With as many loads as the procedure takes unasked, whatever its formula left over would be named.
-    // A delay of its sensors is named beside it.
+    // With the default number of loads, any form error would be named.
+    // A delay of its sensors is named in addition.
     assert_eq!(found(Joint::JointB, "stiffness", json!({})), ["delay", "hardening"]);
 }
 
 #[test]
-fn a_joint_that_starts_from_rest_shows_its_contacts_and_nothing_that_stands_for_them() {
+fn a_joint_that_starts_from_rest_shows_its_contacts_and_no_substitute() {
     for joint in [Joint::JointA, Joint::JointB] {
-        // It takes 49 % there of joint B, where half is asked for: it is told, and not named.
+        // It explains 49 % there for joint B, where half is required: it is reported, but not named.
         let rest = run(joint, &[], "presliding", json!({}));
         match joint {
             Joint::JointA => assert_eq!(shown(&rest), ["presliding"]),
@@ -88,7 +89,7 @@ fn a_joint_that_starts_from_rest_shows_its_contacts_and_nothing_that_stands_for_
                 )
             }
         }
-        // The drive tells the speed 2 ms later than the angle, and slow friction is no delay either.
+        // The drive reports the speed 2 ms later than the angle, and friction at low speed is no delay either.
         assert_eq!(shown(&run(joint, &["stribeck"], "presliding", json!({}))), ["presliding"], "{joint:?}");
         let breakaway = run(joint, &[], "breakaway", json!({}));
         assert_eq!(shown(&breakaway), ["presliding"], "{joint:?}");
@@ -98,8 +99,8 @@ fn a_joint_that_starts_from_rest_shows_its_contacts_and_nothing_that_stands_for_
 }
 
 #[test]
-fn teeth_on_the_way_from_rest_are_told_without_what_is_impossible() {
-    // A Stribeck effect of −20 mNm had stayed when what made it possible was dropped beside it.
+fn teeth_on_the_way_from_rest_are_named_without_an_impossible_effect() {
+    // A Stribeck effect of −20 mNm had stayed after the removal of the effect that made it possible.
     let run = seeded(9314, Joint::JointB, &["cogging"], "breakaway", json!({}));
     let found: Vec<String> = diagnosis(&run).suggestions.into_iter().map(|s| s.effect).collect();
     assert!(found.contains(&"cogging".to_owned()), "{found:?}");
@@ -107,8 +108,8 @@ fn teeth_on_the_way_from_rest_are_told_without_what_is_impossible() {
 }
 
 #[test]
-fn teeth_over_which_the_drive_gives_way_are_all_that_is_told() {
-    // Two waves had brought a friction ripple, three and five a structure that was the rotor's own acceleration.
+fn teeth_under_a_soft_drive_are_the_only_finding() {
+    // Two waves had caused a friction ripple, three and five a structure that was the rotor's own acceleration.
     for seed in [32003, 32005, 32009] {
         let run = seeded(seed, Joint::JointA, &["cogging"], "friction", json!({}));
         let found = diagnosis(&run);
@@ -118,15 +119,17 @@ fn teeth_over_which_the_drive_gives_way_are_all_that_is_told() {
 }
 
 #[test]
-fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_told() {
+fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_left_open() {
     let quadratic = |seed| seeded(seed, Joint::JointA, &["stribeck", "viscous_quadratic"], "friction", json!({}));
-    // A Stribeck effect whose exponent is 0.5 errs by 1 % more in squares, with 12 mNm of Coulomb friction instead of 30.
+    // A Stribeck effect with the exponent 0.5 has a squared error that is 1 % larger, with 12 mNm of Coulomb friction
+    // instead of 30.
     let clear = diagnosis(&quadratic(14007));
     let named: Vec<&str> = clear.suggestions.iter().map(|s| s.effect.as_str()).collect();
     assert_eq!(named, ["stribeck", "viscous_quadratic"], "{}", clear.summary);
     let why = &clear.suggestions[1].why;
     assert!(why.contains("without it coulomb.tau_c would be 11."), "{why}");
-    // Where what was held out does not decide it, it is told, and the run that would decide it is offered.
+    // If the validation error does not decide, the effect is reported as open, and the run that would decide is
+    // recommended.
     let run = quadratic(14006);
     let open = diagnosis(&run);
     let imitated = open.imitated.as_ref().unwrap();
@@ -146,13 +149,14 @@ fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_told() {
 
 #[test]
 fn an_arm_is_heavy_and_its_directions_differ() {
-    // A fiftieth of what gravity takes, but gravity's formula leaves no remainder that it could be.
+    // A fiftieth of the share of gravity, but the formula of gravity has no form error that it could be.
     assert_eq!(found(Joint::Puma, "puma_friction", json!({})), ["gravity", "viscous_asymmetry"]);
 }
 
 #[test]
-fn teeth_bear_what_an_arm_weighs_beside_its_load() {
-    // Load alone had left a load_quadratic and a friction_ripple at twice the floor, and called them an explanation.
+fn teeth_transmit_the_weight_of_an_arm_and_its_load() {
+    // With the load alone, a load_quadratic and a friction_ripple remained at twice the noise floor, and were
+    // reported as an explanation.
     for hidden in [["gravity", "load_linear"], ["gravity", "load_quadratic"]] {
         let run = seeded(1, Joint::JointA, &hidden, "friction", json!({}));
         assert_eq!(shown(&run), hidden);
@@ -160,12 +164,13 @@ fn teeth_bear_what_an_arm_weighs_beside_its_load() {
 }
 
 #[test]
-fn what_an_arm_cannot_tell_apart_is_told() {
-    // About the upright pose gravity's cosine is a constant torque: the 27 mNm by which the directions differ could be its.
+fn confounded_effects_of_an_arm_are_reported() {
+    // Around the upright pose gravity's cosine is a constant torque: the difference of the directions, 27 mNm, could
+    // be gravity.
     let alone = diagnosis(&run(Joint::Puma, &[], "puma_friction", json!({})));
     let offset = alone.silent.iter().find(|silent| silent.effect == "direction_offset").unwrap();
     assert!(offset.minimum_detectable_rms > 0.027, "{offset:?}");
-    // Beside drag that grows with the square of the speed, which comes in later, saturation is as good as asymmetry.
+    // With a quadratic drag, which is added later, saturation explains as much as asymmetry.
     let quadratic = diagnosis(&run(Joint::Puma, &["viscous_quadratic"], "puma_friction", json!({})));
     let named = |effect: &str| quadratic.suggestions.iter().any(|s| s.effect == effect);
     let tied = quadratic.suggestions.iter().any(|s| s.confounded_with.iter().any(|e| e == "viscous_asymmetry"));

@@ -1,4 +1,4 @@
-//! What procedures identify: from tables that are written down here, and on the mock bench.
+//! Identifications of procedures: from simulated tables, and on the mock bench.
 
 mod diagnosed;
 mod mock;

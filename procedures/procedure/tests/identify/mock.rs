@@ -1,4 +1,4 @@
-//! Short runs on the mock bench. Its truth is read only to be compared with.
+//! Short runs on the mock bench. Its truth is only read for comparison.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::catalogue::brake_model;
@@ -15,8 +15,8 @@ fn found(settings: MockSettings, id: &str, parameters: Value) -> (MockBench, Ide
     let found = done.identification.unwrap();
     let finds = procedure(id).unwrap().finds();
     for quantity in &found.quantities {
-        let is_told = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
-        assert!(is_told, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
+        let is_declared = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
+        assert!(is_declared, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
     }
     (mock, found)
 }
@@ -69,18 +69,18 @@ fn a_sensor_of_two_ranges_has_two_zeros_and_one_torque() {
 fn the_inverse_of_the_hysteresis_holds_on_a_history_that_it_has_not_seen() {
     let given = json!({"levels": 5, "loops": 1, "random_turns": 6, "dwell_s": 0.8, "speed_rad_s": 3.0});
     let (_, found) = found(MockSettings::new(Joint::JointB, 3), "brake_hysteresis", given);
-    // Five levels are coarse: a straight line in their place errs three times as much at least.
+    // Five levels are coarse: a straight line instead has at least three times the error.
     let [error, line] = ["error_max", "error_line"].map(|name| found.quantity(name).unwrap().value);
     assert!(error < 0.04 && 3.0 * error < line, "{error} {line}");
     assert!(found.quantity("width").unwrap().value > 0.2, "{}", found.summary);
-    // Beside every history that was not seen stands what the model says of it.
+    // Every validation history is shown with the prediction of the model.
     let rated_nm = found.quantity("torque_top").unwrap().value;
     for name in ["minor_loops", "random_history"] {
         let figure = found.figures.iter().find(|figure| figure.name == name).unwrap();
         let [measured, model] = &figure.series[..] else { panic!("{figure:?}") };
         for (current_a, torque_nm) in measured.x.iter().zip(&measured.y) {
-            let beside = model.x.iter().zip(&model.y).filter(|(x, _)| (*x - current_a).abs() < 1e-9);
-            let off = beside.map(|(_, y)| (y - torque_nm).abs()).fold(f64::INFINITY, f64::min);
+            let predicted = model.x.iter().zip(&model.y).filter(|(x, _)| (*x - current_a).abs() < 1e-9);
+            let off = predicted.map(|(_, y)| (y - torque_nm).abs()).fold(f64::INFINITY, f64::min);
             assert!(off < 0.04 * rated_nm, "{name} at {current_a} A: {off} Nm");
         }
     }
@@ -138,7 +138,7 @@ fn a_stribeck_part_that_may_be_a_square_of_speed_is_not_identified() {
 }
 
 #[test]
-fn friction_under_load_is_told_apart_from_a_rise_towards_standstill() {
+fn friction_under_load_is_distinguished_from_a_rise_towards_standstill() {
     let settings = MockSettings::new(Joint::JointA, 1).hiding(&["stribeck", "load_linear"]);
     let (mock, found) = found(settings, "friction_load", json!({"load_levels": 4, "sample_rate_hz": 100.0}));
     assert!(found.summary.contains("in proportion to the load"), "{}", found.summary);
@@ -154,7 +154,7 @@ fn friction_under_load_is_told_apart_from_a_rise_towards_standstill() {
 fn a_joint_breaks_away_where_its_friction_at_rest_lies() {
     let given = json!({"positions": 3, "sample_rate_hz": 250.0, "ramp_nm_s": 0.04});
     let (mock, found) = found(MockSettings::new(Joint::JointA, 1), "breakaway", given);
-    // Without a Stribeck part the joint holds what Coulomb friction holds.
+    // Without a Stribeck part the breakaway torque equals Coulomb friction.
     let quantity = found.quantity("tau_b").unwrap();
     assert!((quantity.value / mock.truth().coulomb_nm - 1.0).abs() < 0.02, "{}", found.summary);
 }
@@ -186,7 +186,7 @@ fn a_joint_that_breaks_away_in_the_swings_decides_nothing() {
 }
 
 #[test]
-fn a_warm_up_and_a_cool_down_tell_what_oil_does_and_what_does_not_change() {
+fn a_warm_up_and_a_cool_down_separate_viscous_and_constant_friction() {
     let mut settings = MockSettings::new(Joint::JointA, 21);
     let (_, cold) = found(settings.clone(), "friction_temperature", json!({}));
     assert!(cold.quantity("c_t").is_none() && cold.summary.contains("change by less than"), "{}", cold.summary);
@@ -235,7 +235,7 @@ fn the_full_model_halves_the_error_without_over_compensating() {
     assert!(ratio("observer") < 1.0);
 }
 
-/// The arm's constants lie in the intervals that the run gives, and the directions are told apart.
+/// The arm's constants are within the intervals of the run, and the directions are distinguished.
 #[test]
 fn an_arm_gives_a_line_for_each_direction_and_its_stiction() {
     let given = json!({"speeds": 4, "repeats": 2, "breakaways": 2, "warm_up_s": 5.0, "ramp_nm_s": 0.03});
@@ -272,7 +272,7 @@ fn an_arm_gives_a_line_for_each_direction_and_its_stiction() {
 }
 
 #[test]
-fn a_soft_start_is_seen_beside_its_curve_its_table_and_its_loop() {
+fn a_soft_start_is_shown_with_its_curve_its_table_and_its_loop() {
     let given = json!({"load_levels": 8, "repeats": 2});
     let (_, found) = found(MockSettings::new(Joint::JointB, 3), "stiffness", given);
     assert!(found.summary.contains("Stiffness decreases at low torque"), "{}", found.summary);
@@ -290,7 +290,7 @@ fn a_soft_start_is_seen_beside_its_curve_its_table_and_its_loop() {
 }
 
 #[test]
-fn table_4_7_is_drawn_as_bars_beside_a_trajectory() {
+fn table_4_7_is_drawn_as_bars_with_a_trajectory() {
     let (_, found) = found(MockSettings::new(Joint::JointA, 2).hiding(&["stribeck"]), "compensation", json!({}));
     let figure = |name: &str| found.figures.iter().find(|figure| figure.name == name).unwrap();
     let bars = &figure("ratio").series;

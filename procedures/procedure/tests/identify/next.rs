@@ -1,4 +1,4 @@
-//! What one run leaves open, the run that is asked for, and what both together say: on the mock bench.
+//! Open questions of one run, the recommended run, and the result of both together, on the mock bench.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable};
@@ -7,9 +7,9 @@ use jointbench_procedure::conduct::conduct;
 use jointbench_procedure::{BenchFacts, menu, procedure};
 use serde_json::{Map, Value, json};
 
-/// A bench with what it has measured so far.
+/// A bench with its measurements so far.
 struct Laboratory {
-    /// Its instruments answer as long as it lives.
+    /// Its instruments answer as long as it exists.
     _mock: MockBench,
     bench: Bench,
     spec: ModelSpec,
@@ -44,13 +44,16 @@ fn measured(bench: &mut Bench, id: &str, parameters: &Map<String, Value>) -> Run
 }
 
 #[test]
-fn another_speed_tells_a_flank_from_a_delay() {
+fn another_speed_distinguishes_a_flank_from_a_delay() {
     let given = json!({"load_levels": 5});
     let mut bench = Laboratory::new(Joint::JointA, "stiffness", given, &["offset", "compliance"]);
     let open = bench.diagnosis();
     let first = &open.suggestions[0];
-    let told: Vec<&str> = first.confounded_with.iter().chain([&first.effect]).map(String::as_str).collect();
-    assert!(told.contains(&"delay") && told.contains(&"directional_offset"), "at one speed both are one: {told:?}");
+    let reported: Vec<&str> = first.confounded_with.iter().chain([&first.effect]).map(String::as_str).collect();
+    assert!(
+        reported.contains(&"delay") && reported.contains(&"directional_offset"),
+        "at one speed both are one: {reported:?}"
+    );
     let asked = bench.asked().unwrap();
     assert_eq!(asked.procedure, "stiffness", "{}", asked.why);
     assert!(asked.expected_z.unwrap() > 4.0 && asked.separates.iter().any(|e| e == "delay"), "{}", asked.why);

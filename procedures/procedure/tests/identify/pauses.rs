@@ -1,4 +1,4 @@
-//! A run that is paused in a step of every kind, or killed and gone on with, says what an unbroken one says.
+//! A run that is paused in a step of every kind, or killed and continued, gives the result of an uninterrupted one.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
@@ -14,13 +14,13 @@ use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{park, spawn};
 
-/// Steps, how long after their start [s], and what is asked for then. `None`: its process is killed.
+/// Steps, time after their start [s], and the control at that time. `None`: the process is killed.
 type Due = BTreeMap<usize, (f64, Option<Control>)>;
 
-/// Rows, and what they are of the plan.
+/// Rows, and their part of the plan.
 type Acknowledged = (Option<Trace>, Done);
 
-/// Steers a run at some of its steps, and resumes it soon after it has paused.
+/// Gives controls at some steps of a run, and resumes it soon after a pause.
 struct Steer {
     controls: Sender<Demand>,
     due: Due,
@@ -29,7 +29,7 @@ struct Steer {
     rows: Option<Trace>,
     done: Done,
     continues: Option<Continues>,
-    /// Gets what was acknowledged when the process is killed.
+    /// Receives the acknowledged data when the process is killed.
     killed: Sender<Acknowledged>,
 }
 
@@ -82,7 +82,7 @@ impl Recorder for Steer {
                 Some(control) => self.controls.send(control.into()).unwrap(),
                 None => {
                     self.killed.send((self.rows.take(), self.done.clone())).unwrap();
-                    // Nothing is ever done again: no ramp, no securing.
+                    // The thread never acts again: no ramp, no securing.
                     loop {
                         park();
                     }
@@ -92,7 +92,7 @@ impl Recorder for Steer {
     }
 }
 
-/// Carries a plan out under these controls.
+/// Runs a plan under these controls.
 fn steered(bench: &mut Bench, plan: &Plan, due: Due) -> (RunEnd, RunTable, Done) {
     let (mut steer, heard, _left) = Steer::new(plan, due);
     let end = run(bench, plan, 1, &heard, &mut steer);
@@ -100,7 +100,7 @@ fn steered(bench: &mut Bench, plan: &Plan, due: Due) -> (RunEnd, RunTable, Done)
     (end, RunTable::new(plan.meta.clone(), steer.rows.unwrap()).unwrap(), steer.done)
 }
 
-/// Carries a plan out until its process is killed; the instruments are left as they are then.
+/// Runs a plan until its process is killed; the instruments keep their state.
 fn killed(mut bench: Bench, plan: &Plan, due: Due) -> (RunTable, Done) {
     let (mut steer, heard, left) = Steer::new(plan, due);
     let whole = plan.clone();
@@ -109,7 +109,7 @@ fn killed(mut bench: Bench, plan: &Plan, due: Due) -> (RunTable, Done) {
     (RunTable::new(plan.meta.clone(), rows.unwrap()).unwrap(), done)
 }
 
-/// The first step of every kind, and a moment within it.
+/// The first step of every kind, and a time within it.
 fn one_of_each_kind(plan: &Plan) -> Due {
     let mut kinds = BTreeMap::new();
     for (index, step) in plan.steps.iter().enumerate() {
@@ -117,7 +117,7 @@ fn one_of_each_kind(plan: &Plan) -> Due {
         let (drive, place) = (std::mem::discriminant(&step.drive), std::mem::discriminant(&step.place));
         let braked = step.brake.largest() > 0.0;
         let kind = format!("{:?} {:?} {drive:?} {place:?} {way:?} {braked}", step.phase, step.before);
-        // A ramp of current ends where the joint breaks away, a hunt where the edge is found: they are left early.
+        // A current ramp ends with the breakaway, an edge search when the edge is found, so that both are left early.
         let within_s = match (&step.drive, step.place) {
             (Drive::Current { from_s, .. }, _) => from_s + 0.8,
             (_, Place::Edge(_)) => 1.0,
@@ -128,7 +128,7 @@ fn one_of_each_kind(plan: &Plan) -> Due {
     kinds.into_values().collect()
 }
 
-/// Both carry noise: the value may lie outside the unbroken run's interval by half its width.
+/// Both contain noise: the value may be outside the uninterrupted run's interval by half its width.
 fn same(what: &str, found: &Identification, unbroken: &Identification) {
     assert_eq!(found.verdict, unbroken.verdict, "{what}: {}", found.summary);
     for whole in &unbroken.quantities {
@@ -157,8 +157,8 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
     let unbroken = conduct_knowing(&mut bench, &facts, procedure, given).unwrap().identification.unwrap();
     let finds = procedure.finds();
     for quantity in &unbroken.quantities {
-        let is_told = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
-        assert!(is_told, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
+        let is_declared = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
+        assert!(is_declared, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
     }
 
     let (_mock, mut bench) = open();
@@ -168,7 +168,7 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
     same(&format!("{id}, paused"), &procedure.identify(&values, &table).unwrap(), &unbroken);
 
     let measured = plan.steps.iter().filter(|step| step.phase == Phase::Measure).count();
-    // A plan of nothing but a warm-up may end as soon as the joint is warm.
+    // A plan that is only a warm-up may end as soon as the joint is warm.
     let middle = if measured > 0 { plan.steps.len() - measured.div_ceil(2) } else { 1 };
     let within_s = 0.3_f64.min(0.5 * plan.steps[middle].duration_s());
 
@@ -258,7 +258,7 @@ fn an_encoder_is_the_same_encoder() {
 
 const SHORT: &str = r#"{"heat_s": 0.0, "warm_up_s": 4.0, "load_levels": 3, "periods": 2, "sample_rate_hz": 100.0}"#;
 
-/// The steps of compensation in a campaign, and what it is planned from.
+/// The compensation steps of a campaign, and the data of their planning.
 fn campaign(settings: &MockSettings) -> (MockBench, Bench, Plan, BenchFacts) {
     let mock = MockBench::start(settings.clone()).unwrap();
     let bench = mock.open_bench("mock").unwrap();
@@ -297,7 +297,7 @@ fn a_campaign_feeds_forward_the_friction_that_it_has_found() {
     );
     assert!(learnt_a.iter().zip(&planned_a).any(|(a, planned_a)| (a - planned_a).abs() > 1e-2 * a), "{planned_a:?}");
 
-    // Killed when friction is long behind it: the run that goes on has learnt from the first.
+    // Killed long after the friction part: the continued run uses the friction of the first.
     let (mock, bench, plan, facts) = campaign(&MockSettings::new(Joint::JointB, 4).hiding(&["stribeck"]));
     let (first, done) = killed(bench, &plan, [(waits.start as usize + 2, (1.0, None))].into());
     mock.orphan();
@@ -312,7 +312,7 @@ fn a_campaign_feeds_forward_the_friction_that_it_has_found() {
 }
 
 #[test]
-fn a_campaign_that_cannot_tell_the_friction_feeds_none_forward() {
+fn a_campaign_without_identified_friction_feeds_none_forward() {
     let settings = MockSettings::new(Joint::JointA, 1);
     let (_mock, mut bench, mut plan, _) = campaign(&settings);
     // Friction that was never measured.

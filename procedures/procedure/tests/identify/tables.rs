@@ -1,4 +1,4 @@
-//! Runs made up without any bench, with known figures and noise.
+//! Simulated runs without a bench, with known parameters and noise.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_procedure::identification::{Identification, Verdict};
@@ -13,7 +13,7 @@ use std::cell::Cell;
 const GEAR: f64 = 177.8;
 const TORQUE_CONSTANT: f64 = 0.0406;
 
-/// Two repeats of eleven speeds both ways, 0.8 s each at 250 Hz; the torque is a function of speed.
+/// Two repeats of eleven speeds in both directions, 0.8 s each at 250 Hz; the torque is a function of speed.
 fn staircase(torque_nm: impl Fn(f64) -> f64) -> RunTable {
     let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];
     let mut trace = Trace::new(names.iter().map(|name| Channel::new(*name)).collect());
@@ -55,7 +55,7 @@ fn identified_with(id: &str, given: serde_json::Value, run: &RunTable) -> Identi
     procedure.identify(&values, run).unwrap()
 }
 
-/// The interval holds the truth and is no wider than `share` of it to either side.
+/// The interval contains the truth, with a half width of at most `share` of it.
 fn check(found: &Identification, name: &str, truth: f64, share: f64) {
     let quantity = found.quantity(name).unwrap_or_else(|| panic!("no {name}"));
     let [low, high] = quantity.ci95.unwrap();
@@ -84,7 +84,7 @@ fn friction_finds_every_figure_of_the_document() {
 }
 
 #[test]
-fn directions_that_differ_are_told_apart() {
+fn directions_that_differ_are_distinguished() {
     let found = identified("friction", &staircase(|v| joint_a(v) + 0.002));
     assert!(found.summary.contains("directions differ"), "{}", found.summary);
     let positive = found.quantity("tau_c_positive").unwrap().value;
@@ -104,7 +104,7 @@ fn without_a_rise_towards_standstill_none_is_made_up() {
 
 #[test]
 fn a_rise_that_could_hide_is_not_decided() {
-    // From speed to speed by so little that speed explains nearly all of it.
+    // A wave over speed that is so small that speed explains nearly all of it.
     let wave = |v: f64| 0.002 * (7.0 * v.ln_1p()).sin();
     let found = identified("friction", &staircase(|v| (0.030 + wave(v.abs())) * v.signum() + 1.512e-4 * v));
     assert_eq!(found.verdict, Verdict::Inconclusive, "{}", found.summary);
@@ -112,8 +112,8 @@ fn a_rise_that_could_hide_is_not_decided() {
 }
 
 #[test]
-fn what_speed_does_not_explain_is_told() {
-    // From leg to leg the joint meets something else.
+fn scatter_that_speed_does_not_explain_is_reported() {
+    // A different torque in every leg.
     let sample = Cell::new(0_u32);
     let found = identified(
         "friction",

@@ -1,4 +1,4 @@
-//! Brake runs: the coil current up and down at several speeds, iron that remembers, poles that pull.
+//! Brake runs: the coil current up and down at several speeds, iron with hysteresis, and cogging poles.
 
 use super::{Coloured, Dice, rounded, table};
 use jointbench_instrument::{Kind, Meta, RunTable};
@@ -15,13 +15,14 @@ pub const PAIRS: &[[&str; 2]] = &[
 const STEP_S: f64 = 0.02;
 const ROWS: usize = 600;
 
-/// Iron and air. Torques as shares of the full one, currents of the rated one. Zero where nothing is hidden.
+/// Iron and air gap. Torques as shares of the full torque, currents as shares of the rated current. Zero if an effect
+/// is not hidden.
 #[derive(Default)]
 struct Iron {
-    /// Hill's curve: half of all at this current, with this steepness.
+    /// Hill's curve: half of the torque at this current, with this steepness.
     half: f64,
     steep: f64,
-    /// Domains that jump back when the current has come down so far, each with its part.
+    /// Domains that switch back when the current has fallen this far, each with its share.
     domains: Vec<(f64, f64)>,
     eddies: f64,
     air: f64,

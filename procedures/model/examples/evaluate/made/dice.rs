@@ -15,7 +15,7 @@ impl Dice {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    /// Every factor is as likely: for sizes of things.
+    /// Log-uniform, for magnitudes.
     pub fn size(&mut self, low: f64, high: f64) -> f64 {
         self.uniform(low.ln(), high.ln()).exp()
     }
@@ -47,7 +47,7 @@ impl Dice {
     }
 }
 
-/// White noise and noise that remembers (AR(1)), together of a given RMS.
+/// White and correlated (AR(1)) noise with a given total RMS.
 pub struct Coloured {
     white: f64,
     slow: f64,

@@ -1,4 +1,4 @@
-//! Encoder runs: two encoders on one shaft, one of them off centre, tilted, late, warm, loose.
+//! Encoder runs: two encoders on one shaft, one of them eccentric, tilted, delayed, warm, loose.
 
 use super::{Coloured, Dice, rounded, table};
 use jointbench_instrument::{Kind, Meta, RunTable};
@@ -25,15 +25,15 @@ pub const PAIRS: &[[&str; 2]] = &[
 
 const STEP_S: f64 = 1e-3;
 
-/// What the test encoder makes of the true angle. What is hidden is zero where it is not there.
+/// Error of the test encoder over the true angle. Parameters are zero if an effect is not hidden.
 #[derive(Default)]
 struct Ring {
     pole_pairs: f64,
-    late_s: f64,
+    delay_s: f64,
     off_centre: f64,
     tilt: f64,
     waves: (f64, f64),
-    /// Offset and unequal size of the two waves inside a pole pair.
+    /// Offset and unequal size of the two waves within a pole pair.
     crooked: (f64, f64),
     play: f64,
     warm: f64,
@@ -45,7 +45,7 @@ struct Ring {
 impl Ring {
     fn hide(&mut self, effect: &str, last_s: f64, dice: &mut Dice) {
         match effect {
-            "delay" => self.late_s = dice.size(2e-5, 9e-5) * dice.sign(),
+            "delay" => self.delay_s = dice.size(2e-5, 9e-5) * dice.sign(),
             "harmonic_1" => self.off_centre = dice.size(1e-4, 4e-3),
             "harmonic_2" => self.tilt = dice.size(1e-4, 3e-3),
             "harmonic_n" => self.waves = (*dice.pick(&[3.0, 4.0, 5.0, 6.0, 8.0, 12.0]), dice.size(1e-4, 1e-3)),
@@ -106,8 +106,12 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
                     time += STEP_S;
                     velocity += (side * pace - velocity).clamp(-3.0, 3.0);
                     angle += velocity * STEP_S;
-                    let late = angle - velocity * ring.late_s;
-                    carried = if carried.is_nan() { late } else { carried.clamp(late - ring.play, late + ring.play) };
+                    let delayed = angle - velocity * ring.delay_s;
+                    carried = if carried.is_nan() {
+                        delayed
+                    } else {
+                        carried.clamp(delayed - ring.play, delayed + ring.play)
+                    };
                     let warmth = heating * (1.0 - (-time / heats_s).exp());
                     let jump = if time > ring.slip.0 { ring.slip.1 } else { 0.0 };
                     let read = carried + ring.error(carried) + zero + ring.warm * warmth + jump + ring.zeros[repeat];

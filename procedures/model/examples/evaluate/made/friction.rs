@@ -1,5 +1,5 @@
 //! Friction runs: a staircase of speeds and loads, long turns, slow swings, in a closed velocity loop with quantised
-//! encoders, filtered velocity, a torque sensor that lags, and noise in colours.
+//! encoders, filtered velocity, a delayed torque sensor, and coloured noise.
 
 use super::joint::{Joint, Moment};
 use super::{Coloured, Dice, rounded, table};
@@ -139,8 +139,8 @@ fn record(joint: &Joint, steps: &[Step], dice: &mut Dice) -> RunTable {
                 let end = carries * v.signum();
                 bristle = end + (bristle - end) * (-stiffness * v.abs() * dt / carries).exp();
                 let bending = damping * (bristle - before) / (dt * stiffness);
-                let rest = drive - load / joint.gear - bristle - bending - joint.beside(&at, last_s);
-                // Implicit where the bristles stick: they are stiffer than the step is short.
+                let rest = drive - load / joint.gear - bristle - bending - joint.without_hysteresis(&at, last_s);
+                // Implicit while the bristles stick, because their stiffness requires a shorter time step otherwise.
                 let sticks = if bristle.abs() < 0.98 * carries { dt * (damping + stiffness * dt) } else { 0.0 };
                 v += rest / (joint.inertia + sticks) * dt;
                 q += v * dt;
@@ -148,7 +148,7 @@ fn record(joint: &Joint, steps: &[Step], dice: &mut Dice) -> RunTable {
                 warmth += (heating * heat - warmth) * dt / cooling_s;
                 time += dt;
             }
-            // Iron that saturates gives less torque for each ampere: the drive asks for more.
+            // Saturated iron gives less torque for each ampere, so that the drive needs more current.
             let largest = 2.0 * (joint.heaviest / joint.gear + joint.dry);
             let asked = drive * (1.0 + joint.iron * (2.0 * drive / largest).powi(2));
             let current = (asked + offset + noise.next(dice)) / joint.torque_constant;

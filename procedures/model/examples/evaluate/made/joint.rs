@@ -1,11 +1,11 @@
-//! A joint under a closed velocity loop: bristles that bend and slip, oil, teeth, magnets, heat.
+//! A joint in a closed velocity loop: presliding bristles, oil, teeth, magnets, heat.
 
 use super::Dice;
 
-/// What the friction of a joint may depend on at one moment.
+/// Quantities that the friction of a joint may depend on.
 pub struct Moment {
     pub velocity: f64,
-    /// Load on the motor side [Nm], its size.
+    /// Load on the motor side [Nm], absolute value.
     pub load: f64,
     pub motor: f64,
     pub link: f64,
@@ -13,7 +13,7 @@ pub struct Moment {
     pub time: f64,
 }
 
-/// A joint. What is hidden is zero where it is not there.
+/// A joint. Parameters are zero if an effect is not hidden.
 #[derive(Clone, Default)]
 pub struct Joint {
     pub torque_constant: f64,
@@ -23,7 +23,7 @@ pub struct Joint {
     pub oil: f64,
     pub fastest: f64,
     pub heaviest: f64,
-    /// How far the bristles bend [rad].
+    /// Presliding displacement [rad].
     pub bristle: f64,
     lubrication: f64,
     lubrication_speed: f64,
@@ -54,7 +54,7 @@ pub struct Joint {
 }
 
 impl Joint {
-    /// A joint with nothing hidden.
+    /// A joint without hidden effects.
     pub fn new(dice: &mut Dice) -> Self {
         let dry = dice.size(0.006, 0.05);
         let gear = *dice.pick(&[36.0, 50.0, 76.7, 100.0, 121.0, 177.8]);
@@ -126,7 +126,7 @@ impl Joint {
         }
     }
 
-    /// The most that the bristles carry before they slip [Nm].
+    /// Slip torque of the bristles [Nm].
     pub fn bristles(&self, m: &Moment) -> f64 {
         let w = m.velocity.abs();
         let x = w / self.lubrication_speed.max(1e-9);
@@ -145,8 +145,8 @@ impl Joint {
         self.dry * (round * warm + scratch + resonance) + self.lubrication * film + thinning + loaded
     }
 
-    /// What does not remember [Nm].
-    pub fn beside(&self, m: &Moment, last_s: f64) -> f64 {
+    /// Torque without hysteresis [Nm].
+    pub fn without_hysteresis(&self, m: &Moment, last_s: f64) -> f64 {
         let side = 1.0 + 0.5 * self.oil_one_sided * m.velocity.signum();
         let oil = self.oil * side * (-self.oil_warm * m.warmth).exp() + self.windage * m.velocity.abs();
         let magnets: f64 = self.teeth.iter().map(|(h, a, p)| a * (h * m.motor + p).cos()).sum();

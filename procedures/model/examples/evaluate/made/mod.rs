@@ -1,4 +1,4 @@
-//! Measurements that are made up here: simulated machines that share no formula and no code with the library.
+//! Simulated measurements: machines that share no formula and no code with the library.
 
 mod brake;
 mod dice;
@@ -11,14 +11,14 @@ pub use dice::{Coloured, Dice};
 pub use friction::make as friction_run;
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 
-/// What is right about a case.
+/// The correct answer of a case.
 #[derive(Clone, Default)]
 pub struct Answer {
     /// One group for each hidden effect: ids of which one has to be found.
     pub accept: Vec<Vec<String>>,
-    /// Ids that do no harm.
+    /// Ids that are accepted, but not required.
     pub optional: Vec<String>,
-    /// Something is hidden that the library does not have.
+    /// Something is hidden that the library does not contain.
     pub unknown: bool,
 }
 
@@ -68,10 +68,10 @@ const FAMILIES: [Family; 4] = [
     Family { name: "brake", make: brake::make, singles: brake::SINGLES, pairs: brake::PAIRS, unknown: &[], nulls: 2 },
 ];
 
-/// Effects that one and the same motion shows alike: load and motion change their signs together.
+/// Effects that one motion shows alike, because load and motion change their signs together.
 const ALIKE: [[&str; 2]; 1] = [["directional_offset", "backlash"]];
 
-/// All cases of one round, one after the other: every round has other machines, noises and sizes.
+/// All cases of one round in order: every round has other machines, noises and sizes.
 pub fn round(number: u64) -> impl Iterator<Item = Case> {
     FAMILIES.iter().enumerate().flat_map(move |(f, family)| {
         let singles = family.singles.iter().map(|h| (vec![*h], false));
@@ -93,7 +93,7 @@ pub fn round(number: u64) -> impl Iterator<Item = Case> {
     })
 }
 
-/// A run with nothing hidden, families in turn; every third one lacks a column that it could do without.
+/// A run without hidden effects, with families in turn; every third one lacks an optional column.
 pub fn null(number: u64) -> Case {
     let family = &FAMILIES[number as usize % FAMILIES.len()];
     let mut dice = Dice::new(900_000 + number);
@@ -118,7 +118,7 @@ fn without(run: &RunTable, column: &str) -> RunTable {
     table(run.meta().clone(), kept.map(|c| c.name.clone()).collect(), columns)
 }
 
-/// A table from its columns. The simulations write what a table accepts.
+/// A table from its columns. The simulations produce valid tables.
 pub fn table(meta: Meta, names: Vec<String>, columns: Vec<Vec<f64>>) -> RunTable {
     let channels = names.into_iter().map(Channel::new).collect();
     RunTable::new(meta, Trace::from_columns(channels, columns)).expect("a simulated run is a valid table")

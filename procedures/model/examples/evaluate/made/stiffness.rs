@@ -1,4 +1,4 @@
-//! Stiffness runs: a joint turned against a brake whose torque goes from level to level, and the twist in between.
+//! Stiffness runs: a joint turned against a brake whose torque changes from level to level, with its twist.
 
 use super::{Coloured, Dice, rounded, table};
 use jointbench_instrument::{Kind, Meta, RunTable};
@@ -23,15 +23,15 @@ pub const PAIRS: &[[&str; 2]] = &[
 
 const STEP_S: f64 = 0.01;
 
-/// A train of gears. What is hidden is zero where it is not there. Lengths as shares of the twist at full torque.
+/// A gear train. Parameters are zero if an effect is not hidden. Lengths as shares of the twist at full torque.
 #[derive(Default)]
 struct Train {
     rest: f64,
     gap: f64,
-    /// Share of the stiffness that comes with more teeth, or of teeth that give way at first.
+    /// Share of the stiffness from additional teeth in contact, or from teeth that yield at first.
     more_teeth: f64,
     soft_teeth: f64,
-    /// Dry contacts: how far each bends before it slips, and how much it carries.
+    /// Dry contacts: deflection before slip, and torque of each.
     contacts: Vec<(f64, f64)>,
     uneven: (f64, f64, f64),
     warm: f64,
@@ -59,8 +59,8 @@ impl Train {
         }
     }
 
-    /// Twist of the elastic part under a torque, both as shares of the full ones: torque = twist + more·twist³ solved
-    /// for the twist, and teeth that give way at first.
+    /// Twist of the elastic part under a torque, both as shares of the full values: torque = twist + more·twist³
+    /// solved for the twist, and teeth that yield at first.
     fn spring(&self, torque: f64) -> f64 {
         let mut twist = torque;
         for _ in 0..12 {

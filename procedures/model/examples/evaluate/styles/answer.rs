@@ -1,4 +1,4 @@
-//! What is right about a run.
+//! The correct answer of a run.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -14,14 +14,14 @@ pub struct Answer {
     pub outside: Option<String>,
     /// For each hidden effect the ids that this data cannot distinguish from it.
     pub acceptable: BTreeMap<String, Vec<String>>,
-    /// Ids that do no harm.
+    /// Ids that are accepted, but not required.
     pub optional: Vec<String>,
-    /// Where this is false silence is right.
+    /// If false, no effect has to be named.
     pub identifiable: bool,
     pub verdict: String,
-    /// True parameters that mean the same in the library.
+    /// True parameters with the same meaning in the library.
     pub truth: BTreeMap<String, f64>,
-    /// Size of each hidden effect in standard errors, given everything else that is true.
+    /// Size of each hidden effect in standard errors, given all other true effects.
     pub sigma: BTreeMap<String, f64>,
     pub facts: Map<String, Value>,
 }

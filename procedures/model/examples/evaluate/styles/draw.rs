@@ -1,8 +1,8 @@
-//! What is hidden in a run.
+//! Hidden effects of a run.
 
 use crate::made::Dice;
 
-/// Effects that the machine has and its model lacks, and what no effect of the library is.
+/// Effects of the machine that its model lacks, and those outside the library.
 #[derive(Default, Clone)]
 pub struct Plan {
     pub hidden: Vec<&'static str>,

@@ -1,14 +1,14 @@
-//! How far the data of a run decides what is hidden in it, given the truth.
+//! Identifiability of hidden effects in the data of a run, given the truth.
 
 use super::answer::Answer;
 use super::least_squares::regression;
 use super::recording::{Part, Recording};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// An effect is identifiable from so many standard errors on.
+/// Standard errors from which on an effect is identifiable.
 const IDENTIFIABLE: f64 = 6.0;
-/// A rival stands for an effect that differs from it by fewer standard errors than this.
-const TOLD_APART: f64 = 3.0;
+/// Standard errors from which on an alternative is distinguished from an effect.
+const DISTINGUISHED: f64 = 3.0;
 
 pub fn answer(recording: &Recording) -> Answer {
     let sigma: BTreeMap<&str, f64> = recording.hidden.iter().map(|h| (h.id, size(recording, h, None))).collect();
@@ -38,10 +38,10 @@ pub fn answer(recording: &Recording) -> Answer {
     }
 }
 
-/// Standard errors of a part beside all others that are there, and beside a rival.
-fn size(recording: &Recording, part: &Part, rival: Option<&Part>) -> f64 {
+/// Standard errors of a part, given all other present parts and an alternative.
+fn size(recording: &Recording, part: &Part, alternative: Option<&Part>) -> f64 {
     let others = recording.base.iter().chain(&recording.hidden).chain(&recording.outside);
-    let others = others.filter(|o| !std::ptr::eq(*o, part)).chain(rival);
+    let others = others.filter(|o| !std::ptr::eq(*o, part)).chain(alternative);
     let columns: Vec<&[f64]> = std::iter::once(part)
         .chain(others)
         .map(|p| p.values.as_slice())
@@ -57,8 +57,10 @@ fn size(recording: &Recording, part: &Part, rival: Option<&Part>) -> f64 {
 fn alike(recording: &Recording, part: &Part) -> Vec<String> {
     let absent =
         |r: &&Part| r.id != part.id && recording.base.iter().chain(&recording.hidden).all(|there| there.id != r.id);
-    let rivals = recording.rivals.iter().filter(absent);
-    let ids: BTreeSet<&str> =
-        rivals.filter(|rival| size(recording, part, Some(rival)) < TOLD_APART).map(|rival| rival.id).collect();
+    let alternatives = recording.alternatives.iter().filter(absent);
+    let ids: BTreeSet<&str> = alternatives
+        .filter(|alternative| size(recording, part, Some(alternative)) < DISTINGUISHED)
+        .map(|alternative| alternative.id)
+        .collect();
     std::iter::once(part.id).chain(ids).map(str::to_owned).collect()
 }

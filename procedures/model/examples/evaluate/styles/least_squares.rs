@@ -1,8 +1,8 @@
-//! Least squares with standard errors that hold under correlated errors.
+//! Least squares with standard errors that are robust against correlated errors.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Coefficients and standard errors of a regression whose errors depend on each other within blocks of rows (Liang and
+/// Coefficients and standard errors of a regression whose errors are correlated within blocks of rows (Liang and
 /// Zeger 1986).
 pub struct Regression {
     pub coefficients: Vec<f64>,
@@ -11,7 +11,7 @@ pub struct Regression {
 
 const BLOCKS: usize = 30;
 
-/// Regression of `y` on columns. `None` where a column is no more than a sum of the others.
+/// Regression of `y` on columns. `None` if the columns are linearly dependent.
 pub fn regression(columns: &[&[f64]], y: &[f64]) -> Option<Regression> {
     let (n, p) = (y.len(), columns.len());
     let scales: Vec<f64> = columns.iter().map(|c| (c.iter().map(|v| v * v).sum::<f64>() / n as f64).sqrt()).collect();

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
-/// Cases that are made up here: scored, or written as folders.
+/// Simulated cases: scored, or written as folders.
 pub fn measure(asked: &Asked) -> Result<(), Box<dyn Error>> {
     let numbers = || (asked.first..).take(asked.count as usize);
     let kinds = MAKERS.iter().map(|(kind, _)| *kind);

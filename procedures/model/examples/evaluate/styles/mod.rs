@@ -1,5 +1,5 @@
-//! Runs of a second generator, written from the run table's contract and from physics alone. It shares no formula and no
-//! code with the library, and its laws differ from the library's where physics allows.
+//! Runs of a second generator, written from the specification of run tables and from physics. It shares no formula
+//! and no code with the library, and its laws differ from the library's where physics permits.
 
 mod answer;
 mod brake;
@@ -22,7 +22,7 @@ pub use measure::{evaluate, measure};
 use recording::Recording;
 use std::path::Path;
 
-/// A run with what is true about it.
+/// A run with its truth.
 pub struct Case {
     pub name: String,
     pub run: RunTable,
@@ -31,7 +31,7 @@ pub struct Case {
 
 type Make = fn(&mut Dice) -> Recording;
 
-/// Kinds with what makes their runs.
+/// Kinds with their generators.
 const MAKERS: [(Kind, Make); 4] = [
     (Kind::Friction, friction::make),
     (Kind::Encoder, encoder::make),
@@ -39,7 +39,7 @@ const MAKERS: [(Kind, Make); 4] = [
     (Kind::Brake, brake::make),
 ];
 
-/// The case of a number: other numbers are other machines, excitations, effects and noises.
+/// The case of a number: other numbers have other machines, excitations, effects and noise.
 pub fn case(kind: Kind, seed: u64) -> Option<Case> {
     let (_, make) = MAKERS.iter().find(|(made, _)| *made == kind)?;
     let recording = make(&mut Dice::new(seed));

@@ -1,11 +1,11 @@
-//! A recorded run beside everything that is true about it.
+//! A recorded run with all its truth.
 
 use crate::made::table;
 use jointbench_instrument::{Meta, RunTable};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// What one cause adds to the response, row by row.
+/// Contribution of one cause to the response, row by row.
 pub struct Part {
     pub id: &'static str,
     pub values: Vec<f64>,
@@ -15,17 +15,17 @@ pub struct Recording {
     pub meta: Meta,
     pub style: &'static str,
     pub columns: Vec<(&'static str, Vec<f64>)>,
-    /// What a model of this kind predicts, as it was measured.
+    /// The response of the models of this kind, as measured.
     pub response: Vec<f64>,
-    /// Causes that the model of the meta file holds.
+    /// Causes that the model of the meta file contains.
     pub base: Vec<Part>,
     pub hidden: Vec<Part>,
     pub outside: Option<Part>,
-    /// Other causes as they would look in this run: several shapes of each.
-    pub rivals: Vec<Part>,
-    /// Parameters that mean the same in the library.
+    /// Alternative causes with their contributions in this run: several shapes of each.
+    pub alternatives: Vec<Part>,
+    /// Parameters with the same meaning in the library.
     pub truth: BTreeMap<String, f64>,
-    /// Effects that do no harm.
+    /// Effects that are accepted, but not required.
     pub optional: Vec<&'static str>,
     pub facts: Map<String, Value>,
 }
@@ -37,7 +37,7 @@ impl Recording {
     }
 }
 
-/// Ten digits: what a file holds.
+/// Ten digits, the precision of the file.
 pub fn written(value: f64) -> f64 {
     format!("{value:.9e}").parse().unwrap_or(value)
 }

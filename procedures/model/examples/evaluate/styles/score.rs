@@ -1,11 +1,11 @@
-//! Holds what is found against what is right.
+//! Compares results with the correct answers.
 
 use super::Case;
 use super::answer::Answer;
 use jointbench_model::{Discovery, ModelSpec, Options, Verdict, diagnose, discover};
 use std::error::Error;
 
-/// What was right about one case. `None` where a question does not apply.
+/// Score of one case. `None` if a question does not apply.
 #[derive(Default)]
 pub struct Score {
     /// The first suggestion is hidden.
@@ -14,9 +14,9 @@ pub struct Score {
     pub exact: Option<bool>,
     /// Nothing hidden, nothing named.
     pub silent: Option<bool>,
-    /// Nothing hidden, and the model is said to be adequate.
+    /// Nothing hidden, and the verdict is adequate.
     pub adequate: Option<bool>,
-    /// Outside the library, and called unexplained.
+    /// Outside the library, and reported as unexplained.
     pub unknown: Option<bool>,
     /// Not identifiable, and nothing wrong named.
     pub modest: Option<bool>,
@@ -69,7 +69,7 @@ pub fn score(case: &Case) -> Result<Score, Box<dyn Error>> {
     Ok(score)
 }
 
-/// A run that is refused is one without an answer.
+/// A refused run has no answer.
 fn refusal(answer: &Answer, why: &str) -> Score {
     let no = |category: &str| (answer.identifiable && answer.category == category).then_some(false);
     let hidden = no("one").or(no("two")).or(no("three"));
@@ -84,7 +84,7 @@ fn refusal(answer: &Answer, why: &str) -> Score {
     }
 }
 
-/// Hidden effects that are met one to one by added ones: how many are missed, and which were added beside.
+/// Matches hidden and added effects one to one: the number of missed ones, and the additional ones.
 fn matched<'a>(answer: &Answer, added: &[&'a str]) -> (usize, Vec<&'a str>) {
     fn best<'a>(groups: &[&Vec<String>], left: &[&'a str]) -> (usize, Vec<&'a str>) {
         let Some((group, rest)) = groups.split_first() else { return (0, left.to_vec()) };

@@ -1,9 +1,9 @@
-//! Excitations over time that several kinds share, between −1 and 1.
+//! Excitations over time of several kinds, between −1 and 1.
 
 use crate::made::Dice;
 use std::f64::consts::TAU;
 
-/// Straight lines between corners, each after so many seconds.
+/// Straight lines between corners, each after a number of seconds.
 pub fn lines(corners: &[(f64, f64)], rate_hz: f64) -> Vec<f64> {
     let mut values = Vec::new();
     let mut from = corners.first().map_or(0.0, |c| c.1);
@@ -32,7 +32,7 @@ pub fn multisine(lasts_s: f64, rate_hz: f64, dice: &mut Dice) -> Vec<f64> {
 }
 
 /// Corners at random levels.
-pub fn wander(lasts_s: f64, rate_hz: f64, dice: &mut Dice) -> Vec<f64> {
+pub fn random_walk(lasts_s: f64, rate_hz: f64, dice: &mut Dice) -> Vec<f64> {
     let (mut corners, mut time) = (vec![(0.01, 0.0)], 0.0);
     while time < lasts_s {
         let step = dice.uniform(0.8, 3.0);
@@ -116,7 +116,7 @@ pub fn play(inputs: &[f64], half: f64) -> Vec<f64> {
     inputs.iter().map(|i| after(*i)).collect()
 }
 
-/// Events that do not come again: begin, end and size as shares.
+/// Events that do not repeat: start, end and size as shares.
 pub fn events(rows: usize, dice: &mut Dice) -> Vec<f64> {
     let mut values = vec![0.0; rows];
     for _ in 0..dice.uniform(3.0, 9.0) as usize {

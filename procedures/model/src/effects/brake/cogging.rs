@@ -29,7 +29,7 @@ impl Effect for Cogging {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        // The poles that are known are no question of how many waves pass from sample to sample.
+        // The order of known poles needs no search, so that aliasing does not limit it.
         let mut forms = match (view.constants.poles, view.samples.find(Signal::Position)) {
             (Some(poles), Some(_)) => crate::effects::known_order(poles),
             _ => crate::effects::harmonic_form(view, Signal::Position, 1..=60),

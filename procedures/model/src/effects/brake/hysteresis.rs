@@ -8,11 +8,11 @@ use jointbench_instrument::Kind;
 
 pub struct Hysteresis;
 
-/// Bands of stops, evenly up to the largest reach.
+/// Bands of stop operators, evenly spaced up to the largest reach.
 const BANDS: [&str; 8] = ["h_1", "h_2", "h_3", "h_4", "h_5", "h_6", "h_7", "h_8"];
-/// Forms by their number of bands: fewer where they suffice.
+/// Forms by their number of bands, so that fewer are used if they suffice.
 const FORMS: [(&str, usize); 3] = [("bands_3", 3), ("bands_5", 5), ("bands", 8)];
-/// Stops that make up a band: a smooth density of a few numbers instead of many loose weights.
+/// Stop operators in a band: a smooth density with few coefficients instead of many independent weights.
 const STOPS: usize = 6;
 
 static INFO: EffectInfo = EffectInfo {
@@ -54,8 +54,8 @@ impl Effect for Hysteresis {
         }
         let one = |name| Form { name, linear: vec!["h"], shape: shape.clone(), grid: grid.clone() };
 
-        // A stop that reaches farther than half of the range never slips on the way back: no run can tell it from a
-        // straight line. Where the bands lie belongs to the fit: another run has another range.
+        // A stop with a reach of more than half the range never slips on the way back, so that it is confounded with
+        // a straight line. The positions of the bands are stored with the fit, because another run has another range.
         let current = view.samples.find(Signal::Current).unwrap_or_default();
         let ends = current.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), i| (l.min(*i), h.max(*i)));
         let most = (ends.1 - ends.0) / 2.0;
@@ -72,8 +72,8 @@ impl Effect for Hysteresis {
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         let current = view.samples.find(Signal::Current).unwrap_or_default();
         match form {
-            "stop" => vec![view.average(beside_rest(hysteresis_operators::stop(current, shape[0], &view.starts)))],
-            "dahl" => vec![view.average(beside_rest(hysteresis_operators::dahl(current, shape[0], &view.starts)))],
+            "stop" => vec![view.average(relative_to_rest(hysteresis_operators::stop(current, shape[0], &view.starts)))],
+            "dahl" => vec![view.average(relative_to_rest(hysteresis_operators::dahl(current, shape[0], &view.starts)))],
             _ => {
                 let bands = FORMS.iter().find(|known| known.0 == form).map_or(BANDS.len(), |known| known.1);
                 density(current, shape[0], bands, view)
@@ -82,20 +82,21 @@ impl Effect for Hysteresis {
     }
 }
 
-/// A state beside the one in which a fall to no current leaves it: what the brake holds there is drag.
-fn beside_rest(mut state: Vec<f64>) -> Vec<f64> {
+/// A hysteresis state relative to the one after the current has fallen to zero: the torque in that state counts as
+/// drag.
+fn relative_to_rest(mut state: Vec<f64>) -> Vec<f64> {
     state.iter_mut().for_each(|z| *z += 1.0);
     state
 }
 
-/// Stops weighted by hats over their reach: each band rises to its knot and falls to the next.
+/// Stop operators weighted by hat functions of their reach: each band rises to its knot and falls to the next.
 fn density(current: &[f64], reach: f64, bands: usize, view: &View) -> Columns {
     let mut columns = vec![vec![0.0; view.len()]; bands];
     let stops = STOPS * bands;
     for k in 1..=stops {
         let place = k as f64 / STOPS as f64;
         let stop = hysteresis_operators::stop(current, reach * k as f64 / stops as f64, &view.starts);
-        let stop = view.average(beside_rest(stop));
+        let stop = view.average(relative_to_rest(stop));
         for (band, column) in columns.iter_mut().enumerate() {
             let weight = (1.0 - (place - (band + 1) as f64).abs()).max(0.0);
             if weight > 0.0 {

@@ -1,4 +1,4 @@
-//! How a hysteresis brake holds: effects of the kind `brake`. Braking torque [Nm].
+//! Effects of the kind `brake`: braking torque [Nm] of a hysteresis brake.
 
 pub(crate) mod cogging;
 pub(crate) mod drag;

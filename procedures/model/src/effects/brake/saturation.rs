@@ -7,7 +7,7 @@ use jointbench_instrument::Kind;
 
 pub struct Saturation;
 
-/// Factors of the Chebyshev polynomials of degree 2 to 8: a curve of any smooth shape.
+/// Coefficients of the Chebyshev polynomials of degree 2 to 8, for any smooth curve.
 const CURVE: [&str; 7] = ["k_2", "k_3", "k_4", "k_5", "k_6", "k_7", "k_8"];
 
 static INFO: EffectInfo = EffectInfo {
@@ -48,7 +48,7 @@ impl Effect for Saturation {
         let peak = view.peak(Signal::Current);
         let bend = Shape { name: "i_s", min: 0.05 * peak, max: 2.0 * peak, search: ShapeSearch::Smooth };
         let onset = Shape { name: "i_0", min: 0.01 * peak, max: peak, search: ShapeSearch::Smooth };
-        // Where the curve ends belongs to the fit: another run has another largest current.
+        // The range of the curve is stored with the fit, because another run has another largest current.
         let range = Shape { name: "i_max", min: peak, max: peak, search: ShapeSearch::Whole };
         let widths = crate::effects::log_grid(0.1 * peak, 1.5 * peak, 4);
         let onsets = [0.1, 0.3, 0.6].map(|o| o * peak);

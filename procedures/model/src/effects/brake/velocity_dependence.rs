@@ -8,7 +8,7 @@ use jointbench_instrument::Kind;
 
 pub struct VelocityDependence;
 
-/// Speeds that differ less than by this factor are one.
+/// Speeds with a smaller ratio count as equal.
 const SEVERAL: f64 = 1.2;
 
 static INFO: EffectInfo = EffectInfo {
@@ -34,7 +34,7 @@ impl Effect for VelocityDependence {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        // At one speed it is one with the torque itself.
+        // At a single speed the effect is identical to the torque itself.
         let several = crate::effects::speed_range(view).is_some_and(|(slow, fast)| fast > SEVERAL * slow);
         if !several {
             return Vec::new();

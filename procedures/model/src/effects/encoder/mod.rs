@@ -1,4 +1,4 @@
-//! What parts a test encoder from a reference: effects of the kind `encoder`. Test minus reference [rad].
+//! Effects of the kind `encoder`: test minus reference encoder [rad].
 
 pub(crate) mod delay;
 pub(crate) mod direction_hysteresis;

@@ -31,8 +31,8 @@ impl Effect for PolePeriod {
         INFO
     }
 
-    /// However far it turns between two samples: their angles are known, and a wave that is left out comes back as a lower
-    /// order that is none.
+    /// All orders of known pole pairs are included, even beyond the sampling limit: an omitted wave would alias to a
+    /// lower order that does not exist.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let orders = match view.constants.pole_pairs {
             Some(p) => p..=p,

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 pub struct StartupOffset;
 
-/// A run of more repeats than this has more offsets than can be searched for.
+/// Largest number of offsets that can be searched for.
 const MOST: usize = 256;
 
 /// One offset for each repeat after the first.
@@ -63,7 +63,7 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    /// Two ways there and back at each power-up.
+    /// Two motions back and forth after each power-up.
     fn started(power_ups: usize) -> RunTable {
         const WAY: usize = 125;
         let names = ["time_s", "reference_position_rad", "test_position_rad", "segment", "repeat"];

@@ -7,7 +7,7 @@ use jointbench_instrument::Kind;
 
 pub struct Cogging;
 
-/// Share of a turn that has to be seen.
+/// Least covered share of a turn.
 const LEAST_TURNED: f64 = 1.0 / 3.0;
 
 static INFO: EffectInfo = EffectInfo {
@@ -32,7 +32,8 @@ impl Effect for Cogging {
         INFO
     }
 
-    /// None where the motor stayed at a few places: what errs about the middle of a swing is a wave over them.
+    /// Not visible if the motor stayed at a few positions: a form error around the middle of a swing would look like
+    /// a wave over them.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let mut forms = match view.constants.followed_hz {
             Some(_) => crate::effects::harmonic_form(view, Signal::Position, 1..=40),

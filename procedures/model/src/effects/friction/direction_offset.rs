@@ -33,6 +33,6 @@ impl Effect for DirectionOffset {
     }
 
     fn same_as(&self, view: &View) -> Option<&'static str> {
-        view.goes_one_way().then_some("coulomb")
+        view.is_one_directional().then_some("coulomb")
     }
 }

@@ -7,7 +7,7 @@ use jointbench_instrument::Kind;
 
 pub struct Drift;
 
-/// Share of the run's length.
+/// As a share of the run's length.
 const SOONEST: f64 = 0.1;
 
 static INFO: EffectInfo = EffectInfo {
@@ -33,7 +33,8 @@ impl Effect for Drift {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let line = Form::linear(&["d"]);
-        // What settles sooner is an offset in most of the run, and what takes longer than it is a line to 4 %.
+        // A shorter time constant is an offset for most of the run, and a longer one than the run is a line within 4
+        // %.
         let high = view.get(Signal::Time).iter().fold(0.0f64, |m, t| m.max(*t));
         if high <= 0.0 {
             return vec![line];

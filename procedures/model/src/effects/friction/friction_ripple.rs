@@ -31,7 +31,7 @@ impl Effect for FrictionRipple {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        // Beside what the way since a reversal and the speed explain, a wave that was hardly there once is one.
+        // With nuisance columns for reversals and speed, a wave of nearly one period is sufficient.
         if view.constants.followed_hz.is_some() {
             const SEEN: f64 = 0.8;
             let first = (SEEN / view.turns(Signal::Link)).ceil().clamp(1.0, 25.0) as u32;
@@ -59,6 +59,6 @@ impl Effect for FrictionRipple {
     }
 
     fn same_as(&self, view: &View) -> Option<&'static str> {
-        (view.goes_one_way() && view.is_direct()).then_some("cogging")
+        (view.is_one_directional() && view.is_direct()).then_some("cogging")
     }
 }

@@ -8,7 +8,7 @@ use jointbench_instrument::Kind;
 
 pub struct LoadLinear;
 
-/// Teeth that take nearly all of the load away lock: what seems larger is a load of another sign or unit.
+/// Gear teeth lock at this share of the load; a larger one indicates a wrong sign or unit of the load.
 const MOST: f64 = 0.9;
 
 static INFO: EffectInfo = EffectInfo {

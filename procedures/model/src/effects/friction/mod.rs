@@ -1,4 +1,4 @@
-//! What a turning joint asks of its motor: effects of the kind `friction`. Motor side, positive torque drives positive
+//! Effects of the kind `friction`: motor torque of a moving joint. Motor side; positive torque drives positive
 //! velocity.
 
 pub(crate) mod cogging;

@@ -37,7 +37,7 @@ impl Effect for Presliding {
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(low, high, 7).into_iter().map(|d| vec![d]).collect();
         let one = |name| Form { name, linear: vec!["tau_p"], shape: vec![reach], grid: grid.clone() };
         let mut forms = vec![one("dahl"), one("stop"), one("maxwell_slip")];
-        // A trajectory that is judged sample by sample decides the fall with speed through the Stribeck effect.
+        // For a trajectory judged sample by sample, the Stribeck effect determines the decrease with speed.
         let apart = !view.chunks.is_empty();
         let range = crate::effects::speed_range(view).filter(|(slow, fast)| apart && *fast > 3.0 * slow);
         if let Some((slow, fast)) = range {
@@ -53,10 +53,12 @@ impl Effect for Presliding {
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         let position = view.samples.find(Signal::Position).unwrap_or_default();
         let direction = view.samples.find(Signal::Direction).unwrap_or_default();
-        let late = |state: Vec<f64>| state.iter().zip(direction).map(|(z, d)| z - d).collect();
+        let relative_to_direction = |state: Vec<f64>| state.iter().zip(direction).map(|(z, d)| z - d).collect();
         vec![view.average(match form {
-            "dahl" => late(hysteresis_operators::dahl(position, shape[0], &view.starts)),
-            "maxwell_slip" => late(hysteresis_operators::maxwell_slip(position, shape[0], &view.starts)),
+            "dahl" => relative_to_direction(hysteresis_operators::dahl(position, shape[0], &view.starts)),
+            "maxwell_slip" => {
+                relative_to_direction(hysteresis_operators::maxwell_slip(position, shape[0], &view.starts))
+            }
             "lugre" => {
                 let velocity = view.samples.find(Signal::Velocity).unwrap_or_default();
                 let strength: Vec<f64> =
@@ -64,7 +66,7 @@ impl Effect for Presliding {
                 let state = hysteresis_operators::lugre(position, &strength, shape[0], &view.starts);
                 state.iter().zip(&strength).zip(direction).map(|((z, g), d)| z - g * d).collect()
             }
-            _ => late(hysteresis_operators::stop(position, shape[0], &view.starts)),
+            _ => relative_to_direction(hysteresis_operators::stop(position, shape[0], &view.starts)),
         })]
     }
 

@@ -41,7 +41,7 @@ fn fade(column: &mut [f64], velocity_rad_s: &[f64], per_speed: f64, delta: f64) 
     }
 }
 
-/// Speeds and exponents that this data can tell apart: between its slowest motion and a third of its fastest.
+/// Speeds and exponents that this data can identify: between its slowest motion and a third of its fastest.
 pub(crate) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)> {
     if let Some(fastest) = view.constants.speeds {
         return Some(sampled(fastest));
@@ -60,7 +60,8 @@ pub(crate) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)
     Some((shape, grid))
 }
 
-/// The same where samples are judged: also what fades within a reversal, of which other forms stand beside the model.
+/// The same for a run that is judged sample by sample. It includes speeds within a reversal, because nuisance columns
+/// represent other forms there.
 fn sampled(fastest: f64) -> (Vec<Shape<'static>>, Vec<Vec<f64>>) {
     const SPEEDS: [f64; 2] = [0.002, 0.5];
     let [low, high] = SPEEDS.map(|share| share * fastest);

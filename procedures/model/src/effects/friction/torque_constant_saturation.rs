@@ -8,7 +8,7 @@ use std::iter;
 
 pub struct TorqueConstantSaturation;
 
-/// Below it looks like friction that grows with the load, above like a stop.
+/// Below the lower limit it looks like load-dependent friction, above the upper one like a stop.
 const LEAST_POWER: f64 = 2.0;
 const LARGEST_POWER: f64 = 4.0;
 
@@ -33,7 +33,8 @@ impl Effect for TorqueConstantSaturation {
         INFO
     }
 
-    /// Without a load the torque goes with the speed: any power of it is one more curve over that.
+    /// Not visible without a load: then the torque follows the speed, and any power of it is only another curve over
+    /// speed.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let shape = vec![Shape { name: "n", min: LEAST_POWER, max: LARGEST_POWER, search: ShapeSearch::Smooth }];
         let grid = vec![vec![3.0]];

@@ -33,7 +33,7 @@ impl Effect for ViscousAsymmetry {
     }
 
     fn same_as(&self, view: &View) -> Option<&'static str> {
-        view.goes_one_way().then_some("viscous")
+        view.is_one_directional().then_some("viscous")
     }
 
     fn corrects(&self) -> Option<&'static str> {

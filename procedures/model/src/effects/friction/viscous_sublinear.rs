@@ -24,7 +24,7 @@ static INFO: EffectInfo = EffectInfo {
     needs: &[],
 };
 
-/// Forms where samples are judged: also those that flatten within a reversal.
+/// Forms for a run that is judged sample by sample, including those that saturate within a reversal.
 fn sampled(fastest: f64) -> Vec<Form<'static>> {
     const LIMITS: [f64; 2] = [0.007, 0.5];
     let shape = vec![Shape { name: "alpha", min: 0.15, max: 0.85, search: ShapeSearch::Smooth }];

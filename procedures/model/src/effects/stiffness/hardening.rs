@@ -35,7 +35,7 @@ impl Effect for Hardening {
         let loads = |low: f64| crate::effects::log_grid(low * peak, 2.0 * peak, 6);
         let sharpness = Shape { name: "n", min: 1.0, max: 5.0, search: ShapeSearch::Smooth };
         let of_root = loads(0.01).into_iter().map(|t| vec![t]).collect();
-        // What ends at lower loads is backlash.
+        // A curve that ends at lower loads is backlash.
         let of_start = loads(0.05).into_iter().flat_map(|t| [vec![t, 1.3], vec![t, 2.5]]).collect();
         vec![
             Form { name: "cubic", linear: vec!["kappa"], shape: Vec::new(), grid: vec![Vec::new()] },

@@ -1,4 +1,4 @@
-//! How a joint twists: effects of the kind `stiffness`. Motor position by gear ratio minus link position [rad].
+//! Effects of the kind `stiffness`: motor position divided by the gear ratio, minus link position [rad].
 
 pub(crate) mod backlash;
 pub(crate) mod compliance;

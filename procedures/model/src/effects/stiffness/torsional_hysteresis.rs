@@ -8,7 +8,7 @@ use jointbench_instrument::Kind;
 
 pub struct TorsionalHysteresis;
 
-/// Parameters of the parts of a sum.
+/// Parameters of the components of a sum.
 const SIZES: [&str; 3] = ["eta", "eta_2", "eta_3"];
 const REACHES: [&str; 3] = ["tau_eta", "tau_eta_2", "tau_eta_3"];
 
@@ -56,7 +56,7 @@ impl Effect for TorsionalHysteresis {
         shape.iter().enumerate().map(column).collect()
     }
 
-    /// Dry contacts that slip one after the other, each with a strength of its own.
+    /// Dry contacts that slip one after the other, each with its own strength.
     fn extended(&self, form: &Form) -> Option<(&'static str, Form<'static>)> {
         let name = match form.name {
             "dahl" | "dahl_and_stops" => "dahl_and_stops",

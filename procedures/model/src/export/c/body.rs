@@ -1,4 +1,4 @@
-//! One term after the other as statements, with the signals and states that they use.
+//! Terms of a model as C statements, with the signals and states that they use.
 
 use crate::export::c::expression::{c, number};
 use crate::export::parts::{Part, PartColumn, Parts};
@@ -18,9 +18,9 @@ pub struct Body {
     /// Declarations of the states.
     pub states: Vec<String>,
     pub statements: Vec<String>,
-    /// A state follows time.
+    /// Whether a state depends on the time step.
     pub uses_step: bool,
-    /// Effects that follow their signal beyond a dead band.
+    /// Effects that follow their signal through a dead band.
     banded: Vec<String>,
 }
 
@@ -30,7 +30,7 @@ impl Body {
         let first = inputs.first().copied();
         inputs.retain(|s| parts.uses(s.signal));
         if inputs.is_empty() {
-            // A struct must not be empty.
+            // An empty struct is not allowed in C.
             inputs.extend(first);
         }
         let motion = fit.scope.as_ref().map_or(Motion::default(), |s| s.motion);
@@ -41,9 +41,9 @@ impl Body {
             body.statements
                 .push(format!("/* {} */", suffix::ascii(if part.title.is_empty() { part.effect } else { part.title })));
             for (i, column) in part.columns.iter().enumerate() {
-                match part.factors.get(i) {
+                match part.coefficients.get(i) {
                     Some((name, _)) => body.column(part, i, &format!("p->{}_{name}", part.effect), column),
-                    None if part.factors.is_empty() => body.column(part, i, "1.0", column),
+                    None if part.coefficients.is_empty() => body.column(part, i, "1.0", column),
                     None => {}
                 }
             }
@@ -51,10 +51,10 @@ impl Body {
         body
     }
 
-    /// The input's field.
+    /// The name of the input field.
     pub fn field(&self, signal: &NamedSignal) -> String {
         match signal.signal {
-            // It carries its unit already, and characters that C may not know.
+            // Such a column already contains its unit, and may contain characters that C does not allow.
             Signal::Column(column) => suffix::of(column),
             _ => suffix::named(signal.name, &self.motion.label(signal.unit)),
         }
@@ -65,14 +65,14 @@ impl Body {
         named.map_or_else(String::new, |s| format!("u->{}", self.field(s)))
     }
 
-    fn column(&mut self, part: &Part, place: usize, factor: &str, column: &PartColumn) {
+    fn column(&mut self, part: &Part, place: usize, coefficient: &str, column: &PartColumn) {
         let effect = part.effect;
         let parameter = |p: usize| part.shape.get(p).map(|(name, _)| format!("p->{effect}_{name}"));
         let shape = |p: usize| parameter(p).unwrap_or_default();
         match column {
             PartColumn::Formula(formula) => {
                 let formula = c(formula, &|signal| self.input(signal), &shape);
-                self.statements.push(format!("sum += {factor} * {formula};"));
+                self.statements.push(format!("sum += {coefficient} * {formula};"));
             }
             PartColumn::Memory { rule, signal, reach, end, formula } => {
                 let state = if place == 0 { format!("{effect}_z") } else { format!("{effect}_z_{}", place + 1) };
@@ -83,7 +83,7 @@ impl Body {
                 let z = self.remember(effect, *rule, *signal, &state, &shape(*reach), &end);
                 let of = |p: usize| parameter(p).unwrap_or_else(|| z.clone());
                 let formula = c(formula, &|signal| self.input(signal), &of);
-                self.statements.push(format!("sum += {factor} * {formula};"));
+                self.statements.push(format!("sum += {coefficient} * {formula};"));
             }
             PartColumn::Band { stops, bands, band } => {
                 let state = format!("{effect}_z");
@@ -94,13 +94,13 @@ impl Body {
                 self.statements.push(format!("for (int k = 1; k <= {stops}; k++) {{"));
                 let place = format!("fabs(k * {} / {} - {})", number(*bands as f64), number(*stops as f64), band + 1);
                 self.statements
-                    .push(format!("    sum += {factor} * fmax(0.0, 1.0 - {place}) * (s->{state}[k - 1] + 1.0);"));
+                    .push(format!("    sum += {coefficient} * fmax(0.0, 1.0 - {place}) * (s->{state}[k - 1] + 1.0);"));
                 self.statements.push("}".into());
             }
         }
     }
 
-    /// The state follows its signal. Returns what it is.
+    /// Declares a state that follows its signal. Returns the expression of the state.
     fn remember(&mut self, effect: &str, rule: Rule, signal: Signal, state: &str, reach: &str, end: &str) -> String {
         if rule == Rule::MaxwellSlip {
             const ELEMENTS: usize = hysteresis_operators::MAXWELL_ELEMENTS;
@@ -127,7 +127,7 @@ impl Body {
         z
     }
 
-    /// Stops with reaches evenly up to the largest.
+    /// Stop operators with reaches evenly spaced up to the largest.
     fn stops(&mut self, effect: &str, state: &str, stops: usize, largest: &str) {
         self.states.push(format!("double {state}[{stops}];"));
         let reach = format!("({largest} * k / {})", number(stops as f64));
@@ -137,7 +137,7 @@ impl Body {
         self.statements.push("}".into());
     }
 
-    /// How far a signal has come since the last call.
+    /// Displacement of a signal since the last call.
     fn step(&mut self, effect: &str, signal: Signal) {
         let x = self.input(signal);
         self.states.push(format!("double {effect}_last;"));
@@ -154,10 +154,10 @@ impl Body {
     }
 }
 
-/// Name of the parameter that is it.
+/// Name of the parameter of the dead band.
 pub const DEAD_BAND: &str = "dead_band";
 
-/// How far the signal that a part remembers may swing without being followed.
+/// Dead band of the signal that a part follows.
 pub fn dead_band_of(fit: &Fit, part: &Part) -> Option<f64> {
     load_noise::dead_band(fit, load_noise::remembered(part)?)
 }

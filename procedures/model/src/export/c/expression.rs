@@ -37,7 +37,7 @@ pub fn c(e: &Expression, signal: &dyn Fn(Signal) -> String, parameter: &dyn Fn(u
     }
 }
 
-/// A literal that reads back as the same bits.
+/// A literal that is read back as the same bits.
 pub fn number(value: f64) -> String {
     format!("{value:e}")
 }

@@ -1,4 +1,5 @@
-//! A fitted model as a C99 header for a controller: one function, no memory of its own, no library but math.h.
+//! A fitted model as a C99 header for a controller: one function, without static memory, and no library except
+//! math.h.
 
 pub(crate) mod body;
 pub(crate) mod expression;
@@ -12,7 +13,7 @@ use crate::report::fit::{Fit, Parameter};
 use crate::signal::Signal;
 use std::fmt::Write;
 
-/// The header. Effects that a controller cannot compute are named in its first comment.
+/// The header. Its first comment names the effects that a controller cannot compute.
 pub fn header(fit: &Fit) -> Result<String, ModelError> {
     let parts = Parts::of(fit)?;
     let body = Body::new(fit, &parts);
@@ -74,14 +75,14 @@ pub fn header(fit: &Fit) -> Result<String, ModelError> {
     Ok(text)
 }
 
-/// Field, value and what the fit says about it. A struct must not be empty.
+/// Field, value and note of the fit. An empty struct is not allowed in C.
 fn parameters(fit: &Fit, parts: &Parts) -> Vec<(String, f64, String)> {
     let mut all = Vec::new();
     for part in &parts.parts {
         let effect = part.effect;
-        for (name, value) in part.factors.iter().chain(&part.shape) {
-            let told = fit.parameters.iter().find(|p| p.effect == effect && p.name == *name);
-            all.push((format!("{effect}_{name}"), *value, told.map(comment).unwrap_or_default()));
+        for (name, value) in part.coefficients.iter().chain(&part.shape) {
+            let parameter = fit.parameters.iter().find(|p| p.effect == effect && p.name == *name);
+            all.push((format!("{effect}_{name}"), *value, parameter.map(comment).unwrap_or_default()));
         }
         if let Some(band) = dead_band_of(fit, part) {
             let words = format!(
@@ -97,7 +98,7 @@ fn parameters(fit: &Fit, parts: &Parts) -> Vec<(String, f64, String)> {
     all
 }
 
-/// What the signal of a memory has to be like, where the fit saw another one than a controller feels.
+/// Requirements on the signal of a hysteresis state, if the fit used a smoother signal than a controller measures.
 fn fed(fit: &Fit, parts: &Parts) -> Vec<String> {
     let of_load = |part: &&Part| load_noise::remembered(part) == Some(Signal::Load);
     let effects: Vec<&str> = parts.parts.iter().filter(of_load).map(|part| part.effect).collect();

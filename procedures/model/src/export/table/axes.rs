@@ -1,4 +1,4 @@
-//! Over what a table goes, and where its points lie.
+//! Axes of a look-up table, and their points.
 
 use crate::export::parts::{PartColumn, Parts};
 use crate::formula::expression::{Expression, What};
@@ -8,18 +8,19 @@ use crate::signal::{Signal, Signals};
 use jointbench_instrument::Kind;
 use std::f64::consts::TAU;
 
-/// More than a plane nobody reads by hand, and few controllers interpolate.
+/// Largest number of axes: controllers rarely interpolate over more.
 pub const MOST_AXES: usize = 2;
-/// Points of an axis that begins where the data begins.
+/// Points of an axis over a data range.
 const EVEN: usize = 21;
-/// Points of each direction on a speed axis: a tenth of a decade apart over three decades.
+/// Points of each direction on a speed axis: a tenth of a decade apart, over three decades.
 const DECADES: f64 = 3.0;
 const EACH_DECADE: usize = 10;
-/// Cells of a turn where nothing has many waves.
+/// Cells of a turn without fast waves.
 const CELLS: f64 = 90.0;
-/// Cells of the fastest wave: a straight line between its points errs by less than two hundredths of its amplitude.
+/// Cells for each period of the fastest wave: linear interpolation has an error below two hundredths of its
+/// amplitude.
 const EACH_WAVE: f64 = 16.0;
-/// Beyond this, a table is none that anybody keeps; its header says how far off it is.
+/// Largest number of cells of a table; its header states the resulting error.
 const MOST_CELLS: f64 = 4096.0;
 
 #[derive(Debug)]
@@ -38,15 +39,15 @@ impl Axis {
     }
 }
 
-/// The cell between neighbouring points that a value lies in, by its first point, and the share of it that is passed. Beyond
-/// the ends it is as at them.
+/// The cell that contains a value, by its first point, and the relative position within it. Beyond the ends the value
+/// of the end applies.
 pub fn cell(points: &[f64], value: f64) -> (usize, f64) {
     let cell = points.partition_point(|p| *p <= value).clamp(1, points.len() - 1) - 1;
     let (from, to) = (points[cell], points[cell + 1]);
     (cell, if to > from { ((value - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 })
 }
 
-/// The first signals in the order in which a controller needs them.
+/// The first signals, in the order in which a controller needs them.
 pub fn axes(kind: Kind, signals: &[NamedSignal], scope: &Scope, parts: &Parts) -> Vec<Axis> {
     let order: &[Signal] = match kind {
         Kind::Friction => &[Signal::Velocity, Signal::Load, Signal::Temperature, Signal::Link, Signal::Position],
@@ -76,7 +77,7 @@ fn points(signal: Signal, range: &SignalRange, parts: &Parts) -> Vec<f64> {
             let speed = |k: i32| peak * 10f64.powf(f64::from(k - steps) / EACH_DECADE as f64);
             (0..=steps).rev().map(|k| -speed(k)).chain((0..=steps).map(speed)).collect()
         }
-        // A turn is a turn.
+        // Angles cover a whole turn.
         Signal::Position | Signal::Link => {
             let cells = (EACH_WAVE * fastest_wave(parts, signal)).ceil().clamp(CELLS, MOST_CELLS) as u32;
             (0..=cells).map(|k| f64::from(k) * TAU / f64::from(cells)).collect()
@@ -85,13 +86,13 @@ fn points(signal: Signal, range: &SignalRange, parts: &Parts) -> Vec<f64> {
     }
 }
 
-/// From end to end of a range.
+/// Even points over a range.
 pub fn even(range: &SignalRange) -> Vec<f64> {
     let step = (range.max - range.min) / (EVEN - 1) as f64;
     (0..EVEN).map(|k| range.min + step * k as f64).collect()
 }
 
-/// Most waves that anything has in a turn of an angle.
+/// Largest number of waves of any part in a turn of an angle.
 fn fastest_wave(parts: &Parts, angle: Signal) -> f64 {
     let mut most = 0.0f64;
     for part in &parts.parts {
@@ -103,7 +104,7 @@ fn fastest_wave(parts: &Parts, angle: Signal) -> f64 {
                     && function.is_periodic()
                     && let Some(inner) = arguments.first().filter(|inner| inner.uses_signal(angle))
                 {
-                    // A number is greater than none.
+                    // `max` ignores NaN.
                     most = most.max(slope(inner, angle, &shape).abs());
                 }
                 false
@@ -113,7 +114,7 @@ fn fastest_wave(parts: &Parts, angle: Signal) -> f64 {
     most
 }
 
-/// Change of an expression with an angle, all else at rest.
+/// Derivative of an expression with respect to an angle, with all other signals at rest.
 fn slope(expression: &Expression, angle: Signal, shape: &[f64]) -> f64 {
     let mut signals = Signals::new(2);
     Signal::ALL.into_iter().for_each(|other| signals.set(other, vec![0.0; 2]));

@@ -1,4 +1,4 @@
-//! How far off a table is, used as its reader uses it: in straight lines between its points.
+//! Error of a table with linear interpolation between its points.
 
 use crate::ModelError;
 use crate::export::table::Layout;
@@ -8,15 +8,15 @@ use crate::signal::Signals;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Of so many samples of settled motion the table's mean is that of all.
+/// Number of steady-state samples for the mean of the table.
 const TELLING: usize = 16;
 
-/// Off what it is a table of, in the middle between neighbouring points: rms and at most. `None` where it has no axis.
+/// Interpolation error midway between neighbouring points: RMS and maximum. `None` without an axis.
 pub fn between(layout: &Layout, values: &[f64]) -> Result<Option<[f64; 2]>, ModelError> {
     let (mut square, mut most, mut count) = (0.0, 0.0f64, 0usize);
     for along in 0..layout.axes.len() {
         let middles = layout.rows(|axis, place| match place == along {
-            // Nobody asks for the middle of a change of direction.
+            // The direction change itself is not interpolated.
             true => axis.points.windows(2).filter(|w| w[0] * w[1] >= 0.0).map(|w| 0.5 * (w[0] + w[1])).collect(),
             false => axis.points.clone(),
         });
@@ -29,7 +29,7 @@ pub fn between(layout: &Layout, values: &[f64]) -> Result<Option<[f64; 2]>, Mode
     Ok((count > 0).then(|| [(square / count as f64).sqrt(), most]))
 }
 
-/// The error at the points of the run that was fitted. `None` where the run lacks an axis.
+/// The error at the points of the fitted run. `None` if the run lacks an axis.
 pub fn on_run(fit: &Fit, problem: &Problem) -> Result<Option<f64>, ModelError> {
     let layout = Layout::of(fit)?;
     let values = layout.predict(&layout.grid())?;

@@ -1,4 +1,4 @@
-//! What remembers, on average: the best that a table can hold of it.
+//! Mean curves of hysteresis effects, the best approximation in a table.
 
 use crate::ModelError;
 use crate::export::load_noise::remembered;
@@ -10,19 +10,19 @@ use crate::preprocess::Problem;
 use crate::report::fit::{Fit, MeanCurve};
 use crate::signal::Signal;
 
-/// Signals of which a settled value depends on the way: after a long way in one direction, a position is forgotten.
+/// Signals with a persistent hysteresis at steady state; the hysteresis over a position vanishes after a long motion
+/// in one direction.
 const WAYS: [Signal; 2] = [Signal::Current, Signal::Load];
 
-/// Whether a settled value over the signal is one of several.
+/// Whether the steady-state value over the signal depends on its history.
 pub fn has_ways(signal: Signal) -> bool {
     WAYS.contains(&signal)
 }
 
-/// So little holds points together where the run has no rows.
+/// Small smoothness penalty for points without rows of the run.
 const RIDGE: f64 = 1e-6;
 
-/// Each effect that remembers as a curve over the signal that it remembers, in straight pieces that come nearest to it at the
-/// rows of the run.
+/// Each hysteresis effect as a piecewise linear curve over its signal, fitted to the rows of the run.
 pub fn curves(fit: &Fit, problem: &Problem) -> Result<Vec<MeanCurve>, ModelError> {
     let named = crate::formula::signals(fit.kind);
     let mut curves = Vec::new();
@@ -48,7 +48,7 @@ pub fn curves(fit: &Fit, problem: &Problem) -> Result<Vec<MeanCurve>, ModelError
     Ok(curves)
 }
 
-/// Values at the points between which straight lines come nearest to `y`, as smooth as the rows leave open.
+/// Values of the piecewise linear curve that fits `y` best, smooth where the rows do not determine it.
 fn nearest(at: &[f64], x: &[f64], y: &[f64]) -> Vec<f64> {
     let n = at.len();
     let (mut gram, mut side) = (vec![0.0; n * n], vec![0.0; n]);
@@ -68,7 +68,7 @@ fn nearest(at: &[f64], x: &[f64], y: &[f64]) -> Vec<f64> {
 }
 
 impl MeanCurve {
-    /// Between the points in straight lines; beyond the ends as at them.
+    /// Linear interpolation; beyond the ends the value of the end applies.
     pub(crate) fn value(&self, x: f64) -> f64 {
         if self.at.len() < 2 || self.mean.len() < self.at.len() {
             return 0.0;

@@ -18,12 +18,12 @@ use crate::user_effects::signals_with;
 use std::fmt::Write;
 
 const ANGLES: [Signal; 2] = [Signal::Position, Signal::Link];
-/// Where temperature effects are zero [°C].
+/// Temperature at which temperature effects are zero [°C].
 const REFERENCE_C: f64 = 25.0;
 
-/// What of a model a table holds, and over what.
+/// The part of a model in a table, and its axes.
 pub(crate) struct Layout<'f> {
-    /// The effects that it holds at once; those that remember are beside them as their means.
+    /// The static effects of the table; hysteresis effects are added as mean curves.
     still: Fit,
     means: Vec<&'f MeanCurve>,
     parts: Parts<'f>,
@@ -33,8 +33,8 @@ pub(crate) struct Layout<'f> {
 }
 
 impl<'f> Layout<'f> {
-    /// At most two axes; every other signal rests. Effects that turn with an angle that has no axis are left out, and what
-    /// remembers is its mean over what it remembers: settled, it depends on the way.
+    /// At most two axes; every other signal is at rest. Effects of an angle without an axis are omitted. Hysteresis
+    /// effects are replaced by their mean curves, because their steady state depends on the history.
     fn of(fit: &'f Fit) -> Result<Self, ModelError> {
         let scope = fit.scope.as_ref().ok_or(ModelError::NoScope)?;
         let mut parts = Parts::of(fit)?;
@@ -42,13 +42,13 @@ impl<'f> Layout<'f> {
         let (states, settled): (Vec<_>, Vec<_>) = parts.parts.drain(..).partition(|p| p.columns.iter().any(remembers));
         parts.parts = settled;
         let signals = signals_with(fit.kind, &fit.own);
-        // What remembers asks for its axis as well.
+        // Mean curves need the axis of their signal, too.
         let (held, gone): (Vec<_>, Vec<_>) = states.into_iter().partition(|p| mean_of(scope, p.effect).is_some());
         let count = parts.parts.len();
         parts.parts.extend(held);
         let axes = axes(fit.kind, &signals, scope, &parts);
         let mut held = parts.parts.split_off(count);
-        // No angle stands for all of a wave: at rest it would be whatever it is at 0.
+        // A wave over an angle without an axis is omitted, because its value at angle zero is arbitrary.
         let has_axis = |signal: Signal| axes.iter().any(|axis| axis.signal.signal == signal);
         let waves = |p: &Part| ANGLES.into_iter().any(|angle| p.uses(angle) && !has_axis(angle));
         let (turning, standing): (Vec<_>, Vec<_>) = parts.parts.drain(..).partition(waves);
@@ -83,7 +83,7 @@ impl<'f> Layout<'f> {
         self.rows(|axis, _| axis.points.clone())
     }
 
-    /// What the table is of, wherever on its axes.
+    /// The tabulated quantity at any point of the axes.
     fn predict(&self, rows: &[Vec<f64>]) -> Result<Vec<f64>, ModelError> {
         let axis = |signal: Signal| self.axes.iter().position(|axis| axis.signal.signal == signal);
         let column = |signal: &NamedSignal| match (axis(signal.signal), axis(Signal::Velocity)) {
@@ -102,7 +102,8 @@ impl<'f> Layout<'f> {
         Ok(values)
     }
 
-    /// What a reader takes from the values of the grid. Asked for every sample of a run: nothing is allocated.
+    /// Linear interpolation in the values of the grid. It is called for every sample of a run, so that it does not
+    /// allocate.
     fn interpolate(&self, values: &[f64], at: impl Fn(usize) -> f64) -> f64 {
         let mut corners = [(0, 0.0); 1 << MOST_AXES];
         corners[0].1 = 1.0;
@@ -118,7 +119,7 @@ impl<'f> Layout<'f> {
         corners[..1 << self.axes.len()].iter().map(|(corner, weight)| weight * values[*corner]).sum()
     }
 
-    /// What the table is worth, a line each.
+    /// Accuracy of the table, one line each.
     fn worth(&self, fit: &Fit, values: &[f64]) -> Result<Vec<String>, ModelError> {
         let unit = &fit.unit;
         let of_model = format!("of the whole model {}", super::error(fit));
@@ -132,8 +133,8 @@ impl<'f> Layout<'f> {
                  most"
             ));
         }
-        let goes_by_velocity = self.axes.iter().any(|axis| axis.signal.signal == Signal::Velocity);
-        if goes_by_velocity && self.parts.uses(Signal::Direction) {
+        let has_velocity_axis = self.axes.iter().any(|axis| axis.signal.signal == Signal::Velocity);
+        if has_velocity_axis && self.parts.uses(Signal::Direction) {
             lines.push(
                 "The direction is the sign of the velocity: noise about standstill turns it round and round".to_owned(),
             );
@@ -182,17 +183,17 @@ pub fn table(fit: &Fit) -> Result<String, ModelError> {
     Ok(text)
 }
 
-/// To four digits.
+/// Rounded to four digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-/// What a signal is held at.
+/// Fixed value of a signal without an axis.
 fn rest(signal: &NamedSignal, scope: &Scope) -> f64 {
     let range = scope.signals.iter().find(|r| r.name == signal.name);
     match (signal.signal, range) {
         (Signal::Temperature, _) => REFERENCE_C,
-        // Nobody knows what is usual but the data.
+        // The typical value of an unknown column is only known from the data.
         (Signal::Column(_), Some(range)) => rounded(0.5 * (range.min + range.max)),
         _ => 0.0,
     }

@@ -1,28 +1,29 @@
-//! What brakes reach: currents and torques that none of them has are in another unit.
+//! Plausibility of brake data: currents and torques beyond the range of all brakes have a wrong unit.
 
 use crate::linear::basis::dot;
 use jointbench_instrument::{Kind, RunTable};
 
-/// A brake takes no more than a few times what it is rated for, and shows little below a hundredth of it.
+/// Largest current relative to the rated current, and the share of the rated current below which the torque is small.
 const TIMES: f64 = 20.0;
 const HARDLY: f64 = 0.01;
 
-/// Coil currents of hysteresis brakes are rated up to 1.2 A (data sheet of the HB series, HB-3500M), two coils in parallel
-/// twice that: this is ten times as much.
+/// Largest plausible coil current. Hysteresis brakes are rated up to 1.2 A (data sheet of the HB series, HB-3500M),
+/// two coils in parallel up to twice that. This limit is ten times as much.
 const MOST_A: f64 = 24.0;
 
-/// What brakes hold for each ampere [Nm/A]: 4 to 22 in the data sheets, a tenth for the smallest, ten times as much behind a
-/// gear of 1:10.
+/// Plausible torque for each ampere [Nm/A]: 4 to 22 in the data sheets, a tenth of that for the smallest brakes, ten
+/// times as much behind a gear of 1:10.
 const HELD: [f64; 2] = [0.1, 220.0];
-/// Sensors and set-ups differ by this much.
+/// Additional margin for sensors and set-ups.
 const MARGIN: f64 = 3.0;
 
-/// Share of the torque's variance that goes with the current, below which it says nothing of their units.
+/// Least share of the torque variance that the current has to explain.
 const FOLLOWS: f64 = 0.2;
-/// A current that scatters by less of its largest is held: what the torque does beside it is warmth.
+/// A current that varies by less than this share of its largest value counts as constant: the torque then changes for
+/// other reasons, such as temperature.
 const VARIES: f64 = 0.1;
 
-/// In a sentence.
+/// A current or torque beyond the plausible range, in a sentence.
 pub fn beyond(run: &RunTable) -> Option<String> {
     let current = run.column("brake_current_a")?;
     let largest = current.iter().fold(0.0f64, |most, i| most.max(i.abs()));
@@ -58,7 +59,7 @@ pub fn beyond(run: &RunTable) -> Option<String> {
     })
 }
 
-/// Torque for each ampere, whatever the signs of both. `None` where it does not rise with the current.
+/// Torque for each ampere, from the absolute values of both. `None` if the torque does not rise with the current.
 fn held(current: &[f64], torque: &[f64]) -> Option<f64> {
     let about_mean = |values: &[f64]| -> Vec<f64> {
         let mean = values.iter().map(|v| v.abs()).sum::<f64>() / values.len() as f64;
@@ -76,8 +77,8 @@ mod tests {
     use super::*;
     use jointbench_instrument::{Channel, Meta, Trace};
 
-    /// A brake that holds `nm` at its rated current, with its columns in other units.
-    fn told(nm: f64, rated_a: f64, current: f64, torque: f64, is_rated: bool) -> Option<String> {
+    /// A brake with the torque `nm` at its rated current, with columns in other units.
+    fn reported(nm: f64, rated_a: f64, current: f64, torque: f64, is_rated: bool) -> Option<String> {
         let names = ["time_s", "position_rad", "brake_current_a", "brake_torque_nm"];
         let mut trace = Trace::new(names.map(Channel::new).to_vec());
         for i in 0..800 {
@@ -90,30 +91,30 @@ mod tests {
     }
 
     #[test]
-    fn what_no_brake_reaches_is_told_and_what_brakes_reach_is_not() {
+    fn only_values_beyond_all_brakes_are_reported() {
         // HB-140M, HB-3500M, and the latter behind a gear of 1:10.
         for (nm, rated_a) in [(1.0, 0.253), (26.0, 1.2), (260.0, 1.2)] {
             for is_rated in [true, false] {
-                let told = |current, torque| told(nm, rated_a, current, torque, is_rated);
-                assert_eq!(told(1.0, 1.0), None);
+                let reported = |current, torque| reported(nm, rated_a, current, torque, is_rated);
+                assert_eq!(reported(1.0, 1.0), None);
                 for slip in [1e3, 1e-3] {
-                    assert!(told(slip, 1.0).is_some(), "{nm} Nm, a current {slip} times as large");
+                    assert!(reported(slip, 1.0).is_some(), "{nm} Nm, a current {slip} times as large");
                 }
                 assert!(
-                    told(1.0, 1e3).is_some_and(|said| said.contains("hysteresis brakes hold 0.1 to 220 Nm")),
+                    reported(1.0, 1e3).is_some_and(|said| said.contains("hysteresis brakes hold 0.1 to 220 Nm")),
                     "{nm} Nm"
                 );
             }
         }
-        assert!(told(13.0, 0.6, 1.0, 1e-3, false).is_some(), "a torque in kNm");
-        let said = told(13.0, 0.6, 1e3, 1.0, true).unwrap();
+        assert!(reported(13.0, 0.6, 1.0, 1e-3, false).is_some(), "a torque in kNm");
+        let said = reported(13.0, 0.6, 1e3, 1.0, true).unwrap();
         assert!(said.starts_with("brake_current_a reaches 600 A, and the brake is rated for 0.6 A"), "{said}");
-        let said = told(13.0, 0.6, 1e3, 1.0, false).unwrap();
+        let said = reported(13.0, 0.6, 1e3, 1.0, false).unwrap();
         assert!(said.starts_with("brake_current_a reaches 600 A, and hysteresis brakes take about one"), "{said}");
     }
 
     #[test]
-    fn a_drag_without_current_tells_nothing_of_units() {
+    fn a_drag_without_current_does_not_determine_units() {
         let names = ["time_s", "brake_current_a", "brake_torque_nm"];
         let mut trace = Trace::new(names.map(Channel::new).to_vec());
         let mut warming = trace.clone();

@@ -1,11 +1,11 @@
-//! Facts that are missing or contradict the columns without making what is computed wrong by themselves.
+//! Test conditions that are missing or contradict the columns, without making the results wrong.
 
 use jointbench_instrument::{Kind, Motion, RunTable};
 
-/// A rate this many times off the time column is no rounding.
+/// A ratio beyond this between stated and actual sample rate is no rounding.
 const OTHER_RATE: f64 = 1.2;
 
-/// Each in a sentence.
+/// The doubts about the test conditions, each in a sentence.
 pub fn doubts(run: &RunTable) -> Vec<String> {
     [rate(run), gear(run), segments(run), crate::preprocess::checks::sensor_faults::spikes(run)]
         .into_iter()
@@ -24,7 +24,8 @@ fn rate(run: &RunTable) -> Option<String> {
     })
 }
 
-/// A joint without a gear has none to tell of, and one with a gear that nobody told of looks the same.
+/// Warns about a missing gear ratio. A joint without a gear cannot be distinguished from a joint whose gear ratio is
+/// missing.
 fn gear(run: &RunTable) -> Option<String> {
     let meta = run.meta();
     let asked = run.kind() == Kind::Friction && meta.motion != Motion::Linear && meta.gear_ratio.is_none();
@@ -44,7 +45,7 @@ mod tests {
     use super::*;
     use jointbench_instrument::{Channel, Meta, Trace};
 
-    fn told(meta: Meta) -> String {
+    fn reported(meta: Meta) -> String {
         let names = ["time_s", "motor_position_rad", "motor_current_a", "link_torque_nm"];
         let mut trace = Trace::new(names.map(Channel::new).to_vec());
         (0..40).for_each(|i| trace.push_row(&[0.004 * f64::from(i), 0.0, 0.0, 0.0]));
@@ -52,12 +53,12 @@ mod tests {
     }
 
     #[test]
-    fn a_rate_that_the_time_contradicts_and_a_gear_that_is_missing_are_told() {
+    fn a_contradicting_rate_and_a_missing_gear_are_reported() {
         let right = Meta { sample_rate_hz: Some(245.0), gear_ratio: Some(50.0), ..Meta::default() };
-        assert_eq!(told(right.clone()), "");
-        let wrong = told(Meta { sample_rate_hz: Some(1000.0), ..right.clone() });
+        assert_eq!(reported(right.clone()), "");
+        let wrong = reported(Meta { sample_rate_hz: Some(1000.0), ..right.clone() });
         assert!(wrong.starts_with("sample_rate_hz is 1000, and column time_s has 250.000 samples"), "{wrong}");
-        assert!(told(Meta { gear_ratio: None, ..right.clone() }).starts_with("gear_ratio is not among the facts"));
-        assert_eq!(told(Meta { gear_ratio: None, motion: Motion::Linear, ..right }), "");
+        assert!(reported(Meta { gear_ratio: None, ..right.clone() }).starts_with("gear_ratio is not among the facts"));
+        assert_eq!(reported(Meta { gear_ratio: None, motion: Motion::Linear, ..right }), "");
     }
 }

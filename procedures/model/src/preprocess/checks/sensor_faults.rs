@@ -1,28 +1,30 @@
-//! What a sensor tells that cannot be: a value that stays while all else goes on, a range that ends, samples that stand alone.
+//! Sensor faults: a constant value during motion, saturation, and single outliers.
 
 use crate::words::figure;
 use jointbench_instrument::units::unit_of;
 use jointbench_instrument::{Kind, RunTable};
 use std::ops::Range;
 
-/// Where fewer neighbours than this differ, the column is too coarse for its values to tell.
+/// A column is too coarse for these checks if fewer than this share of neighbouring samples differ.
 const FINE: f64 = 0.9;
-/// A value that is the same for so long is stuck, where the run goes on.
+/// Shortest time and number of samples with one value during motion that indicate a stuck sensor.
 const STUCK_S: f64 = 0.3;
 const STUCK_SAMPLES: usize = 40;
-/// Samples in a row at the end of the range, and their share of the run.
+/// Number of consecutive samples at the end of the range, and their share of the run, that indicate saturation.
 const CLIPPED_SAMPLES: usize = 4;
 const CLIPPED_SHARE: f64 = 0.003;
-/// A sample that stands alone lies so many of the usual changes, and this share of the column's range, off both neighbours,
-/// which agree to a fifth of that.
+/// A single outlier differs from both neighbours by this multiple of the usual change and by this share of the
+/// column's range. Its neighbours agree to a fifth of that.
 const ALONE: f64 = 25.0;
 const ALONE_RANGE: f64 = 0.15;
 const AGREE: f64 = 0.2;
-/// Where the speed before and after so many samples differs by this share of the largest, a drive pushes: its pulse is no fault.
-const BESIDE: usize = 5;
+/// A pulse is no fault if the speed over this number of samples before and after it changes by more than this share of
+/// the largest speed: the drive accelerates.
+const SPEED_SAMPLES: usize = 5;
 const PUSHED: f64 = 0.02;
 
-/// The columns of measured torque and current, in which noise never rests, and the angle that says whether the run goes on.
+/// Columns of measured torque and current, which always contain noise, and the angle that shows whether the joint
+/// moves.
 fn columns(kind: Kind) -> (&'static [&'static str], &'static str) {
     match kind {
         Kind::Friction => (&["motor_current_a", "link_torque_nm"], "motor_position_rad"),
@@ -32,7 +34,7 @@ fn columns(kind: Kind) -> (&'static [&'static str], &'static str) {
     }
 }
 
-/// Columns whose sensor stuck or reached the end of its range, each in a sentence.
+/// Columns with a stuck or saturated sensor, each in a sentence.
 pub fn failed(run: &RunTable) -> Vec<String> {
     let (names, angle) = columns(run.kind());
     let found = names.iter().filter_map(|name| {
@@ -48,7 +50,7 @@ pub fn failed(run: &RunTable) -> Vec<String> {
     found.collect()
 }
 
-/// Where neighbours are equal.
+/// Ranges of equal neighbouring values.
 fn stretches_of_one_value(values: &[f64]) -> Vec<Range<usize>> {
     let mut start = 0;
     let ends = values.chunk_by(|a, b| a == b).map(|part| {
@@ -73,11 +75,11 @@ fn clipped(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>]) -
 
 fn stuck(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>], angle: &str) -> Option<String> {
     let (time_s, angle) = (run.column("time_s")?, run.column(angle)?);
-    let goes_on = |range: &Range<usize>| {
+    let is_moving = |range: &Range<usize>| {
         let angle = &angle[range.clone()];
         2 * angle.windows(2).filter(|pair| pair[0] != pair[1]).count() > range.len()
     };
-    let range = same.iter().filter(|range| goes_on(range)).max_by_key(|range| range.len())?;
+    let range = same.iter().filter(|range| is_moving(range)).max_by_key(|range| range.len())?;
     let (from_s, to_s) = (time_s[range.start], time_s[range.end - 1]);
     (range.len() >= STUCK_SAMPLES && to_s - from_s >= STUCK_S).then(|| {
         let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
@@ -88,15 +90,15 @@ fn stuck(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>], ang
     })
 }
 
-/// Samples that stand alone, in a sentence.
+/// Single outliers, in a sentence.
 pub fn spikes(run: &RunTable) -> Option<String> {
     let (torques, angle) = columns(run.kind());
     let (time_s, angle) = (run.column("time_s")?, run.column(angle)?);
     let way = |i: usize, j: usize| angle[j.min(angle.len() - 1)] - angle[i];
-    // Where a drive pushes.
+    // Whether the drive accelerates at this sample.
     let is_pushed = |i: usize, fastest: f64| {
-        let before = way((i - 1).saturating_sub(BESIDE), i - 1);
-        (way(i + 1, i + 1 + BESIDE) - before).abs() > PUSHED * fastest
+        let before = way((i - 1).saturating_sub(SPEED_SAMPLES), i - 1);
+        (way(i + 1, i + 1 + SPEED_SAMPLES) - before).abs() > PUSHED * fastest
     };
     torques.iter().chain(&["motor_velocity_rad_s", "velocity_rad_s", "temperature_c"]).find_map(|name| {
         let values = run.column(name)?;
@@ -111,7 +113,7 @@ pub fn spikes(run: &RunTable) -> Option<String> {
         };
         let mut found: Vec<usize> = (1..).zip(values.windows(3)).filter(|(_, w)| is_alone(w)).map(|(i, _)| i).collect();
         if !found.is_empty() {
-            let fastest = (BESIDE..angle.len()).map(|i| way(i - BESIDE, i).abs()).fold(0.0, f64::max);
+            let fastest = (SPEED_SAMPLES..angle.len()).map(|i| way(i - SPEED_SAMPLES, i).abs()).fold(0.0, f64::max);
             found.retain(|i| !is_pushed(*i, fastest));
         }
         let first = *found.first()?;
@@ -126,7 +128,7 @@ pub fn spikes(run: &RunTable) -> Option<String> {
     })
 }
 
-/// Between which nearly all values lie.
+/// The range of all values but 1 % at each end.
 fn middle_of(mut values: Vec<f64>) -> (f64, f64) {
     let (low, high) = (values.len() / 100, values.len() - 1 - values.len() / 100);
     let low = *values.select_nth_unstable_by(low, f64::total_cmp).1;
@@ -153,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sensor_that_sticks_clips_or_spikes_is_told() {
+    fn a_stuck_saturated_or_spiking_sensor_is_reported() {
         let whole = run(|_, current| current);
         assert_eq!((failed(&whole), spikes(&whole)), (Vec::new(), None));
         let clipped = failed(&run(|_, current| current.clamp(-1.4, 1.4)));
@@ -170,7 +172,7 @@ mod tests {
     #[test]
     fn a_pulse_that_begins_a_step_is_no_spike() {
         let names = ["time_s", "motor_position_rad", "motor_current_a", "temperature_c"];
-        let told = |pulse: f64, warmest: f64| {
+        let reported = |pulse: f64, warmest: f64| {
             let mut trace = Trace::new(names.map(Channel::new).to_vec());
             let mut position = 0.0;
             for i in 0..4000u32 {
@@ -183,8 +185,8 @@ mod tests {
             }
             spikes(&RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap())
         };
-        assert_eq!(told(3.0, 25.0), None);
-        assert!(told(3.0, 1e30).is_some_and(|told| told.starts_with("temperature_c has one sample")));
+        assert_eq!(reported(3.0, 25.0), None);
+        assert!(reported(3.0, 1e30).is_some_and(|reported| reported.starts_with("temperature_c has one sample")));
     }
 
     #[test]

@@ -1,53 +1,55 @@
-//! A load that the motor does not carry: one of the two torques has another unit or sign.
+//! Contradiction between motor and link torque: one of them has a wrong unit or sign.
 
 use crate::linear::basis::{Basis, dot};
-use crate::preprocess::checks::pieces;
+use crate::preprocess::checks::blocks;
 use jointbench_instrument::RunTable;
 use std::ops::Range;
 
-/// Torques of motor and link differ by the gear's efficiency too, and by friction that grows with the load.
+/// Motor and link torque also differ by the gear's efficiency and by load-dependent friction, up to this ratio.
 const TORQUE_CLASH: f64 = 2.0;
-/// Share of the variance in common, below which the torques do not tell the same at all.
+/// Least common share of the variance to compare the two torques.
 const SAME: f64 = 0.9;
-/// Where a slip of the unit or the sign shows less is enough: much of a motor's torque is friction of which the link knows nothing.
+/// Least common share for a typical unit or sign error: much of the motor torque is friction that the link torque
+/// does not contain.
 const SAME_TORQUE: f64 = 0.7;
-/// Without one what is in common is a load: this share of the torque that varies while the speed changes by less than
-/// [`STEADY`] of itself. What ramps and reversals have in common is inertia on both sides of the sensor.
+/// Otherwise the common part has to be a load: at least this share of the torque varies while the speed changes by
+/// less than [`STEADY`] of itself. Ramps and reversals share inertia on both sides of the sensor.
 const LOADED: f64 = 0.25;
 const STEADY: f64 = 0.5;
 
-/// What the load asks of the motor beside friction and inertia should be the link's torque over the gear ratio.
-pub fn clash(run: &RunTable, pieces: &[pieces::Piece]) -> Option<String> {
+/// The motor torque without friction and inertia has to match the link torque divided by the gear ratio.
+pub fn clash(run: &RunTable, blocks: &[blocks::Block]) -> Option<String> {
     let column = |name: &str| run.column(name);
     let (position, current) = (column("motor_position_rad")?, column("motor_current_a")?);
     let load = column("link_torque_nm")?;
     let per_link = run.meta().torque_constant_nm_per_a? * run.meta().gear_ratio.unwrap_or(1.0);
-    let (ranges, velocity): (Vec<_>, Vec<f64>) = pieces
+    let (ranges, velocity): (Vec<_>, Vec<f64>) = blocks
         .iter()
-        .map(|(piece, passed_s)| (piece.clone(), (position[piece.end] - position[piece.start]) / passed_s))
+        .map(|(block, passed_s)| (block.clone(), (position[block.end] - position[block.start]) / passed_s))
         .unzip();
     let last = velocity.len().saturating_sub(1);
-    let piece = |(i, range): (usize, Range<usize>)| {
+    let block = |(i, range): (usize, Range<usize>)| {
         let mean = |values: &[f64]| values[range.clone()].iter().sum::<f64>() / range.len() as f64;
-        Piece {
+        Block {
             velocity: velocity[i],
             change: velocity[(i + 1).min(last)] - velocity[i.saturating_sub(1)],
             motor_nm: per_link * mean(current),
             link_nm: mean(load),
         }
     };
-    let all: Vec<Piece> = ranges.into_iter().enumerate().map(piece).collect();
-    let (torque, link) = beside_motion(&all);
+    let all: Vec<Block> = ranges.into_iter().enumerate().map(block).collect();
+    let (torque, link) = without_motion(&all);
     let (tt, tl, ll) = (dot(&torque, &torque), dot(&torque, &link), dot(&link, &link));
-    // Neither side's noise makes it larger.
+    // This ratio is not biased by the noise of either side.
     let times = (tt / ll).sqrt().copysign(tl);
     let near = |unit: f64| (1.0 / TORQUE_CLASH..=TORQUE_CLASH).contains(&(times.abs() / unit));
     let agree = times > 0.0 && near(1.0);
-    // At rest a motor pushes against its own friction, and a sensor that bears no load follows loosely by some hundredth of it.
+    // At rest a motor works against its own friction, and an unloaded sensor follows that loosely with about a
+    // hundredth of it.
     let slips = [1e3, 1e-3].into_iter().any(near) || times < 0.0 && near(1.0);
     let common = tl * tl / (tt * ll);
-    let tells = !agree && if slips { common > SAME_TORQUE } else { common > SAME && is_loaded(all) };
-    tells.then(|| {
+    let contradicts = !agree && if slips { common > SAME_TORQUE } else { common > SAME && is_loaded(all) };
+    contradicts.then(|| {
         format!(
             "motor_current_a with the torque constant and the gear ratio is {times:.3} times what link_torque_nm asks \
              for: one of these has another unit or sign"
@@ -55,28 +57,28 @@ pub fn clash(run: &RunTable, pieces: &[pieces::Piece]) -> Option<String> {
     })
 }
 
-/// Means over a piece of the run, and by how much the velocity changes around it.
-struct Piece {
+/// Means over a block, and the change of velocity around it.
+struct Block {
     velocity: f64,
     change: f64,
     motor_nm: f64,
     link_nm: f64,
 }
 
-/// What friction and inertia leave of both torques.
-fn beside_motion(pieces: &[Piece]) -> (Vec<f64>, Vec<f64>) {
-    let each = |value: fn(&Piece) -> f64| pieces.iter().map(value).collect::<Vec<f64>>();
+/// Both torques without the parts that friction and inertia explain.
+fn without_motion(blocks: &[Block]) -> (Vec<f64>, Vec<f64>) {
+    let each = |value: fn(&Block) -> f64| blocks.iter().map(value).collect::<Vec<f64>>();
     let motion = Basis::of(&[each(|_| 1.0), each(|p| p.velocity.signum()), each(|p| p.change), each(|p| p.velocity)]);
     (motion.rest(&each(|p| p.motor_nm)), motion.rest(&each(|p| p.link_nm)))
 }
 
-/// Whether the motor's torque varies beside its motion where that is steady.
-fn is_loaded(mut pieces: Vec<Piece>) -> bool {
-    pieces.retain(|p| p.change.abs() < STEADY * p.velocity.abs());
-    let (beside, _) = beside_motion(&pieces);
-    let middle = pieces.iter().map(|p| p.motor_nm).sum::<f64>() / pieces.len() as f64;
-    let varies: f64 = pieces.iter().map(|p| (p.motor_nm - middle).powi(2)).sum();
-    dot(&beside, &beside) > LOADED * LOADED * varies
+/// Whether the motor torque varies at steady speed.
+fn is_loaded(mut blocks: Vec<Block>) -> bool {
+    blocks.retain(|p| p.change.abs() < STEADY * p.velocity.abs());
+    let (without_motion_nm, _) = without_motion(&blocks);
+    let middle = blocks.iter().map(|p| p.motor_nm).sum::<f64>() / blocks.len() as f64;
+    let varies: f64 = blocks.iter().map(|p| (p.motor_nm - middle).powi(2)).sum();
+    dot(&without_motion_nm, &without_motion_nm) > LOADED * LOADED * varies
 }
 
 #[cfg(test)]
@@ -89,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn a_load_that_the_motor_does_not_carry_is_told() {
+    fn a_load_that_the_motor_does_not_carry_is_reported() {
         let rubbing = |current_scale: f64, load_scale: f64, rub_nm: f64| {
             let names = ["time_s", "motor_position_rad", "motor_current_a", "link_torque_nm"];
             let mut trace = Trace::new(names.map(Channel::new).to_vec());
@@ -112,9 +114,10 @@ mod tests {
         let loaded = |current_scale, load_scale| rubbing(current_scale, load_scale, 0.0);
         assert_eq!(loaded(1.0, 1.0), Vec::<String>::new(), "a gear that loses three tenths");
         assert_eq!(loaded(1.0, 0.0), Vec::<String>::new(), "a sensor that shows nothing");
-        let told = |scale, load| matches!(&loaded(scale, load)[..], [one] if one.starts_with("motor_current_a with"));
-        assert!(told(1000.0, 1.0) && told(-1.0, 1.0) && told(1.0, 1000.0) && told(1.0, -1.0));
-        assert!(told(20.0, 1.0), "another gear ratio");
+        let reported =
+            |scale, load| matches!(&loaded(scale, load)[..], [one] if one.starts_with("motor_current_a with"));
+        assert!(reported(1000.0, 1.0) && reported(-1.0, 1.0) && reported(1.0, 1000.0) && reported(1.0, -1.0));
+        assert!(reported(20.0, 1.0), "another gear ratio");
         assert_eq!(
             rubbing(1.0, 0.01, 1.2),
             Vec::<String>::new(),
@@ -134,7 +137,8 @@ mod tests {
         let mut trace = Trace::new(names.map(Channel::new).to_vec());
         let (mut q, mut v) = (0.0, 0.0);
         for i in 0..20_000 {
-            // To and fro in steps of 4 s, faster each time; the drive is there within a tenth of a second.
+            // Back and forth in steps of 4 s, faster each time; the drive reaches its speed within a tenth of a
+            // second.
             let step = i / 400;
             let to = f64::from(1 + step / 2) * if step % 2 == 0 { 2.0 } else { -2.0 };
             let speeds_up = (to - v) / 0.1;

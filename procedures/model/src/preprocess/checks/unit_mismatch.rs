@@ -1,31 +1,32 @@
-//! Columns that tell the same motion or torque in different units or signs: what is fitted to them is wrong, however well it
-//! fits.
+//! Contradictions between columns of the same motion or torque, in unit or sign. A fit to such columns is wrong, even
+//! with a small residual.
 
-use crate::preprocess::checks::pieces::{PIECE_S, Piece, pieces};
+use crate::preprocess::checks::blocks::{BLOCK_S, Block, blocks};
 use crate::preprocess::held_side::is_held;
 use jointbench_instrument::{Kind, Motion, RunTable};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// Columns that differ by less may be filtered, late, or have a joint that winds up between them.
+/// A smaller ratio between columns can come from filtering, delay or torsion of the joint.
 const CLASH: f64 = 1.2;
-/// At speed the angles of motor and link go the same ways but for this share of them, where the link turns by so much [rad].
+/// Largest relative difference of motor and link travel at speed, and the least travel of the link for this check
+/// [rad].
 const GEAR_CLASH: f64 = 0.01;
 const GEAR_WAY: f64 = 1.0;
-/// Share of the variance in common, below which one of the angles is too coarse to tell.
+/// Least common share of the variance; below it one of the angles is too coarse.
 const SAME_ANGLE: f64 = 0.999;
-/// An angle moves by so much, rad, or it may have been held fast.
+/// Least motion of an angle [rad]; with less motion it may have been clamped.
 const WAY: f64 = 0.1;
-/// Share of the variance in common, below which the columns do not tell the same at all.
+/// Least common share of the variance to compare two columns.
 const SAME: f64 = 0.9;
 
-/// Share of the work that is done against the motion, from which on the motion is not the motor's.
+/// Share of the work done against the motion from which on the sign is wrong.
 const DRIVEN: f64 = 0.5;
 
-/// What contradicts, each in a sentence.
+/// Contradictions, each in a sentence.
 #[derive(Debug, Clone, Default)]
 pub struct DataErrors {
-    /// Whatever is fitted to these columns means nothing: no effect is named.
+    /// Fatal contradictions: every fit to these columns is meaningless, so that no effect is named.
     pub void: Vec<String>,
     pub others: Vec<String>,
 }
@@ -67,17 +68,17 @@ pub fn clashes(run: &RunTable) -> DataErrors {
         }
         Kind::Brake => &[("velocity_rad_s", "position_rad", 1.0)],
     };
-    let pieces = pieces(run.column("time_s").unwrap_or_default());
-    let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, &pieces, one, other, *factor));
+    let blocks = blocks(run.column("time_s").unwrap_or_default());
+    let motions = pairs.iter().filter_map(|(one, other, ratio)| clash(run, &blocks, one, other, *ratio));
     let torques =
-        (run.kind() == Kind::Friction).then(|| crate::preprocess::checks::torque_sign::clash(run, &pieces)).flatten();
+        (run.kind() == Kind::Friction).then(|| crate::preprocess::checks::torque_sign::clash(run, &blocks)).flatten();
     let (void, gears): (Vec<Clash>, Vec<Clash>) = motions.partition(|clash| clash.is_void);
     let said = |clashes: Vec<Clash>| clashes.into_iter().map(|clash| clash.said);
     DataErrors {
         void: said(void)
             .chain(torques)
-            .chain(driven(run, &pieces))
-            .chain(noise(run, &pieces))
+            .chain(driven(run, &blocks))
+            .chain(noise(run, &blocks))
             .chain(too_fast(run))
             .collect(),
         others: said(gears)
@@ -88,15 +89,16 @@ pub fn clashes(run: &RunTable) -> DataErrors {
     }
 }
 
-/// Without a load that was measured nothing turns a motor both ways: what brakes it in both has another sign.
-fn driven(run: &RunTable, pieces: &[Piece]) -> Option<String> {
+/// Without a measured load nothing drives the motor in both directions: a torque that brakes it in both has the wrong
+/// sign.
+fn driven(run: &RunTable, blocks: &[Block]) -> Option<String> {
     let is_alone = run.kind() == Kind::Friction && run.column("link_torque_nm").is_none();
     let column = |name: &str| run.column(name).filter(|_| is_alone);
     let (position, current) = (column("motor_position_rad")?, column("motor_current_a")?);
     let (mut work, mut moved) = ([0.0; 2], [0.0; 2]);
-    for (piece, _) in pieces {
-        let way = position[piece.end] - position[piece.start];
-        let done = way * current[piece.clone()].iter().sum::<f64>() / piece.len() as f64;
+    for (block, _) in blocks {
+        let way = position[block.end] - position[block.start];
+        let done = way * current[block.clone()].iter().sum::<f64>() / block.len() as f64;
         work[usize::from(way < 0.0)] += done;
         moved[usize::from(way < 0.0)] += done.abs();
     }
@@ -107,33 +109,33 @@ fn driven(run: &RunTable, pieces: &[Piece]) -> Option<String> {
     })
 }
 
-/// `factor · one` should move as `other` does.
-fn clash(run: &RunTable, pieces: &[Piece], one: &str, other: &str, factor: f64) -> Option<Clash> {
+/// A contradiction unless `ratio · one` moves like `other`.
+fn clash(run: &RunTable, blocks: &[Block], one: &str, other: &str, ratio: f64) -> Option<Clash> {
     let (a, b) = (run.column(one)?, run.column(other)?);
     let is_speed = one.ends_with("_rad_s");
     if is_held(run) {
         return None;
     }
     if !is_speed && run.kind() != Kind::Friction {
-        let one_rests = rests(one, a, other, b, factor);
-        if let Some(told) = one_rests.or_else(|| rests(other, b, one, a, 1.0 / factor)) {
-            return Some(Clash::void(told));
+        let one_rests = rests(one, a, other, b, ratio);
+        if let Some(reported) = one_rests.or_else(|| rests(other, b, one, a, 1.0 / ratio)) {
+            return Some(Clash::void(reported));
         }
     }
-    let ways = ways(pieces, a, b, is_speed, factor);
+    let ways = ways(blocks, a, b, is_speed, ratio);
     let times = alike(&ways).or_else(|| mostly(&ways))?;
     if (1.0 / CLASH..=CLASH).contains(&times) {
-        let is_geared = !is_speed && factor != 1.0;
-        return is_geared.then(|| other_gear(&ways, factor)).flatten().map(|said| Clash { is_void: false, said });
+        let is_geared = !is_speed && ratio != 1.0;
+        return is_geared.then(|| other_gear(&ways, ratio)).flatten().map(|said| Clash { is_void: false, said });
     }
-    let what = if factor == 1.0 { String::new() } else { format!(" with the gear ratio of {factor}") };
+    let what = if ratio == 1.0 { String::new() } else { format!(" with the gear ratio of {ratio}") };
     let said = format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign");
     Some(Clash::void(said))
 }
 
-/// How far `factor · one` and `other` go in each piece of a run.
-fn ways(pieces: &[Piece], a: &[f64], b: &[f64], is_speed: bool, factor: f64) -> Vec<(f64, f64)> {
-    pieces
+/// Travel of `ratio · one` and of `other` in each block of a run.
+fn ways(blocks: &[Block], a: &[f64], b: &[f64], is_speed: bool, ratio: f64) -> Vec<(f64, f64)> {
+    blocks
         .iter()
         .map(|&(Range { start, end }, passed_s)| {
             let way = match is_speed {
@@ -142,47 +144,47 @@ fn ways(pieces: &[Piece], a: &[f64], b: &[f64], is_speed: bool, factor: f64) -> 
                     a[start..=end].windows(2).map(|v| 0.5 * (v[0] + v[1])).sum::<f64>() * passed_s
                         / (end - start) as f64
                 }
-                false => factor * (a[end] - a[start]),
+                false => ratio * (a[end] - a[start]),
             };
             (way, b[end] - b[start])
         })
         .collect()
 }
 
-/// A gear ratio that is a tooth or two beside the right one: what is left of the load with it looks like an effect.
+/// A gear ratio that is wrong by a tooth or two: the wrong share of the load looks like an effect.
 fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
     let fast = 0.5 * ways.iter().fold(0.0f64, |most, w| most.max(w.1.abs()));
-    // A joint winds up where it turns back.
+    // Blocks at low speed are excluded, because the joint twists at reversals.
     let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().filter(|w| w.1.abs() >= fast).map(f).sum::<f64>();
     let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
-    // The motor's angle is fine beside the link's: its noise makes nothing larger.
+    // The motor angle is much finer than the link angle, so that its noise does not bias this ratio.
     let found = ratio * bb / ab;
     let turned = sum(|w| w.1.abs()) / ratio.abs();
-    let tells = ab * ab > SAME_ANGLE * aa * bb && turned > GEAR_WAY && (found / ratio - 1.0).abs() > GEAR_CLASH;
-    tells.then(|| {
+    let contradicts = ab * ab > SAME_ANGLE * aa * bb && turned > GEAR_WAY && (found / ratio - 1.0).abs() > GEAR_CLASH;
+    contradicts.then(|| {
         format!(
             "gear_ratio is {ratio}, and motor_position_rad moves {found:.2} times as far as link_position_rad: one of them is wrong"
         )
     })
 }
 
-/// An angle that never changes while the other one moves on.
-fn rests(one: &str, a: &[f64], other: &str, b: &[f64], factor: f64) -> Option<String> {
+/// An angle that never changes while the other one moves.
+fn rests(one: &str, a: &[f64], other: &str, b: &[f64], ratio: f64) -> Option<String> {
     let (low, high) = b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-    let moved = (high - low) / factor;
+    let moved = (high - low) / ratio;
     (moved > WAY && a.iter().all(|v| *v == a[0])).then(|| {
         format!("{one} never changes, while {other} says that it moved by {moved:.3} rad: it was not connected")
     })
 }
 
-/// How many times the second the first is, where both move alike.
+/// Ratio of the first to the second travel, if both are correlated.
 fn alike(ways: &[(f64, f64)]) -> Option<f64> {
     let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().map(f).sum::<f64>();
     let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
     (ab * ab > SAME * aa * bb).then_some(aa / ab)
 }
 
-/// The same of most pieces: an angle within a turn leaps in the others.
+/// The same by the median over the blocks: an angle within one turn jumps in the others.
 fn mostly(ways: &[(f64, f64)]) -> Option<f64> {
     const MOST: f64 = 0.6;
     const NEAR: f64 = 0.1;
@@ -192,7 +194,7 @@ fn mostly(ways: &[(f64, f64)]) -> Option<f64> {
     (near as f64 > MOST * ways.len() as f64).then_some(middle)
 }
 
-/// An encoder that turns by more than a turn between two samples: nobody knows where it was.
+/// An encoder that moves by more than a turn between two samples: its position is ambiguous.
 fn too_fast(run: &RunTable) -> Option<String> {
     let angle = run.column("reference_position_rad").filter(|_| run.kind() == Kind::Encoder)?;
     let step = crate::preprocess::median(angle.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
@@ -204,18 +206,18 @@ fn too_fast(run: &RunTable) -> Option<String> {
     })
 }
 
-/// A load that is the same in every sample, and not zero: no sensor tells that.
+/// A load that is constant and not zero: a connected sensor has noise.
 fn dead_load(run: &RunTable) -> Option<String> {
     let load = run.column("link_torque_nm").filter(|_| run.kind() == Kind::Friction)?;
     let is_dependent = load[0] != 0.0 && load.iter().all(|v| *v == load[0]);
     is_dependent.then(|| format!("link_torque_nm is {} Nm in every sample: the sensor was not connected", load[0]))
 }
 
-/// A current of which neither a sample nor a piece of the run tells anything of the next: an open input. Where it holds still
-/// and only its noise is left, it has a mean.
-fn noise(run: &RunTable, pieces: &[Piece]) -> Option<String> {
-    const LEAST_PIECES: usize = 40;
-    /// Noise comes this near to the noise before it, in standard deviations.
+/// A current without correlation between neighbouring samples and between neighbouring blocks: an open input. A
+/// constant current with noise has a mean and does not count.
+fn noise(run: &RunTable, blocks: &[Block]) -> Option<String> {
+    const LEAST_BLOCKS: usize = 40;
+    /// Correlation of white noise by chance, in standard deviations.
     const LIKE_CHANCE: f64 = 3.0;
     let column = match run.kind() {
         Kind::Friction => "motor_current_a",
@@ -233,11 +235,11 @@ fn noise(run: &RunTable, pieces: &[Piece]) -> Option<String> {
         let next: f64 = values.windows(2).map(|i| (i[0] - middle) * (i[1] - middle)).sum();
         next.abs() < LIKE_CHANCE * variance(values) * (values.len() as f64).sqrt()
     };
-    let means: Vec<f64> = pieces.iter().map(|(piece, _)| mean(&current[piece.clone()])).collect();
+    let means: Vec<f64> = blocks.iter().map(|(block, _)| mean(&current[block.clone()])).collect();
     let swings = variance(current) > mean(current).powi(2);
-    (means.len() >= LEAST_PIECES && swings && is_white(current) && is_white(&means)).then(|| {
+    (means.len() >= LEAST_BLOCKS && swings && is_white(current) && is_white(&means)).then(|| {
         format!(
-            "{column} is white noise, from sample to sample and over {PIECE_S} s: it was not connected, or is another signal"
+            "{column} is white noise, from sample to sample and over {BLOCK_S} s: it was not connected, or is another signal"
         )
     })
 }
@@ -264,8 +266,8 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_that_is_not_connected_or_leaps_in_degrees_is_told() {
-        let told = |kind: Kind, names: [&str; 4], row: &dyn Fn(f64) -> [f64; 3]| {
+    fn an_unconnected_angle_and_jumps_in_degrees_are_reported() {
+        let reported = |kind: Kind, names: [&str; 4], row: &dyn Fn(f64) -> [f64; 3]| {
             let mut trace = Trace::new(names.map(Channel::new).to_vec());
             for i in 0..4000 {
                 let t = 0.004 * f64::from(i);
@@ -276,19 +278,19 @@ mod tests {
         };
         let encoder = ["time_s", "reference_position_rad", "test_position_rad", "temperature_c"];
         let turn = |a: f64| (a + 3.0).rem_euclid(std::f64::consts::TAU) - 3.0;
-        let of = |scale: f64| told(Kind::Encoder, encoder, &|t| [turn(2.0 * t), scale * turn(2.0 * t), 20.0]);
+        let of = |scale: f64| reported(Kind::Encoder, encoder, &|t| [turn(2.0 * t), scale * turn(2.0 * t), 20.0]);
         assert_eq!(of(1.0), Vec::<String>::new());
         assert!(matches!(&of(57.296)[..], [one] if one.contains("57.296 times")), "{:?}", of(57.296));
-        let dead = told(Kind::Encoder, encoder, &|t| [turn(2.0 * t), 0.7, 20.0]);
+        let dead = reported(Kind::Encoder, encoder, &|t| [turn(2.0 * t), 0.7, 20.0]);
         assert!(dead.len() == 1 && dead[0].starts_with("test_position_rad never changes"), "{dead:?}");
         let stiffness = ["time_s", "motor_position_rad", "link_position_rad", "link_torque_nm"];
-        let held = |way: f64| told(Kind::Stiffness, stiffness, &|t| [way * t.sin(), 0.7, (3.0 * t).sin()]);
+        let held = |way: f64| reported(Kind::Stiffness, stiffness, &|t| [way * t.sin(), 0.7, (3.0 * t).sin()]);
         assert_eq!(held(0.2), Vec::<String>::new(), "the link was held fast, and the joint gives way");
         assert!(held(30.0)[0].starts_with("link_position_rad never changes"), "{:?}", held(30.0));
     }
 
     #[test]
-    fn a_current_that_is_noise_is_told() {
+    fn a_current_that_is_noise_is_reported() {
         // Uniform scatter in ±0.5 (SplitMix64).
         let scatter = |i: u64| {
             let z = (i + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -296,7 +298,7 @@ mod tests {
             let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
             ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64 - 0.5
         };
-        let told = |friction_a: f64, gravity_a: f64, held_a: f64| {
+        let reported = |friction_a: f64, gravity_a: f64, held_a: f64| {
             let names = ["time_s", "motor_position_rad", "motor_current_a"];
             let mut trace = Trace::new(names.map(Channel::new).to_vec());
             for i in 0..20_000u64 {
@@ -307,18 +309,18 @@ mod tests {
             let meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(1.0), ..Meta::default() };
             said(&RunTable::new(meta, trace).unwrap())
         };
-        let found = told(0.0, 0.0, 0.0);
+        let found = reported(0.0, 0.0, 0.0);
         assert!(matches!(&found[..], [one] if one.starts_with("motor_current_a is white noise")), "{found:?}");
-        assert_eq!(told(0.03, 0.0, 0.0), Vec::<String>::new(), "friction of a tenth of the noise");
-        let turned = told(-1.0, 0.5, 0.2);
+        assert_eq!(reported(0.03, 0.0, 0.0), Vec::<String>::new(), "friction of a tenth of the noise");
+        let turned = reported(-1.0, 0.5, 0.2);
         assert!(matches!(&turned[..], [one] if one.starts_with("motor_current_a opposes the motion")), "{turned:?}");
-        assert_eq!(told(0.2, 1.0, 0.5), Vec::<String>::new(), "a weight that drives now and then");
-        assert_eq!(told(0.0, 0.2, 0.0), Vec::<String>::new(), "a wave that comes and goes");
-        assert_eq!(told(0.0, 0.0, 0.4), Vec::<String>::new(), "a current that is held");
+        assert_eq!(reported(0.2, 1.0, 0.5), Vec::<String>::new(), "a weight that drives now and then");
+        assert_eq!(reported(0.0, 0.2, 0.0), Vec::<String>::new(), "a wave that comes and goes");
+        assert_eq!(reported(0.0, 0.0, 0.4), Vec::<String>::new(), "a current that is held");
     }
 
     #[test]
-    fn columns_of_one_motion_agree_or_are_told() {
+    fn columns_of_one_motion_agree_or_are_reported() {
         assert_eq!(said(&run(1.0, 1.0)), Vec::<String>::new());
         assert_eq!(said(&run(1.1, 0.995)), Vec::<String>::new(), "late or filtered");
         let gear = said(&run(1.0, 50.0 / 51.0));

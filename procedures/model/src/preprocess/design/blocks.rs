@@ -1,8 +1,9 @@
-//! Rows into blocks, folds and replicate pairs.
+//! Design of the data: rows to blocks, folds and replicate pairs.
 
 use std::collections::{BTreeSet, HashMap};
 
-/// Cuts groups of consecutive rows into blocks of about equal length, so that a slow trend cannot hide in one of them.
+/// Divides groups of consecutive rows into blocks of about equal length, so that a slow trend is not contained in one
+/// block.
 ///
 /// `group` numbers stretches of consecutive rows. Returns the block of every row and the number of blocks.
 pub fn blocks(group: &[usize], least: usize) -> (Vec<usize>, usize) {
@@ -27,7 +28,7 @@ pub fn blocks(group: &[usize], least: usize) -> (Vec<usize>, usize) {
     (block, next)
 }
 
-/// Numbers values that lie close together alike: a gap wider than `tolerance(value)` starts a new cluster.
+/// Clusters close values: a gap wider than `tolerance(value)` starts a new cluster.
 pub fn clusters(values: &[f64], tolerance: impl Fn(f64) -> f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
@@ -42,13 +43,13 @@ pub fn clusters(values: &[f64], tolerance: impl Fn(f64) -> f64) -> Vec<usize> {
     cluster
 }
 
-/// Fewer conditions than these have no neighbours that would predict them.
+/// With fewer conditions than these a condition is not predicted by its neighbours.
 const NEIGHBOURS: usize = 12;
 
-/// Folds from conditions: every n-th condition together, so that each fold is predicted by its neighbours.
+/// Folds from conditions: every n-th condition together, so that neighbouring conditions predict each fold.
 ///
-/// Fewer conditions than a dozen have no neighbours, and a first magnetisation or warm-up is there only once: then every
-/// n-th stretch of a block is held out, its rest kept.
+/// With fewer conditions than a dozen this is not possible, and a first magnetisation or warm-up occurs only once.
+/// Then every n-th stretch of a block is left out, and the rest of the block is kept.
 pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, usize) {
     let conditions = condition.iter().max().map_or(0, |c| c + 1);
     if conditions >= NEIGHBOURS {
@@ -61,16 +62,17 @@ pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, 
     ((0..block.len()).map(|i| i / stretch % n).collect(), n)
 }
 
-/// What is held out as one: a condition with its repeats, or where these are few, each stretch of consecutive rows (`group`) of
-/// them, which is then predicted by its repeats. Half a stretch would be predicted by what is that stretch's own.
-pub fn held_out<'a>(condition: &'a [usize], group: &'a [usize]) -> &'a [usize] {
+/// The unit that is left out together: a condition with its repeats. With few conditions it is a stretch of
+/// consecutive rows (`group`), which its repeats predict. The rest of a stretch would predict a part of it by the
+/// individual error of that stretch.
+pub fn left_out_unit<'a>(condition: &'a [usize], group: &'a [usize]) -> &'a [usize] {
     let count = |of: &[usize]| of.iter().max().map_or(0, |c| c + 1);
     let is_few = count(condition) < NEIGHBOURS && count(group) >= NEIGHBOURS.max(2 * count(condition));
     if is_few { group } else { condition }
 }
 
-/// Stretches of consecutive rows (`group`) that alone reach beyond everything that the other folds hold can be predicted from
-/// nothing: they are held out in parts.
+/// Distributes stretches (`group`) whose values exceed the range of all other folds over several folds, because other
+/// stretches cannot predict them.
 pub fn share_edges(fold: &mut [usize], folds: usize, group: &[usize], values: &[f64]) {
     const BEYOND: f64 = 0.02;
     let range = |without: Option<usize>| {
@@ -90,13 +92,13 @@ pub fn share_edges(fold: &mut [usize], folds: usize, group: &[usize], values: &[
     rows.into_iter().enumerate().for_each(|(i, row)| fold[row] = i / stretch % folds);
 }
 
-/// Pairs of one row at most: a run of hundreds of repeats says no more by pairing each with each.
-const MOST_TWINS: usize = 8;
+/// Largest number of pairs for each row: more pairs of the same repeats add no information.
+const MOST_REPLICATES: usize = 8;
 
-/// Pairs of rows of the same condition in different repeats whose phases are `apart` rows from each other.
+/// Pairs of rows of the same condition in different repeats whose phases differ by `apart` rows.
 ///
-/// Neighbours instead of the very same phase where rows are chunks: what changes from chunk to chunk, such as the
-/// chatter of a control loop that happens to start alike, is nothing that a model of the joint could explain.
+/// For chunks, neighbouring phases are paired instead of equal ones. A change from chunk to chunk, such as the ripple
+/// of a control loop that starts alike in every repeat, is no repeatable effect of the joint.
 pub fn replicate_pairs(condition: &[usize], phase: &[usize], repeat: &[i64], apart: usize) -> Vec<(usize, usize)> {
     let mut seen: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
     for row in 0..condition.len() {
@@ -105,9 +107,9 @@ pub fn replicate_pairs(condition: &[usize], phase: &[usize], repeat: &[i64], apa
     let mut pairs = Vec::new();
     for row in 0..condition.len() {
         let Some(others) = seen.get(&(condition[row], phase[row] + apart)) else { continue };
-        let twin = |r: &&usize| repeat[**r] != repeat[row] && (apart > 0 || **r > row);
+        let is_replicate = |r: &&usize| repeat[**r] != repeat[row] && (apart > 0 || **r > row);
         let (before, after) = others.split_at(others.partition_point(|r| *r <= row));
-        pairs.extend(after.iter().chain(before).filter(twin).take(MOST_TWINS).map(|r| (row, *r)));
+        pairs.extend(after.iter().chain(before).filter(is_replicate).take(MOST_REPLICATES).map(|r| (row, *r)));
     }
     pairs
 }
@@ -139,18 +141,18 @@ mod tests {
     }
 
     #[test]
-    fn legs_are_held_out_whole_where_conditions_are_few() {
+    fn legs_are_left_out_whole_with_few_conditions() {
         let of = |conditions: usize, legs: usize| {
             let group: Vec<usize> = (0..10 * legs).map(|row| row / 10).collect();
             let condition: Vec<usize> = group.iter().map(|g| g % conditions).collect();
-            held_out(&condition, &group) == group
+            left_out_unit(&condition, &group) == group
         };
         assert!(of(4, 12) && of(6, 24));
         assert!(!of(4, 8) && !of(8, 12) && !of(12, 36), "too few legs, hardly a repeat, conditions enough");
     }
 
     #[test]
-    fn a_stretch_that_goes_beyond_all_others_is_held_out_in_parts() {
+    fn a_stretch_beyond_the_range_of_all_others_is_left_out_in_parts() {
         let group: Vec<usize> = (0..120).map(|row| row / 20).collect();
         let given: Vec<usize> = group.iter().map(|g| g % 3).collect();
         let loops = |largest: f64| -> Vec<f64> {
@@ -169,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn twins_are_of_different_repeats() {
+    fn replicates_are_of_different_repeats() {
         assert_eq!(replicate_pairs(&[0, 0, 0, 0], &[0, 1, 0, 1], &[0, 0, 1, 1], 0), vec![(0, 2), (1, 3)]);
         assert_eq!(replicate_pairs(&[0, 0, 0, 0], &[0, 1, 0, 1], &[0, 0, 1, 1], 1), vec![(0, 3), (2, 1)]);
     }

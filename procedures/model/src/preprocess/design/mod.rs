@@ -1,4 +1,4 @@
-//! Which rows are independent, which belong together, and which repeat each other.
+//! Design of the data: independent rows, common conditions, and replicates.
 
 pub(crate) mod blocks;
 pub(crate) mod replicates;

@@ -1,4 +1,5 @@
-//! Repeats are believed where their inputs are the same: two motions that share nothing but a number say nothing about noise.
+//! Repeats are accepted only if their inputs agree: different motions with the same repeat number do not estimate
+//! noise.
 
 use crate::preprocess::Problem;
 use crate::preprocess::design::blocks;
@@ -6,18 +7,18 @@ use crate::signal::Signal;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::TAU;
 
-/// Two repeats are one motion where their inputs differ by less than this share of their variance, as much as two
-/// periods of a motion may.
+/// Largest difference of the inputs of two repeats, as a share of their variance. Two periods of one motion differ by
+/// about as much.
 const SAME_MOTION: f64 = 0.02;
 
-/// Set points within this share of their size are one, and so are loads within this share of the torque.
+/// Largest relative difference of equal set points, and of equal loads relative to the torque.
 const SAME_LEVEL: f64 = 0.03;
 
-/// What repeats must have in common.
+/// A signal in which repeats must agree.
 #[derive(Debug, Clone, Copy)]
 pub enum Same {
     Value(Signal),
-    /// Whichever sign it has.
+    /// The absolute value, for either sign.
     Size(Signal),
 }
 
@@ -36,7 +37,7 @@ impl Same {
     }
 }
 
-/// How far apart an input was where repeats should be alike.
+/// Difference of an input between repeats that should agree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unlike {
     pub signal: Signal,
@@ -46,11 +47,11 @@ pub struct Unlike {
     pub spread: f64,
 }
 
-/// One input at the rows, with what it may differ by.
+/// One input at the rows, with its allowed difference.
 struct Input {
     signal: Signal,
     values: Vec<f64>,
-    /// An angle that goes round and round.
+    /// A periodic angle.
     turns: bool,
     variance: f64,
     allowed: f64,
@@ -65,7 +66,7 @@ impl Input {
         let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
         let turns = is_angle && high - low > TAU;
         let variance = if turns { variance.min(TAU * TAU / 12.0) } else { variance };
-        // From one row to the next of the same stretch: noise, and what the motion does meanwhile.
+        // Changes from row to row within a stretch: noise and the motion between the rows.
         let next = (1..values.len()).filter(|i| problem.block[*i] == problem.block[i - 1]);
         let steps: Vec<f64> = next.map(|i| values[i] - values[i - 1]).collect();
         let chatter = moments(&steps).0 / 2.0;
@@ -85,24 +86,24 @@ impl Input {
     }
 }
 
-/// Angles of a turn that are told apart.
+/// Distinguished angles in a turn.
 const ANGLES: usize = 90;
-/// A condition that has fewer such pairs for each row is compared by phase.
+/// Least number of pairs for each row; otherwise the condition is compared by phase.
 const FEWEST: f64 = 0.25;
 
 /// Pairs of rows.
-type Twins = Vec<(usize, usize)>;
+type RowPairs = Vec<(usize, usize)>;
 
-/// Where the repeats of a condition begin at other angles: pairs of moments at which they pass the same one, where these are
-/// not too few, and which of all are at other angles. No condition counts with more pairs for each row than another, but for one
-/// that has hardly any.
+/// For repeats of a condition that start at different angles: pairs of rows at the same angle if there are enough,
+/// and the set of all pairs at different angles. Pairs are thinned, so that every condition counts with the same
+/// number of pairs for each row.
 pub fn by_angle(
-    replicate_pairs: Twins,
+    replicate_pairs: RowPairs,
     condition: &[usize],
     repeat: &[i64],
     link: &[f64],
-) -> (Twins, HashSet<(usize, usize)>) {
-    // Where it dwells at an angle, as far into that.
+) -> (RowPairs, HashSet<(usize, usize)>) {
+    // For a dwell at an angle, rows are paired by their number within the dwell.
     let mut dwelt: HashMap<(usize, i64, usize), usize> = HashMap::new();
     let place = |row: usize| {
         let angle = (link[row].rem_euclid(TAU) / TAU * ANGLES as f64) as usize;
@@ -111,31 +112,31 @@ pub fn by_angle(
         angle + ANGLES * *nth
     };
     let places: Vec<usize> = (0..link.len()).map(place).collect();
-    let of_condition = |replicate_pairs: Twins| {
-        let mut pairs: BTreeMap<usize, Twins> = BTreeMap::new();
+    let of_condition = |replicate_pairs: RowPairs| {
+        let mut pairs: BTreeMap<usize, RowPairs> = BTreeMap::new();
         replicate_pairs.into_iter().for_each(|pair| pairs.entry(condition[pair.0]).or_default().push(pair));
         pairs
     };
     let mut rows: HashMap<usize, f64> = HashMap::new();
     condition.iter().for_each(|c| *rows.entry(*c).or_default() += 1.0);
-    let for_each_row = |(c, pairs): (&usize, &Twins)| pairs.len() as f64 / rows[c];
+    let for_each_row = |(c, pairs): (&usize, &RowPairs)| pairs.len() as f64 / rows[c];
     let mut met = of_condition(blocks::replicate_pairs(condition, &places, repeat, 0));
     met.retain(|c, pairs| for_each_row((c, pairs)) >= FEWEST);
     let mut all = of_condition(replicate_pairs);
     let elsewhere = all.iter().filter(|(c, _)| !met.contains_key(c)).flat_map(|(_, pairs)| pairs.clone()).collect();
     all.extend(met);
     let fewest = all.iter().map(for_each_row).fold(f64::INFINITY, f64::min).max(FEWEST);
-    let thinned = |of: (&usize, &Twins)| {
+    let thinned = |of: (&usize, &RowPairs)| {
         let share = fewest / for_each_row(of);
         let is_kept = |i: &usize| ((i + 1) as f64 * share).floor() > (*i as f64 * share).floor();
-        (0..of.1.len()).filter(is_kept).map(|i| of.1[i]).collect::<Twins>()
+        (0..of.1.len()).filter(is_kept).map(|i| of.1[i]).collect::<RowPairs>()
     };
     (all.iter().flat_map(thinned).collect(), elsewhere)
 }
 
-/// The angles of pairs have little to do with each other.
+/// Whether the angles of the pairs are unrelated.
 pub fn are_apart(replicate_pairs: &[(usize, usize)], link: &[f64]) -> bool {
-    /// Of the RMS difference of two angles that have nothing to do with each other.
+    /// As a share of the RMS difference of two unrelated angles.
     const SHARE: f64 = 0.2;
     let apart = |(a, b): &(usize, usize)| {
         let d = link[*a] - link[*b];
@@ -145,8 +146,8 @@ pub fn are_apart(replicate_pairs: &[(usize, usize)], link: &[f64]) -> bool {
     square > SHARE * SHARE * TAU * TAU / 12.0
 }
 
-/// Keeps the replicate pairs of those stretches (`of` numbers them for each row) whose inputs agree, and tells how far apart the
-/// others were where none is left.
+/// Keeps the replicate pairs of stretches (`of` numbers them for each row) whose inputs agree. If none is left,
+/// `unlike` reports the largest difference.
 pub fn believe(problem: &mut Problem, of: &[i64], inputs: &[Same]) {
     if inputs.is_empty() {
         return;

@@ -1,4 +1,4 @@
-//! Segments, recordings and repeats: from their columns, or found where those are missing.
+//! Segments, recordings and repeats: from their columns, or detected if these are missing.
 
 use jointbench_instrument::RunTable;
 use std::ops::Range;
@@ -16,13 +16,13 @@ pub fn stretches<T: PartialEq>(column: &[T]) -> Vec<Range<usize>> {
     out
 }
 
-/// First samples of the runs that a table was joined of.
+/// First samples of the runs that were joined to a table.
 pub fn runs(run: &RunTable) -> Vec<usize> {
     let column = run.column("run").unwrap_or_default();
     std::iter::once(0).chain((1..column.len()).filter(|i| column[*i] != column[i - 1])).collect()
 }
 
-/// First samples of recordings: a gap in time of more than ten samples, or a segment that starts where nothing led to.
+/// First samples of recordings: after a gap in time of more than ten samples, or at a jump of the position.
 pub fn recordings(time_s: &[f64], position: &[f64], step_s: f64) -> Vec<usize> {
     let reach = 50.0 * crate::preprocess::median(position.windows(2).map(|w| (w[1] - w[0]).abs())).max(1e-4);
     let gap = |i: usize| time_s[i] - time_s[i - 1] > 10.0 * step_s;
@@ -30,7 +30,8 @@ pub fn recordings(time_s: &[f64], position: &[f64], step_s: f64) -> Vec<usize> {
     std::iter::once(0).chain((1..time_s.len()).filter(|i| gap(*i) || jump(*i))).collect()
 }
 
-/// Legs of one direction: the sign of the velocity with a hysteresis, so that noise around zero makes no legs.
+/// Direction of each sample: the sign of the velocity with a hysteresis, so that noise around zero does not change
+/// it.
 pub fn direction(velocity: &[f64], band: f64) -> Vec<f64> {
     let first = velocity.iter().find(|v| v.abs() > band).map_or(0.0, |v| v.signum());
     let mut sign = first;
@@ -45,11 +46,11 @@ pub fn direction(velocity: &[f64], band: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Rising or falling: it turns where the signal has come back from its last extreme by more than its own noise does.
+/// Rising or falling: the trend changes where the signal has returned from its last extreme by more than its noise.
 pub fn trend(values: &[f64]) -> Vec<f64> {
-    /// Beyond so many standard deviations a sample is no noise, among as many as a run has.
+    /// Noise limit in standard deviations, for the number of samples of a run.
     const NOISE: f64 = 6.0;
-    /// Median of |x − 2y + z| of white noise, in its standard deviations.
+    /// Median of |x − 2y + z| of white noise, in standard deviations.
     const SECOND_DIFFERENCE: f64 = 0.6745 * 2.449;
     let every = values.len().div_ceil(crate::preprocess::TELLING);
     let bends = values.windows(3).step_by(every).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs());
@@ -61,7 +62,7 @@ pub fn trend(values: &[f64]) -> Vec<f64> {
     for (i, v) in values.iter().enumerate() {
         low = if *v < values[low] { i } else { low };
         high = if *v > values[high] { i } else { high };
-        // Up to the extreme it went on as before.
+        // Up to the extreme the previous trend continues.
         let turned = if sign <= 0.0 && v - values[low] > depth {
             Some((1.0, low))
         } else if sign >= 0.0 && values[high] - v > depth {
@@ -78,7 +79,7 @@ pub fn trend(values: &[f64]) -> Vec<f64> {
     trend
 }
 
-/// The direction of a run that goes the other way in less than a tenth of its samples, if at all.
+/// The direction of a run that moves in the other direction in less than a tenth of its samples.
 pub fn main_direction(direction: &[f64]) -> Option<f64> {
     const FEW: f64 = 0.1;
     let ahead = direction.iter().sum::<f64>().signum();
@@ -86,8 +87,8 @@ pub fn main_direction(direction: &[f64]) -> Option<f64> {
     (back < FEW * direction.len() as f64).then_some(ahead)
 }
 
-/// A joint that creeps over its own teeth swings back a little again and again: that is no motion the other way. Where
-/// these swings are short and few, the direction of the whole run is that of its way.
+/// A joint that creeps over its gear teeth repeatedly swings back a little, which is no reversal. If these swings are
+/// short and rare, the whole run has one direction.
 pub fn without_swings(direction: Vec<f64>, position: &[f64], starts: &[usize]) -> Vec<f64> {
     const SHORT: f64 = 0.01;
     let Some(ahead) = main_direction(&direction) else { return direction };
@@ -104,13 +105,13 @@ pub fn without_swings(direction: Vec<f64>, position: &[f64], starts: &[usize]) -
     if deepest < SHORT * way { vec![ahead; direction.len()] } else { direction }
 }
 
-/// The integers of a column, where the run has it.
+/// A column as integers, if the run has it.
 pub fn integers(run: &RunTable, column: &str) -> Option<Vec<i64>> {
     run.column(column).map(|values| values.iter().map(|v| *v as i64).collect())
 }
 
-/// The segments as a run numbers them. `None` where the column numbers none: one number for all of the run, or another one every
-/// few samples.
+/// The segments as numbered by the run. `None` if the column does not number segments: one number for the whole run,
+/// or another one every few samples.
 pub fn numbered(run: &RunTable) -> Option<Vec<i64>> {
     const LEAST_SAMPLES: usize = 8;
     let segment = integers(run, "segment")?;
@@ -118,12 +119,11 @@ pub fn numbered(run: &RunTable) -> Option<Vec<i64>> {
     (1 < segments && segments * LEAST_SAMPLES < segment.len()).then_some(segment)
 }
 
-/// Rows of a long signal that are enough to know its period, and lags that are tried.
+/// Rows of a long signal that determine its period.
 const ENOUGH: usize = 4_000;
 
-/// The period after which a signal repeats itself, in rows: the first peak of its autocorrelation that is as good as
-/// perfect. `None` where fewer than two periods were recorded. A long signal is looked at in steps at first: cost stays
-/// linear.
+/// The period of a signal in rows: the first peak of its autocorrelation that is nearly one. `None` if fewer than two
+/// periods were recorded. A long signal is first searched in steps, so that the cost stays linear.
 pub fn period(signal: &[f64]) -> Option<usize> {
     let n = signal.len();
     let stride = n.div_ceil(ENOUGH).max(1);

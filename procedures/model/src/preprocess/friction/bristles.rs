@@ -1,7 +1,8 @@
-//! The direction of motion as contacts feel it: a state that turns over a way, not in an instant.
+//! Presliding: the direction of friction as a state that changes over a displacement, not instantly.
 //!
-//! Elements that slip at ±1 (stops) and ones that yield exponentially (Dahl) with reaches from the encoder's step to a
-//! quarter of the range of the motion, or of a turn. What the torque shows at reversals weighs them.
+//! Elements that slip at ±1 (stop operators) and elements with exponential approach (Dahl). Their reaches range from
+//! the encoder step to a quarter of the range of motion, or of a turn. The torque at reversals determines their
+//! weights.
 
 use crate::hysteresis_operators::{dahl, stop};
 use crate::linear::basis::{Basis, dot};
@@ -11,34 +12,35 @@ use crate::report::fit::Bristles;
 use crate::view::Start;
 use std::f64::consts::TAU;
 
-/// Reaches that are tried.
+/// Number of reaches.
 const REACHES: usize = 9;
-/// The longest, as a share of the range of the motion. Of contacts that turn a turn [rad] is all of it: they come again.
+/// Longest reach, as a share of the range of motion. For rotating contacts the range is at most a turn [rad], because
+/// the same contacts return after a turn.
 const LONGEST: f64 = 0.25;
 const TURN: f64 = TAU;
-/// The shortest, in steps of the encoder, as a share of the range and of the longest.
+/// Shortest reach, in encoder steps, as a share of the range, and as a share of the longest reach.
 const STEPS: f64 = 3.0;
 const LEAST_OF_RANGE: f64 = 1e-5;
 const LEAST_OF_LONGEST: f64 = 1e-4;
-/// A way back counts from so many steps of the encoder, and from this share of the whole range.
+/// Least return motion of a reversal, in encoder steps and as a share of the whole range.
 const TURN_STEPS: f64 = 6.0;
 const TURN_SHARE: f64 = 1e-3;
 
-/// What a share of the values is below.
+/// Quantile of the values.
 pub fn quantile(values: impl IntoIterator<Item = f64>, share: f64) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
     let at = (share * values.len().saturating_sub(1) as f64).round() as usize;
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(at, f64::total_cmp).1 }
 }
 
-/// The step of the encoder: hardly any two neighbouring samples of a moving joint are nearer.
+/// The step of the encoder: nearly the smallest difference between neighbouring samples of a moving joint.
 pub fn encoder_step(position: &[f64]) -> f64 {
     let every = position.len().div_ceil(TELLING);
     let steps = position.windows(2).step_by(every).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 1e-7);
     quantile(steps, 0.01).max(1e-7)
 }
 
-/// Samples at which a position turns by more than the encoder's noise, recording by recording.
+/// Samples at which the position reverses by more than the encoder noise, for each recording.
 pub fn turns(position: &[f64], starts: &[usize], step: f64) -> Vec<usize> {
     let (low, high) = position.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
     let depth = (TURN_STEPS * step).max(TURN_SHARE * (high - low));
@@ -74,7 +76,7 @@ fn zigzag(x: &[f64], depth: f64) -> Vec<usize> {
     turns
 }
 
-/// Reaches that reversals of this motion can tell. None where it never turns.
+/// Reaches that the reversals of this motion can identify. Empty without reversals.
 pub fn reaches(position: &[f64], turns: &[usize], step: f64, slides: bool) -> Vec<f64> {
     if turns.is_empty() {
         return Vec::new();
@@ -86,7 +88,7 @@ pub fn reaches(position: &[f64], turns: &[usize], step: f64, slides: bool) -> Ve
     crate::effects::log_grid(shortest.max(LEAST_OF_LONGEST * longest), longest, REACHES)
 }
 
-/// States of all elements: stops, then those that yield, of which the shortest is left out.
+/// States of all elements: stop operators, then Dahl elements without the shortest reach.
 pub fn states(position: &[f64], starts: &[usize], reaches: &[f64]) -> Vec<Vec<f64>> {
     let starts: Vec<Start> = starts.iter().copied().map(Start::from).collect();
     let stops = reaches.iter().map(|reach| stop(position, *reach, &starts));
@@ -94,7 +96,8 @@ pub fn states(position: &[f64], starts: &[usize], reaches: &[f64]) -> Vec<Vec<f6
     stops.chain(yielding).collect()
 }
 
-/// Shares of the elements that explain most of what `free` columns leave of a torque; `elements` are their states at the rows.
+/// Weights of the elements that explain most of a torque, given the `free` columns; `elements` are their states at
+/// the rows.
 pub fn weights(elements: &[Vec<f64>], free: &[Vec<f64>], torque: &[f64]) -> Vec<f64> {
     let basis = Basis::of(free);
     let own: Vec<Vec<f64>> = elements.iter().map(|state| basis.rest(state)).collect();
@@ -110,7 +113,7 @@ pub fn weights(elements: &[Vec<f64>], free: &[Vec<f64>], torque: &[f64]) -> Vec<
     weights
 }
 
-/// The direction that elements of these weights feel.
+/// The direction of friction as the weighted sum of the element states.
 pub fn felt(states: &[Vec<f64>], bristles: &Bristles) -> Vec<f64> {
     let mut felt = vec![0.0; states.first().map_or(0, Vec::len)];
     for (state, weight) in states.iter().zip(&bristles.weights).filter(|(_, weight)| **weight > 0.0) {

@@ -1,4 +1,4 @@
-//! Rows of a trajectory at one corner of its filter, and what stands beside every model there.
+//! Rows of a trajectory for one filter corner, with the nuisance columns of every model.
 
 use crate::linear::basis::dot;
 use crate::preprocess::design::replicates::{Same, are_apart};
@@ -16,24 +16,25 @@ use jointbench_instrument::RunTable;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// The ends of a recording are where filters guess [s], or this share of it.
+/// Excluded ends of a recording, where filters extrapolate [s], or this share of it.
 const ENDS_S: f64 = 0.4;
 const ENDS_SHARE: f64 = 0.05;
-/// Pieces of a run that are held out in turn: so many of at least a second, and at least so many.
+/// Blocks of a run that are left out in turn: this number, of at least one second each, and at least the smaller
+/// number.
 const BLOCKS: usize = 30;
 const LEAST_BLOCKS: usize = 8;
 const BLOCK_S: f64 = 1.0;
 
-/// Which samples are rows at one corner, and what stands beside every model there.
+/// The samples that are rows for one filter corner, with the nuisance columns.
 pub struct Layout {
     cutoff_hz: f64,
     reduce: Reduce,
     pub rows: Vec<usize>,
     row_s: f64,
     target: Vec<f64>,
-    /// States of elements that remember, at the rows.
+    /// States of presliding elements, at the rows.
     states: Vec<Vec<f64>>,
-    /// Acceleration, jerk, snap and the change of the load, at the rows.
+    /// Acceleration, jerk, snap and load rate, at the rows.
     slopes: Vec<Vec<f64>>,
     pub segment: Option<Vec<i64>>,
     repeat: Vec<i64>,
@@ -89,7 +90,7 @@ impl Layout {
         }
     }
 
-    /// What the torque at reversals says of the elements.
+    /// Weights of the presliding elements, from the torque at reversals.
     pub fn weights(&self, work: &Work, baseline: &[String]) -> Vec<f64> {
         let is_given = |id: &str| baseline.iter().any(|given| given == id);
         let of = |signal| work.signals.find(signal).map(|values| self.reduce.apply(values.to_vec()));
@@ -160,7 +161,7 @@ impl Layout {
     }
 }
 
-/// One of `every` samples, at the same moments of each repeat, without the ends of recordings.
+/// Every n-th sample (`every`), at the same phases of each repeat, without the ends of recordings.
 fn rows(even: &Even, phase: &[usize], every: usize) -> Vec<usize> {
     let mut rows = Vec::new();
     for (start, end) in even.starts.iter().zip(even.starts.iter().skip(1).chain([&phase.len()])) {
@@ -170,19 +171,20 @@ fn rows(even: &Even, phase: &[usize], every: usize) -> Vec<usize> {
     rows
 }
 
-/// Samples since the repeat began.
+/// Samples since the start of the repeat.
 fn phases(repeat: &[i64], run_of: &[usize]) -> Vec<usize> {
     let mut phase = 0;
     (0..repeat.len())
         .map(|i| {
-            let goes_on = i > 0 && repeat[i] == repeat[i - 1] && run_of[i] == run_of[i - 1];
-            phase = if goes_on { phase + 1 } else { 0 };
+            let continues = i > 0 && repeat[i] == repeat[i - 1] && run_of[i] == run_of[i - 1];
+            phase = if continues { phase + 1 } else { 0 };
             phase
         })
         .collect()
 }
 
-/// Repeat and phase of every sample by the period of each run's motion, where `whole` runs were recorded without a gap.
+/// Repeat and phase of every sample, from the period of each run's motion. Only if the `whole` runs were recorded
+/// without a gap.
 fn periods(velocity: &[f64], run_of: &[usize], whole: bool) -> (Vec<i64>, Vec<usize>, &'static str) {
     let (mut repeat, mut phase) = (Vec::new(), Vec::new());
     let mut from = "none";

@@ -29,11 +29,12 @@ pub fn prepare(run: &RunTable, options: &Options, bristles: Option<&Bristles>) -
     let samples = read(run, options)?;
     let plateaus = steady_state::find(&samples, run.meta().gear_ratio.unwrap_or(1.0), options);
     let settled: usize = plateaus.iter().map(|p| p.len()).sum();
-    // A few steady moments of a trajectory are not a measurement in steps; but a long part without any motion beside
-    // many steps does not take them away.
+    // A few steady moments of a trajectory are no measurement in steps. A long rest in addition to many steps still
+    // is one.
     let in_steps = settled * 2 > run.len()
         || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > samples.legs().len());
-    // Where contacts are known to bend, ramps and reversals say as much as settled motion, and more of it.
+    // If presliding is known, ramps and reversals are as informative as steady-state motion, and there are more of
+    // them.
     let bends = run.meta().baseline.iter().any(|effect| effect == BENDS);
     match options.residual {
         None if !in_steps || bends => trajectory::prepare(run, options, bristles),
@@ -89,7 +90,7 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
             (Signal::Direction, direction),
         ]
     };
-    let beside = || {
+    let other_columns = || {
         let gear = run.meta().gear_ratio.unwrap_or(1.0);
         let mut signals = Signals::new(run.len());
         signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
@@ -109,7 +110,7 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
         let torque_nm: Vec<f64> = column("motor_current_a").iter().map(|i| km * i).collect();
         (signals, torque_nm, segments::numbered(run), segments::integers(run, "repeat"))
     };
-    let (of_motion, (mut signals, target, segment, repeat)) = rayon::join(motion, beside);
+    let (of_motion, (mut signals, target, segment, repeat)) = rayon::join(motion, other_columns);
     of_motion.into_iter().for_each(|(signal, values)| signals.set(signal, values));
     let slides = run.meta().motion == Motion::Linear;
     Ok(Source {
@@ -127,8 +128,8 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
     })
 }
 
-/// The motor torque as load, direction, speed and acceleration explain it: the measured one without its own noise, which
-/// would be found again in any power of itself, and without what the cube of itself adds when the iron saturates.
+/// The motor torque as explained by load, direction, speed and acceleration. It excludes the noise of the measured
+/// torque, which would correlate with any power of itself, and the cubic part due to magnetic saturation.
 fn drive(signals: &Signals, torque_nm: &[f64]) -> Vec<f64> {
     let of = |signal| signals.find(signal).map(<[f64]>::to_vec);
     let inputs = [Signal::Direction, Signal::Velocity, Signal::Load, Signal::Acceleration];
@@ -139,8 +140,8 @@ fn drive(signals: &Signals, torque_nm: &[f64]) -> Vec<f64> {
     let mut drive = explained(torque_nm);
     for _ in 0..2 {
         let cube: Vec<f64> = drive.iter().map(|t| t * t * t).collect();
-        let beside = linear.rest(&cube);
-        let share = dot(&beside, torque_nm) / dot(&beside, &beside).max(f64::MIN_POSITIVE);
+        let cube_rest = linear.rest(&cube);
+        let share = dot(&cube_rest, torque_nm) / dot(&cube_rest, &cube_rest).max(f64::MIN_POSITIVE);
         let rest: Vec<f64> = torque_nm.iter().zip(&cube).map(|(y, c)| y - share * c).collect();
         drive = explained(&rest);
     }

@@ -1,4 +1,4 @@
-//! A table of conditions: each row is the mean of one steady operating point, in any order and without a time.
+//! A table of operating points: each row is the mean of one steady state, in any order and without time.
 
 use crate::preprocess::chunks::{Layout, Source, problem};
 use crate::preprocess::friction::steady_state;
@@ -9,13 +9,13 @@ use crate::view::Constants;
 use crate::{ModelError, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
 
-/// Fewer say nothing of two effects.
+/// Fewer points cannot separate two effects.
 const FEWEST: usize = 12;
-/// A point below this share of the fastest speed is at rest.
+/// A point below this share of the fastest speed counts as at rest.
 const AT_REST: f64 = 1e-3;
 
-/// Rows of equal speed and load are replicates of one condition. Points at rest are omitted: friction at rest is any
-/// torque up to breakaway. Nothing is known of angles, ramps and reversals.
+/// Rows of equal speed and load are replicates of one condition. Points at rest are omitted, because friction at rest
+/// is any torque up to breakaway. The table has no angles, ramps and reversals.
 pub fn prepare(run: &RunTable) -> Result<Prepared, ModelError> {
     let samples = read(run)?;
     let speed = samples.signals.find(Signal::Velocity).unwrap_or_default();
@@ -99,7 +99,7 @@ fn read(run: &RunTable) -> Result<Source, ModelError> {
     })
 }
 
-/// How often each condition came before, row by row.
+/// How often each condition occurred before, for each row.
 fn occurrences(condition: &[usize]) -> Vec<usize> {
     let mut seen = vec![0; condition.iter().max().map_or(0, |most| most + 1)];
     let next = |c: &usize| {

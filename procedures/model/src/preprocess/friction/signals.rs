@@ -1,4 +1,4 @@
-//! Signals of a trajectory at the work rate, smoothed before anything nonlinear is made of them.
+//! Signals of a trajectory at the work rate, smoothed before nonlinear operations.
 
 use crate::ModelError;
 use crate::preprocess::design::segments;
@@ -10,11 +10,11 @@ use crate::signal::{Signal, Signals};
 use jointbench_instrument::RunTable;
 use rayon::prelude::*;
 
-/// Corner of the filter of signals [Hz], and of the slow ones among them.
+/// Corner frequencies of the signal filter [Hz], lower for slow and unknown signals.
 const SIGNAL_HZ: f64 = 40.0;
 const SLOW_HZ: f64 = 1.0;
 const UNKNOWN_HZ: f64 = 5.0;
-/// Share of the work rate that it stays below.
+/// Largest corner frequency as a share of the work rate.
 const MOST_OF_RATE: f64 = 0.35;
 
 /// The run at the work rate.
@@ -23,14 +23,14 @@ pub struct Work {
     pub torque: Vec<f64>,
     pub even: Even,
     pub turns: Vec<usize>,
-    /// Samples at which the joint turns or rests.
+    /// Samples at which the joint reverses or rests.
     pub stills: Vec<usize>,
     pub encoder_step: f64,
     pub fastest: f64,
 }
 
 impl Work {
-    /// A joint that is slower than this rests, unless it is that slow most of the time.
+    /// Adds samples at rest: slower than `slow_rad_s`, unless the joint is that slow most of the time.
     pub fn set_stills(&mut self, slow_rad_s: f64) {
         let velocity = self.signals.find(Signal::Velocity).unwrap_or_default();
         let rests: Vec<usize> = (0..velocity.len()).filter(|i| velocity[*i].abs() < slow_rad_s).collect();
@@ -41,7 +41,7 @@ impl Work {
         }
     }
 
-    /// From a sample to the nearest reversal or rest [s].
+    /// Time from a sample to the nearest reversal or rest [s].
     pub fn turn_s(&self, sample: usize) -> f64 {
         let next = self.stills.partition_point(|still| *still < sample);
         let near = [next.checked_sub(1), Some(next)].into_iter().flatten().filter_map(|at| self.stills.get(at));
@@ -54,7 +54,7 @@ pub fn filtered(values: &[f64], even: &Even, cutoff_hz: f64, order: usize) -> Ve
     by_recording(values, &even.starts, |_, v| filter.both_ways(v, pad(cutoff_hz, even.step_s)))
 }
 
-/// Samples by which the ends of a recording are continued for a filter.
+/// Samples by which the ends of a recording are extended for a filter.
 pub fn pad(cutoff_hz: f64, step_s: f64) -> usize {
     (1.0 / (cutoff_hz * step_s)).ceil() as usize
 }
@@ -70,12 +70,12 @@ pub fn read(run: &RunTable) -> Result<Work, ModelError> {
     }
     let step_s = sample_s(time_s);
     let starts = segments::recordings(time_s, position, step_s);
-    let mut beside = Signals::new(run.len());
-    crate::preprocess::unknown_columns::keep(&mut beside, run);
+    let mut unknown = Signals::new(run.len());
+    crate::preprocess::unknown_columns::keep(&mut unknown, run);
     let known =
         [("link_position_rad", Signal::Link), ("link_torque_nm", Signal::Load), ("temperature_c", Signal::Temperature)];
     let known = known.into_iter().filter_map(|(name, signal)| Some((signal, run.column(name)?)));
-    let named: Vec<(Signal, &[f64])> = known.chain(beside.iter()).collect();
+    let named: Vec<(Signal, &[f64])> = known.chain(unknown.iter()).collect();
     let columns: Vec<&[f64]> =
         [position, column("motor_current_a")].into_iter().chain(named.iter().map(|(_, values)| *values)).collect();
     let mut even = even(&columns, time_s, &starts, step_s);
@@ -93,8 +93,8 @@ pub fn read(run: &RunTable) -> Result<Work, ModelError> {
     let mut smooth = smooth.into_iter();
     let (position, current) = (smooth.next().unwrap_or_default(), smooth.next().unwrap_or_default());
     for (signal, values) in all.into_iter().skip(2).zip(smooth) {
-        let factor = if signal == Signal::Load { 1.0 / gear } else { 1.0 };
-        signals.set(signal, values.into_iter().map(|v| factor * v).collect());
+        let scale = if signal == Signal::Load { 1.0 / gear } else { 1.0 };
+        signals.set(signal, values.into_iter().map(|v| scale * v).collect());
     }
     if signals.find(Signal::Link).is_none() {
         signals.set(Signal::Link, position.iter().map(|q| q / gear).collect());

@@ -1,8 +1,8 @@
-//! Measurements in steps: settled stretches of constant speed and load, cut into chunks.
+//! Measurements in steps: steady-state stretches of constant speed and load, divided into chunks.
 //!
-//! The response and every signal are averaged over chunks of about 40 ms: noise falls, memory effects stay out, and a
-//! periodic effect fades at speed exactly as its data does. Ramps and reversals are kept apart, where signals of
-//! different instruments are not aligned and friction has memory.
+//! The response and every signal are averaged over chunks of about 40 ms. This reduces noise, excludes hysteresis,
+//! and attenuates a periodic effect at speed exactly as its data. Ramps and reversals are kept separate, because
+//! signals of different instruments are not aligned there and friction has hysteresis.
 
 use crate::preprocess::chunks::{Layout, Source, problem};
 use crate::preprocess::design::{blocks, segments};
@@ -17,23 +17,24 @@ use std::ops::Range;
 
 const CHUNK_S: f64 = 0.04;
 const MOVING_CHUNK_S: f64 = 0.02;
-/// Of a run of more chunks than these neighbours are averaged: what a plateau says, it says in few of them.
+/// Largest number of rows; neighbouring chunks of a longer run are averaged, because a steady state needs few of
+/// them.
 const MOST_ROWS: usize = 12_000;
-/// So many chunks beside a reversal the change of the acceleration is not asked for.
+/// Chunks around a reversal in which the jerk is set to zero.
 const REACH: usize = 3;
-/// Around reversals a long run is judged by some of its pairs of segments.
+/// Largest number of rows around reversals; of a longer run only some pairs of segments are used.
 const MOST_MOVING_ROWS: usize = 8_000;
-/// How far speed and load may be from the plateau's own middle, as a share of their size.
+/// Largest deviation of speed and load from the median of a steady state, as a share of their size.
 const SETTLED_SHARE: f64 = 0.04;
-/// From one half of a settled stretch to the other a kept speed changes by less than this share, or by what it scatters by.
+/// Largest change of the speed between the halves of a steady state, as a share, in addition to its scatter.
 const KEPT_SHARE: f64 = 0.2;
-/// Speed is at least so many times its own scatter, or half of that where it only wavers about its middle: a slow step
-/// over teeth.
+/// Least ratio of speed to its scatter. Half of that is sufficient if the speed oscillates about its median: a slow
+/// step over gear teeth.
 const STEADY: f64 = 5.0;
-/// A wave goes through its middle at least so often, the arc of a swing does not.
+/// Least number of crossings of the median for an oscillation; the arc of a swing has fewer.
 const WAVERS: usize = 4;
 
-/// The settled stretch of every segment that has one.
+/// The steady-state stretch of every segment that has one.
 pub fn find(samples: &Source, gear_ratio: f64, options: &Options) -> Vec<Range<usize>> {
     let n = samples.chunk(options.chunk_s.unwrap_or(CHUNK_S));
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
@@ -43,8 +44,8 @@ pub fn find(samples: &Source, gear_ratio: f64, options: &Options) -> Vec<Range<u
     samples.legs().into_par_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, (n, link_s))).collect()
 }
 
-/// A load that changes by more than the way of the link (`link_s` for each rad/s of the motor) can change it winds the joint up,
-/// and nothing slips there.
+/// A load that changes by more than the link motion can cause (`link_s` for each rad/s of the motor) twists the joint
+/// without sliding, so that the stretch is rejected.
 fn settled(
     leg: Range<usize>,
     velocity: &[f64],
@@ -59,10 +60,10 @@ fn settled(
     if speed.len() < 6 {
         return None;
     }
-    let late = speed.len() / 2..speed.len() - 1;
-    let target = median(speed[late.clone()].iter().copied());
-    let scatter = 1.5 * median(speed[late.clone()].iter().map(|v| (v - target).abs()));
-    let crossings = speed[late.clone()].windows(2).filter(|w| (w[0] > target) != (w[1] > target)).count();
+    let second_half = speed.len() / 2..speed.len() - 1;
+    let target = median(speed[second_half.clone()].iter().copied());
+    let scatter = 1.5 * median(speed[second_half.clone()].iter().map(|v| (v - target).abs()));
+    let crossings = speed[second_half.clone()].windows(2).filter(|w| (w[0] > target) != (w[1] > target)).count();
     let steady = if crossings >= WAVERS { STEADY / 2.0 } else { STEADY };
     if target.abs() < steady * scatter || target == 0.0 {
         return None;
@@ -71,14 +72,14 @@ fn settled(
     let mut steady: Vec<bool> = speed.iter().map(|v| (v - target).abs() <= within).collect();
     let load = load.map(means);
     if let Some(load) = &load {
-        let held = median(load[late.clone()].iter().copied());
-        let scatter = 1.5 * median(load[late.clone()].iter().map(|v| (v - held).abs()));
+        let held = median(load[second_half.clone()].iter().copied());
+        let scatter = 1.5 * median(load[second_half.clone()].iter().map(|v| (v - held).abs()));
         let within = (SETTLED_SHARE * heaviest).max(5.0 * scatter);
         steady.iter_mut().zip(load).for_each(|(s, l)| *s &= (l - held).abs() <= within);
     }
     let longest = segments::stretches(&steady).into_iter().filter(|r| steady[r.start]).max_by_key(Range::len)?;
-    // Before that it may creep towards its speed.
-    let kept = longest.start.max(late.start).min(longest.end)..longest.end;
+    // Before that the speed may still approach its set point.
+    let kept = longest.start.max(second_half.start).min(longest.end)..longest.end;
     let changes = |of: &[f64]| {
         let (first, second) = of[kept.clone()].split_at(kept.len() / 2);
         let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
@@ -90,7 +91,7 @@ fn settled(
     if winds_up || changes(&speed) > KEPT_SHARE * target.abs() + by_chance {
         return None;
     }
-    // What follows a ramp at once still remembers it.
+    // The start is skipped, because hysteresis from the ramp persists there.
     let skip = 2 + longest.len() / 20;
     let (start, end) = (longest.start + skip, longest.end.min(speed.len()));
     (end >= start + 3).then(|| leg.start + start * n..leg.start + end * n)
@@ -137,10 +138,10 @@ pub fn prepare(
         main
     };
     let apart = |fastest| apart(&samples, &plateaus, fastest);
-    let told =
+    let checks =
         || (crate::preprocess::checks::unit_mismatch::clashes(run), crate::preprocess::checks::metadata::doubts(run));
     let ((main, (clashes, doubts)), (moving, memory)) =
-        rayon::join(|| rayon::join(settled, told), || rayon::join(|| apart(f64::INFINITY), || apart(slowest)));
+        rayon::join(|| rayon::join(settled, checks), || rayon::join(|| apart(f64::INFINITY), || apart(slowest)));
     let repeats = main.repeat.iter().max().copied().unwrap_or(0) > main.repeat.iter().min().copied().unwrap_or(0);
     let about = Preparation {
         residual: ResidualKind::PlateauMean,
@@ -159,13 +160,13 @@ pub fn prepare(
     Ok(Prepared { clashes, doubts, moving, memory, ..Prepared::of(run, main, about) })
 }
 
-/// What the motor gives belongs to settled motion and to ramps alike.
+/// Sets the drive torque of steady-state or moving rows.
 pub fn set_drive(problem: &mut Problem) {
     let drive = crate::preprocess::friction::drive(&problem.view.points, &problem.target);
     problem.view.points.set(Signal::Drive, drive);
 }
 
-/// Plateaus of the same speed, direction and load are one condition.
+/// Steady states of the same speed, direction and load are one condition.
 pub fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&[f64]>) -> Vec<usize> {
     let middle = |signal: &[f64], p: &Range<usize>| median(signal[p.clone()].iter().copied());
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
@@ -175,14 +176,14 @@ pub fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&
     let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let measured = samples.signals.find(Signal::Load);
     let loads = command.or(measured).map_or_else(|| vec![0.0; plateaus.len()], middles);
-    // Where nothing loads the joint, what its sensor reads is noise and small beside the torque.
+    // Without a load, the load signal is noise and small compared with the torque.
     let peak = match command {
         Some(_) => largest(&loads),
         None => largest(&loads).max(largest(&middles(&samples.target))),
     };
     let speed = blocks::clusters(&speeds, |v| 0.03 * v.abs());
     let load = blocks::clusters(&loads, |l| 0.03 * l.abs() + 0.01 * peak);
-    // Short steps and long turns at one speed are different conditions: they start at different places.
+    // Short steps and long turns at one speed are different conditions, because they start at different positions.
     let length = blocks::clusters(&lengths, |l| 0.3 * l);
     let mut known: Vec<(usize, usize, usize)> = (0..plateaus.len()).map(|i| (length[i], load[i], speed[i])).collect();
     let each = known.clone();
@@ -191,7 +192,7 @@ pub fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&
     each.iter().map(|c| known.binary_search(c).unwrap_or(0)).collect()
 }
 
-/// What is not settled and not faster than a speed, in short chunks.
+/// Short chunks of motion that is not steady and not faster than `fastest`.
 fn apart(samples: &Source, plateaus: &[Range<usize>], fastest: f64) -> Option<Problem> {
     let n = samples.chunk(MOVING_CHUNK_S);
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
@@ -206,7 +207,7 @@ fn apart(samples: &Source, plateaus: &[Range<usize>], fastest: f64) -> Option<Pr
             }
         }
     }
-    // Multiples of the golden ratio are spread evenly whatever the order of the profile.
+    // Multiples of the golden ratio are spread evenly, independent of the order of the profile.
     let share = MOST_MOVING_ROWS as f64 / chunks.len() as f64;
     chunks.retain(|(leg, _)| ((leg / 2) as f64 * 0.618_033_988_749_895).fract() < share);
     let (group, chunks): (Vec<usize>, Vec<Range<usize>>) = chunks.into_iter().unzip();
@@ -221,8 +222,8 @@ fn apart(samples: &Source, plateaus: &[Range<usize>], fastest: f64) -> Option<Pr
     Some(moving)
 }
 
-/// Where the direction changes friction jumps, and a torque that is read late jumps late: far more than the change of the
-/// acceleration is worth there. It counts where nothing turns within some samples.
+/// Sets the jerk to zero around reversals. A delayed friction torque jumps there, by far more than the jerk explains.
+/// The jerk counts only if no reversal is within some samples.
 fn still_at_turns(moving: &mut Problem, reach: usize) {
     let view = &mut moving.view;
     let direction = view.samples.find(Signal::Direction).unwrap_or_default();

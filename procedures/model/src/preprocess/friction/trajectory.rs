@@ -1,8 +1,8 @@
-//! Trajectories: filtered and decimated samples, of motion that is never cut.
+//! Trajectories: filtered and decimated samples of continuous motion.
 //!
-//! Parallel filtering after Gautier 1997. Two filters with zero phase: a light one on all signals before anything nonlinear
-//! is made of them, and a lower one on every finished column and on the torque, before one of n samples is kept. Motion comes
-//! from the position alone, so that nothing lags behind it.
+//! Parallel filtering after Gautier 1997, with two zero-phase filters. A light one filters all signals before
+//! nonlinear operations. A lower one filters every regressor and the torque before decimation. The motion is derived
+//! from the position only, so that no signal has a delay against it.
 
 use crate::preprocess::friction::bristles;
 use crate::preprocess::friction::layout::Layout;
@@ -15,17 +15,17 @@ use crate::view::{Constants, View};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
 
-/// Corner of the filter of finished columns [Hz]: bearings, gears and drives of joints resonate above it.
+/// Corner frequency of the regressor filter [Hz]: bearings, gears and drives of joints resonate above it.
 const CUTOFF_HZ: f64 = 6.0;
-/// Corners that an interval has to hold for as well, as shares of that.
+/// Other corner frequencies that the parameter intervals have to cover, as shares of it.
 const OTHER_CUTOFFS: [f64; 2] = [0.5, 5.0 / 3.0];
-/// Share of the work rate that the corner stays below.
+/// Largest corner frequency as a share of the work rate.
 const MOST_OF_RATE: f64 = 0.2;
-/// Rows for each period of the corner.
+/// Rows in each period of the corner frequency.
 const ROWS: f64 = 4.0;
-/// Of a longer run fewer are kept, down to two for each period.
+/// Largest number of rows; a longer run is decimated further, down to two rows in each period.
 const MOST_ROWS: f64 = 12_000.0;
-/// The direction turns within so many times the noise of the velocity, or this share of the fastest.
+/// Width of the direction change, as a multiple of the velocity noise, or this share of the fastest speed.
 const NOISES: f64 = 2.0;
 const LEAST_SPEED: f64 = 1e-4;
 
@@ -106,7 +106,7 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
     Ok(Prepared { bristled, clashes, doubts, ..Prepared::of(run, main, about) })
 }
 
-/// What was asked for, or the usual corner where the rate allows it.
+/// The corner frequency from the options, or the default if the rate permits it.
 fn corner(options: &Options, rate_hz: f64) -> Result<f64, ModelError> {
     let highest_hz = 0.45 * rate_hz;
     match options.cutoff_hz {
@@ -132,7 +132,7 @@ fn constants(work: &Work, bristles: &Bristles, cutoff_hz: f64, run: &RunTable) -
     }
 }
 
-/// What the velocity has between the two corners.
+/// Velocity noise between the two corner frequencies.
 fn noise(velocity: &[f64], work: &Work, cutoff_hz: f64) -> f64 {
     let smooth = filtered(velocity, &work.even, cutoff_hz, 2);
     let apart = median(velocity.iter().zip(&smooth).map(|(fast, slow)| (fast - slow).abs()));

@@ -1,18 +1,18 @@
-//! What the link weighs beside the torque that its sensor feels.
+//! Gravity torque of the link that the load sensor does not measure.
 
 use crate::linear::basis::{Basis, dot};
 use crate::signal::{Signal, Signals};
 
-/// Points that are asked at most.
+/// Largest number of evaluated points.
 const MOST: usize = 4000;
-/// Of a wave over the link's angle at least this share must be none of motion and measured load: an arm whose sensor
-/// feels its weight tells no other.
+/// Least tolerance of a wave over the link angle, given motion and measured load. An arm whose sensor measures its
+/// own weight has no other gravity torque.
 const OWN_SHARE: f64 = 0.01;
-/// A wave that takes less of what motion and measured load leave is none.
+/// Least partial R² of the wave.
 const LEAST_SHARE: f64 = 0.02;
 
-/// Torque that comes once per link turn beside the measured load, as factors of cos and sin [Nm]: what the gear's teeth
-/// carry as well where the sensor sits beyond the weight.
+/// Gravity torque in addition to the measured load, as coefficients of cos and sin of the link angle [Nm]. The gear
+/// teeth carry it too if the sensor is mounted beyond the weight.
 pub fn unmeasured(signals: &Signals, torque_nm: &[f64]) -> Option<[f64; 2]> {
     let every = torque_nm.len().div_ceil(MOST);
     let thin = |values: &[f64]| -> Vec<f64> { values.iter().step_by(every).copied().collect() };
@@ -35,7 +35,7 @@ pub fn unmeasured(signals: &Signals, torque_nm: &[f64]) -> Option<[f64; 2]> {
     if along.iter().map(|a| a * a).sum::<f64>() < LEAST_SHARE * dot(&left, &left) {
         return None;
     }
-    // Back from the basis to the waves: the second vector holds a part of the first wave.
+    // Converts basis coefficients to wave coefficients: the second basis vector contains a part of the first wave.
     let g_s = along[1] / dot(s, &waves[1]);
     Some([(along[0] - g_s * dot(c, &waves[1])) / dot(c, &waves[0]), g_s])
 }
@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn a_weight_is_told_where_the_load_does_not_hold_it() {
+    fn a_weight_outside_of_the_load_is_found() {
         let (known, torque) = signals(false);
         let [c, s] = unmeasured(&known, &torque).unwrap();
         assert!((c - 0.02).abs() < 0.01 && (s + 0.05).abs() < 0.01, "{c} {s}");

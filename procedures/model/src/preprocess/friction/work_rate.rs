@@ -1,15 +1,15 @@
-//! Samples at one even rate: what filters, derivatives and operators that remember are made for.
+//! Resampling to an even rate, which filters, derivatives and hysteresis operators require.
 
 use crate::preprocess::filter::LowPass;
 
-/// Samples for each second that nonlinear columns are computed at, at most.
+/// Largest sample rate for the computation of nonlinear columns [Hz].
 const WORK_HZ: f64 = 500.0;
 
-/// A run of more samples than these is worked on more coarsely, to no less than [`LEAST_HZ`].
+/// A run with more samples is resampled to a lower rate, at least [`LEAST_HZ`].
 const MOST_SAMPLES: f64 = 150_000.0;
 const LEAST_HZ: f64 = 100.0;
 
-/// Moments this near to those of an even rate are even, as a share of the step.
+/// Tolerance of even sample times, as a share of the step.
 const EVEN: f64 = 1e-3;
 
 /// Columns at the work rate.
@@ -19,13 +19,13 @@ pub struct Even {
     pub step_s: f64,
     /// First samples of recordings.
     pub starts: Vec<usize>,
-    /// The sample of the run at, or just before, each of these.
+    /// The original sample at, or just before, each new sample.
     pub source: Vec<usize>,
-    /// Samples of the run for each of these.
+    /// Original samples for each new sample.
     pub every: usize,
 }
 
-/// Columns on the straight lines between their samples, low-passed and decimated together.
+/// Linearly interpolated columns, low-pass filtered and decimated together.
 pub fn even(columns: &[&[f64]], time_s: &[f64], starts: &[usize], step_s: f64) -> Even {
     let rate_hz = 1.0 / step_s;
     let most_hz = WORK_HZ.min((MOST_SAMPLES * rate_hz / time_s.len() as f64).max(LEAST_HZ));
@@ -55,7 +55,7 @@ pub fn even(columns: &[&[f64]], time_s: &[f64], starts: &[usize], step_s: f64) -
     out
 }
 
-/// The sample before each moment of an even rate, and the way from there to the next one.
+/// The sample before each moment of an even rate, and the interpolation weight of the next one.
 fn places(time_s: &[f64], step_s: f64) -> Vec<(usize, f64)> {
     let count = ((time_s[time_s.len() - 1] - time_s[0]) / step_s + EVEN).floor() as usize + 1;
     let mut sample = 0;
@@ -69,7 +69,7 @@ fn places(time_s: &[f64], step_s: f64) -> Vec<(usize, f64)> {
                 return (0, 0.0);
             }
             let share = ((moment_s - time_s[sample]) / (time_s[sample + 1] - time_s[sample])).clamp(0.0, 1.0);
-            // What lies on a sample is that sample.
+            // A moment on a sample gets the value of that sample.
             let share = if share < EVEN {
                 0.0
             } else if share > 1.0 - EVEN {

@@ -1,21 +1,21 @@
-//! Axes that a residual may depend on, cut into bins.
+//! Axes that a residual may depend on, divided into bins.
 
 use crate::preprocess::{Prepared, Problem};
 use crate::signal::Signal;
 use jointbench_instrument::Kind;
 use std::f64::consts::TAU;
 
-/// One quantity at the rows, in the column's own unit, with the bin of every row.
+/// One quantity at the rows, in the unit of its column, with the bin of every row.
 #[derive(Debug, Clone)]
 pub struct BinnedAxis {
-    /// Column name of the run table, or what the quantity is where it is none.
+    /// Column name of the run table, or the name of a derived quantity.
     pub name: String,
     pub unit: String,
     pub values: Vec<f64>,
     pub bin: Vec<usize>,
     /// Smallest, mean and largest value of the rows of each bin.
     pub bins: Vec<Bin>,
-    /// What a piece of the run was held at, and not what passes in it.
+    /// Whether the quantity is constant within a block of the run.
     pub is_held: bool,
 }
 
@@ -29,10 +29,10 @@ pub struct Bin {
 const BINS: usize = 24;
 const ANGLE_BINS: usize = 60;
 
-/// Set points closer than this share of themselves are one.
+/// Set points that differ by less than this relative amount share a bin.
 const SAME_LEVEL: f64 = 0.03;
 
-/// Every axis that the run has and that changes. Two that say the same are shown once.
+/// Every axis of the run whose quantity changes. Of two axes with the same values only the first is shown.
 pub fn scales(prepared: &Prepared) -> Vec<BinnedAxis> {
     let problem = &prepared.main;
     let mut scales: Vec<BinnedAxis> = Vec::new();
@@ -48,21 +48,22 @@ pub fn scales(prepared: &Prepared) -> Vec<BinnedAxis> {
         Signal::Drive,
         Signal::Direction,
     ] {
-        let tells = signal != Signal::Load || prepared.kind != Kind::Friction || problem.view.bears_load();
-        let Some(values) = problem.view.find(signal).filter(|_| tells) else {
+        let is_informative = signal != Signal::Load || prepared.kind != Kind::Friction || problem.view.bears_load();
+        let Some(values) = problem.view.find(signal).filter(|_| is_informative) else {
             continue;
         };
-        let factor = prepared.column_scale(signal);
-        let values: Vec<f64> = problem.reduce.apply(values.to_vec()).into_iter().map(|v| v * factor).collect();
+        let unit_scale = prepared.column_scale(signal);
+        let values: Vec<f64> = problem.reduce.apply(values.to_vec()).into_iter().map(|v| v * unit_scale).collect();
         let (name, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
         let scale = match signal {
             Signal::Velocity | Signal::Load if problem.settled => {
-                let held = piece_means(&values, problem);
+                let held = block_means(&values, problem);
                 BinnedAxis::new(name, unit, levels(&held), held).held()
             }
-            // The response's own noise would sort its residual: only its mean over a piece says how hard the drive worked.
+            // The residual contains the noise of the response, so that bins of the response itself would show a false
+            // line. The mean over a block has little noise.
             Signal::Drive if problem.settled => {
-                let held = piece_means(&values, problem);
+                let held = block_means(&values, problem);
                 BinnedAxis::new(name, unit, quantiles(&held, BINS), held).held()
             }
             Signal::Link | Signal::Position => {
@@ -86,8 +87,8 @@ pub fn scales(prepared: &Prepared) -> Vec<BinnedAxis> {
         let values = problem.reduce.apply(problem.view.get(signal).to_vec());
         let (column, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
         let as_read = BinnedAxis::new(column, unit.clone(), quantiles(&values, BINS), values);
-        // A sensor that nobody knows may hold the noise of the response: only its mean over a piece says where that was.
-        let held = piece_means(&as_read.values, problem);
+        // An unknown sensor may share the noise of the response; the mean over a block has little noise.
+        let held = block_means(&as_read.values, problem);
         let scale = BinnedAxis::new(column, unit, quantiles(&held, BINS), held);
         if scale.bins.len() > 1 && !scales.iter().any(|s| s.says_the_same(&as_read)) {
             scales.push(scale);
@@ -115,7 +116,7 @@ impl BinnedAxis {
         Self { is_held: true, ..self }
     }
 
-    /// The same quantity in about equally filled, fewer bins, for a map over two.
+    /// The same quantity in fewer bins with about equally many rows, for a map over two axes.
     pub fn coarse(&self, count: usize) -> Self {
         if self.bins.len() <= count {
             return self.clone();
@@ -124,14 +125,14 @@ impl BinnedAxis {
         Self { is_held: self.is_held, ..coarse }
     }
 
-    /// The size of the quantity without its sign.
+    /// The absolute value of the quantity.
     pub fn size(&self, name: &str) -> Self {
         let values: Vec<f64> = self.values.iter().map(|v| v.abs()).collect();
         Self::new(name, self.unit.clone(), levels(&values), values)
     }
 
-    /// It is the time, or grew or fell with it nearly always.
-    pub fn goes_with_time(&self) -> bool {
+    /// Whether the axis is the time, or correlates with it nearly perfectly.
+    pub fn correlates_with_time(&self) -> bool {
         const NEARLY: f64 = 0.9;
         let middle = 0.5 * (self.bin.len() as f64 - 1.0);
         let mean = self.bin.iter().sum::<usize>() as f64 / self.bin.len() as f64;
@@ -150,15 +151,15 @@ impl BinnedAxis {
     }
 }
 
-/// Angles of more than one turn, folded into one.
+/// Angles of more than one turn, folded into one turn.
 fn turned(values: Vec<f64>) -> Vec<f64> {
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     if high - low > TAU { values.into_iter().map(|a| a.rem_euclid(TAU)).collect() } else { values }
 }
 
-/// Each value replaced by the mean of its block. The residual holds the noise of the load sensor: sorted by the noisy
-/// load itself it would show a line that is not there.
-fn piece_means(values: &[f64], problem: &Problem) -> Vec<f64> {
+/// Replaces each value by the mean of its block. The residual contains the noise of the load sensor, so that bins of
+/// the noisy load would show a false line.
+fn block_means(values: &[f64], problem: &Problem) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); problem.blocks];
     for (v, b) in values.iter().zip(&problem.block) {
         sums[*b].0 += v;
@@ -167,7 +168,7 @@ fn piece_means(values: &[f64], problem: &Problem) -> Vec<f64> {
     problem.block.iter().map(|b| sums[*b].0 / sums[*b].1).collect()
 }
 
-/// Since the first row after the last reversal [s].
+/// Time since the first row after the last reversal [s].
 fn since_reversal(problem: &Problem) -> Vec<f64> {
     let row = |signal| problem.reduce.apply(problem.view.get(signal).to_vec());
     let (time, direction) = (row(Signal::Time), row(Signal::Direction));
@@ -182,7 +183,7 @@ fn since_reversal(problem: &Problem) -> Vec<f64> {
         .collect()
 }
 
-/// Bins of equal width over the range, empty ones left out.
+/// Bins of equal width over the range, without empty ones.
 fn even(values: &[f64], count: usize) -> Vec<usize> {
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     if high <= low {
@@ -202,17 +203,18 @@ fn even(values: &[f64], count: usize) -> Vec<usize> {
     bin.iter().map(|b| number[*b] - 1).collect()
 }
 
-/// Bins with about equally many rows; equal values stay together.
+/// Bins with about equally many rows; equal values share a bin.
 fn quantiles(values: &[f64], count: usize) -> Vec<usize> {
     fill(values, count, |_, gap| gap > 0.0)
 }
 
-/// The same where the values are set points: those that lie close together stay together.
+/// The same for set points: values that are close together share a bin.
 fn levels(values: &[f64]) -> Vec<usize> {
     fill(values, BINS, |value, gap| gap > SAME_LEVEL * value.abs())
 }
 
-/// Fills one bin after the other in the order of the values; `may_part` says at which value and gap a bin may end.
+/// Fills one bin after the other in the order of the values; `may_part` returns whether a bin may end at a value and
+/// gap.
 fn fill(values: &[f64], count: usize, may_part: impl Fn(f64, f64) -> bool) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));

@@ -1,4 +1,4 @@
-//! All maps of a fit on a run, for pictures.
+//! All maps of a fit on a run, for display.
 
 use crate::prediction::{predict, prepare_alike};
 use crate::report::fit::Fit;
@@ -9,11 +9,10 @@ use crate::residual_analysis::maps::regions::yardstick;
 use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
 
-/// The residual of a fit on a run over every axis that the run has, and over chosen pairs of them.
+/// The residual of a fit on a run over every axis of the run, and over selected pairs of axes.
 ///
-/// The run is prepared as it was for the fit, so a fit can be mapped on any run of its kind. Of `options` only `alpha`
-/// is used: the bands hold for all bins of all
-/// maps together with that certainty.
+/// The run is preprocessed as for the fit, so that a fit can be mapped on any run of its kind. Only `alpha` of
+/// `options` is used: the bands hold for all bins of all maps together with that error probability.
 pub fn maps(run: &RunTable, fit: &Fit, options: &Options) -> Result<ResidualMaps, ModelError> {
     options.check()?;
     let prepared = prepare_alike(fit, run)?;
@@ -24,13 +23,14 @@ pub fn maps(run: &RunTable, fit: &Fit, options: &Options) -> Result<ResidualMaps
     let speed = axis("velocity").map(|v| v.size("speed"));
     let mut chosen = vec![(speed.as_ref(), axis("direction"))];
     chosen.extend(["link_torque", "temperature", "brake_current"].map(|x| (axis(x), axis("velocity"))));
-    let beside: Vec<Map> = chosen.into_iter().filter_map(|(x, y)| Some(maps.pair(x?, y?, &prepared.main))).collect();
-    maps.cells += beside.iter().map(|m| m.cells.len()).sum::<usize>();
+    let chosen_pairs: Vec<Map> =
+        chosen.into_iter().filter_map(|(x, y)| Some(maps.pair(x?, y?, &prepared.main))).collect();
+    maps.cells += chosen_pairs.iter().map(|m| m.cells.len()).sum::<usize>();
     let unit = prepared.unit();
     Ok(ResidualMaps {
         residual: prepared.about.residual,
         axes: maps.axes.iter().map(|m| maps.public_axis(m)).collect(),
-        pairs: maps.by_direction.iter().chain(&beside).map(|m| maps.public_pair(m, maps.cells)).collect(),
+        pairs: maps.by_direction.iter().chain(&chosen_pairs).map(|m| maps.public_pair(m, maps.cells)).collect(),
         regions: maps.regions(&unit, yardstick(fit, None).as_ref()),
         unit,
     })

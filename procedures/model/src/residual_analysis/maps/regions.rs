@@ -1,4 +1,4 @@
-//! The worst regions of the maps, in sentences with figures.
+//! The worst regions of the maps, as sentences with figures.
 
 use crate::report::diagnosis::NoiseFloor;
 use crate::report::fit::Fit;
@@ -10,10 +10,10 @@ use crate::thresholds::{AXIS_DOMINATES, AXIS_SHADOW, REGION_OVERLAP, REGION_WORS
 use crate::words::{figure, percent, spoken_axis, way};
 use jointbench_instrument::Kind;
 
-/// More regions than these nobody reads.
+/// Largest number of reported regions.
 const MOST: usize = 8;
 
-/// What an error is measured against in words.
+/// The reference magnitude of an error in a sentence.
 pub struct ReferenceMagnitude {
     value: f64,
     /// `the Coulomb friction`, `the noise`.
@@ -31,7 +31,7 @@ impl ReferenceMagnitude {
     }
 }
 
-/// Coulomb friction where the model has it, how well the run repeats itself else.
+/// Coulomb friction if the model has it, otherwise the noise floor.
 pub fn yardstick(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<ReferenceMagnitude> {
     let coulomb = fit.parameters.iter().find(|p| p.effect == "coulomb" && p.value > 0.0);
     let coulomb = coulomb.map(|p| ReferenceMagnitude { value: p.value, what: "the Coulomb friction" });
@@ -41,7 +41,7 @@ pub fn yardstick(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<ReferenceMagni
     })
 }
 
-/// Neighbouring cells of one sign that are all beyond their bands.
+/// Neighbouring cells of one sign that all exceed their bands.
 struct Stretch<'m> {
     map: &'m Map,
     first: usize,
@@ -58,32 +58,32 @@ pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&ReferenceMagnitude>) 
         stretches.retain(|stretch| stretch.map.removable > AXIS_SHADOW * best.removable);
     }
     stretches.sort_by(|a, b| b.weight().total_cmp(&a.weight()));
-    // What lies at a time lies there because of what was done then, where another axis tells it too.
+    // A region over time usually follows from another axis, which is reported first.
     stretches.sort_by_key(|stretch| stretch.map.x.name == "time_s");
-    let mut told: Vec<(&Stretch, Vec<usize>)> = Vec::new();
+    let mut reported: Vec<(&Stretch, Vec<usize>)> = Vec::new();
     for stretch in &stretches {
         let rows = stretch.rows();
         let again = |(other, known): &(&Stretch, Vec<usize>)| {
             let no_worse = stretch.mean / other.mean < REGION_WORSE && stretch.mean * other.mean > 0.0;
             no_worse && inside(&rows, known) >= REGION_OVERLAP
         };
-        if told.len() < MOST && !told.iter().any(again) {
-            told.push((stretch, rows));
+        if reported.len() < MOST && !reported.iter().any(again) {
+            reported.push((stretch, rows));
         }
     }
-    told.sort_by(|(a, _), (b, _)| b.weight().total_cmp(&a.weight()));
-    told.iter().map(|(stretch, _)| stretch.region(maps.kind, unit, yardstick)).collect()
+    reported.sort_by(|(a, _), (b, _)| b.weight().total_cmp(&a.weight()));
+    reported.iter().map(|(stretch, _)| stretch.region(maps.kind, unit, yardstick)).collect()
 }
 
-/// The map that takes most off by far, where none of its axis's parts was passed often enough to have a band: what other axes
-/// show is then its shadow.
+/// The dominating map, if none of the bins of its axis has enough blocks for a band. Regions over other axes are then
+/// only a consequence of it.
 fn unbanded(maps: &Maps) -> Option<&Map> {
     let best = maps.best().filter(|best| best.removable > AXIS_DOMINATES)?;
     let mut of_axis = maps.axes.iter().chain(&maps.by_direction).filter(|map| map.x.name == best.x.name);
     of_axis.all(|map| map.cells.iter().all(|cell| maps.half_width(cell).is_none())).then_some(best)
 }
 
-/// Why no region is named, with the part of an axis that comes nearest to being one.
+/// Why no region is reported, with the part of an axis that is closest to significance.
 pub fn nowhere(maps: &Maps, unit: &str) -> String {
     let of = |map: &Map, cell: &Cell, half_width: f64| {
         let (mean, count) = (cell.mean, cell.rows);
@@ -110,25 +110,25 @@ pub fn nowhere(maps: &Maps, unit: &str) -> String {
         "; closest to significance, {} (±{} from {} independent blocks)",
         of(map, cell, half_width).sentence,
         figure(half_width, unit),
-        cell.pieces,
+        cell.blocks,
     )
 }
 
-/// Share of the rows that are among others in rising order.
+/// Share of the rows that are in `others`, which are in rising order.
 fn inside(rows: &[usize], others: &[usize]) -> f64 {
     let shared = rows.iter().filter(|row| others.binary_search(row).is_ok()).count();
     shared as f64 / rows.len().max(1) as f64
 }
 
-/// Joins what lies beside each other: the mean of means lies within the mean of their bands.
+/// Joins neighbouring cells: the mean of the means lies within the mean of their bands.
 fn join<'m>(maps: &Maps, map: &'m Map) -> Vec<Stretch<'m>> {
     let mut out: Vec<Stretch> = Vec::new();
     let mut cells: Vec<&Cell> = map.cells.iter().collect();
     cells.sort_by_key(|c| (c.y, c.x));
     for cell in cells {
         let Some(half_width) = maps.half_width(cell).filter(|h| cell.mean.abs() > *h) else { continue };
-        let beside = |s: &&mut Stretch| s.y == cell.y && s.last + 1 == cell.x && s.mean * cell.mean > 0.0;
-        match out.last_mut().filter(beside) {
+        let adjacent = |s: &&mut Stretch| s.y == cell.y && s.last + 1 == cell.x && s.mean * cell.mean > 0.0;
+        match out.last_mut().filter(adjacent) {
             Some(s) => {
                 let (n, more) = (s.count as f64, cell.rows as f64);
                 s.mean = (s.mean * n + cell.mean * more) / (n + more);
@@ -146,7 +146,7 @@ fn join<'m>(maps: &Maps, map: &'m Map) -> Vec<Stretch<'m>> {
 }
 
 impl Stretch<'_> {
-    /// Squared error that it stands for.
+    /// Squared error that the region explains.
     fn weight(&self) -> f64 {
         self.mean.powi(2) * self.count as f64
     }
@@ -189,7 +189,7 @@ impl Stretch<'_> {
         }
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
         if x.name == "repeat" {
-            // People count from one, whatever the column begins with.
+            // Repeats are counted from one, independent of the first number in the column.
             let [from, to] = [from, to].map(|repeat| repeat - x.bins[0].from + 1.0);
             return if from == to { format!("in repeat {from}") } else { format!("in repeats {from} to {to}") };
         }

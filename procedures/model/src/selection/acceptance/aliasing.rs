@@ -1,8 +1,8 @@
-//! Whether what looks like a wave over an angle is one.
+//! Rejects aliased periodic candidates: signals that only look like a wave over an angle.
 //!
-//! Whatever repeats with time at one speed is a wave over the angle there, with the number that fits: the counts of an
-//! encoder that beat with the samples, and how a drive settles behind every reversal. A wave over the angle shows at
-//! every speed at which it passes slowly enough, and it is in the samples as well as in their means.
+//! A signal that repeats with time looks at one speed like a wave over the angle with a suitable order. Examples are
+//! encoder counts that beat with the sampling, and the settling of a drive after each reversal. A real wave over the
+//! angle shows at every speed at which it passes slowly enough. It shows in the samples as well as in their means.
 
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::Problem;
@@ -16,16 +16,16 @@ use crate::thresholds::{
 use crate::view::View;
 use std::ops::Range;
 
-/// The samples of more rows than these say no more.
+/// More sample rows than these add no information.
 const MOST_ROWS: usize = 4_000;
 
-/// The least share of the squared error that an effect must take for its waves' sake.
+/// Least partial R² of a periodic effect whose order was searched among many.
 pub fn least_share(term: &Term) -> f64 {
     let sought = term.effect.wave().is_some() && term.form.grid.len() >= MANY_ORDERS as usize;
     if sought { PERIODIC_SHARE } else { 0.0 }
 }
 
-/// The wave is not in the data where it has to be.
+/// Whether the wave is missing in data where it has to be present.
 pub fn is_none(term: &Term, now: &LinearModel, ground: &PartialRegression) -> bool {
     if term.effect.wave().is_none() || !now.problem.settled || term.columns.is_empty() {
         return false;
@@ -34,28 +34,29 @@ pub fn is_none(term: &Term, now: &LinearModel, ground: &PartialRegression) -> bo
     part.shows_at_one_speed(now.problem) || part.is_beat(term, now.problem)
 }
 
-/// A wave beside the model, of the size that explains most.
+/// A candidate wave, orthogonal to the model, with its least-squares coefficients.
 struct Part {
     stretches: Vec<Range<usize>>,
-    factors: Vec<f64>,
-    /// What it takes of the residual in each stretch, and what it would take where it is there as it should be.
+    coefficients: Vec<f64>,
+    /// Error reduction in each stretch, and the reduction that is expected if the wave is present with the same
+    /// amplitude.
     found: Vec<f64>,
-    asked: Vec<f64>,
+    expected: Vec<f64>,
 }
 
 impl Part {
     fn of(term: &Term, problem: &Problem, ground: &PartialRegression) -> Self {
         let stretches = stretches(&problem.segment);
-        let factors = ground.own(&term.columns).factors();
+        let coefficients = ground.own(&term.columns).coefficients();
         let mut wave = vec![0.0; problem.rows()];
-        for (column, factor) in term.columns.iter().zip(&factors) {
-            wave.iter_mut().zip(ground.basis.rest(column)).for_each(|(w, c)| *w += factor * c);
+        for (column, coefficient) in term.columns.iter().zip(&coefficients) {
+            wave.iter_mut().zip(ground.basis.rest(column)).for_each(|(w, c)| *w += coefficient * c);
         }
-        let (found, asked) = (products(&wave, &ground.residual, &stretches), products(&wave, &wave, &stretches));
-        Self { stretches, factors, found, asked }
+        let (found, expected) = (products(&wave, &ground.residual, &stretches), products(&wave, &wave, &stretches));
+        Self { stretches, coefficients, found, expected }
     }
 
-    /// Nothing of it shows at any other speed than the one at which it explains most, though it would.
+    /// Whether the wave shows only at the speed at which it explains most, although other speeds would show it too.
     fn shows_at_one_speed(&self, problem: &Problem) -> bool {
         let velocity = problem.view.get(Signal::Velocity);
         let mean = |rows: &Range<usize>| velocity[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
@@ -70,11 +71,12 @@ impl Part {
         let Some((main, _)) = by_speed.iter().max_by(|a, b| gain(a.0).total_cmp(&gain(b.0))) else { return false };
         let (here, end) = (near(*main), slower(COMPARABLE_SPEED * main));
         let others = by_speed[..here.start].iter().chain(&by_speed[here.end..end.max(here.end)]);
-        let (found, asked): (Vec<f64>, Vec<f64>) = others.map(|(_, k)| (self.found[*k], self.asked[*k])).unzip();
-        is_missing(&found, &asked)
+        let (found, expected): (Vec<f64>, Vec<f64>) = others.map(|(_, k)| (self.found[*k], self.expected[*k])).unzip();
+        is_missing(&found, &expected)
     }
 
-    /// It shows where means follow it too slowly to tell, and the samples behind these know nothing of it.
+    /// Whether the wave shows only where the means follow it too slowly, and the samples behind those means do not
+    /// contain it.
     fn is_beat(&self, term: &Term, problem: &Problem) -> bool {
         let view = &problem.view;
         let Some(angle) = term.effect.wave().and_then(|angle| view.samples.find(angle)) else { return false };
@@ -94,13 +96,13 @@ impl Part {
             rows += self.stretches[*k].len();
             rows <= MOST_ROWS
         });
-        let asked: Vec<f64> = swift.iter().map(|k| self.asked[*k]).collect();
+        let expected: Vec<f64> = swift.iter().map(|k| self.expected[*k]).collect();
         let share = swift.iter().map(|k| self.share_of_samples(term, problem, &self.stretches[*k]));
-        let found: Vec<f64> = share.zip(&asked).map(|(share, asked)| share * asked).collect();
-        is_missing(&found, &asked)
+        let found: Vec<f64> = share.zip(&expected).map(|(share, expected)| share * expected).collect();
+        is_missing(&found, &expected)
     }
 
-    /// What it takes of the samples of a stretch, as a share of what it should.
+    /// Found amplitude in the samples of a stretch, relative to the expected amplitude.
     fn share_of_samples(&self, term: &Term, problem: &Problem, rows: &Range<usize>) -> f64 {
         let view = &problem.view;
         let range = view.chunks[rows.start].start..view.chunks[rows.end - 1].end;
@@ -111,20 +113,23 @@ impl Part {
         let trend = (0..range.len()).map(|i| i as f64).collect();
         let basis = Basis::of([vec![1.0; range.len()], trend].iter().chain(&load));
         let mut wave = vec![0.0; range.len()];
-        for (column, factor) in term.effect.columns(term.form.name, &term.shape, &at).iter().zip(&self.factors) {
-            wave.iter_mut().zip(basis.rest(column)).for_each(|(w, c)| *w += factor * c);
+        for (column, coefficient) in
+            term.effect.columns(term.form.name, &term.shape, &at).iter().zip(&self.coefficients)
+        {
+            wave.iter_mut().zip(basis.rest(column)).for_each(|(w, c)| *w += coefficient * c);
         }
         dot(&wave, &problem.sampled[range]) / dot(&wave, &wave).max(f64::MIN_POSITIVE)
     }
 }
 
-/// Clearly less than half of what is asked was found.
-fn is_missing(found: &[f64], asked: &[f64]) -> bool {
-    let (sum, all) = (found.iter().sum::<f64>(), asked.iter().sum::<f64>());
+/// Whether less than `ALIAS_SHARE` of the expected reduction was found, and the difference to all of it is
+/// significant.
+fn is_missing(found: &[f64], expected: &[f64]) -> bool {
+    let (sum, all) = (found.iter().sum::<f64>(), expected.iter().sum::<f64>());
     if all <= 0.0 {
         return false;
     }
     let share = sum / all;
-    let error = found.iter().zip(asked).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt() / all;
+    let error = found.iter().zip(expected).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt() / all;
     share < ALIAS_SHARE && 1.0 - share > ALIAS_ERRORS * error
 }

@@ -1,7 +1,8 @@
-//! Whether an effect that differs from leg to leg is more than the legs scatter by.
+//! Tests an effect that differs from leg to leg against the scatter between legs.
 //!
-//! The blocks that are turned over are parts of long legs. What a whole leg has in common (where an encoder came to rest in
-//! its coupling, where a gear rests) is in all of them, and few legs in a row lie apart like a step in time.
+//! The permutation test flips the signs of blocks, and blocks are parts of long legs. An offset of a whole leg is
+//! common to all its blocks, for example the rest position of an encoder in its coupling or of a gear. A few
+//! consecutive legs can then differ like a step in time.
 
 use crate::Options;
 use crate::effect::ShapeSearch;
@@ -18,8 +19,9 @@ use jointbench_instrument::Kind;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::ops::Range;
 
-/// What the columns of an effect have of their own beside the model, against the scatter of whole legs. What differs from leg
-/// to leg has to pass an F-test of their means: a step may lie between any two legs, and one within a leg moves its mean too.
+/// Whether the part of an effect that is orthogonal to the model is explained by the scatter of whole legs. An effect
+/// that differs from leg to leg has to pass an F-test of the leg means. A step counts as one of several places: it
+/// can lie between any two legs, and a step within a leg moves the mean of that leg too.
 pub fn is_random_leg_effect(
     term: &Term,
     now: &LinearModel,
@@ -27,7 +29,7 @@ pub fn is_random_leg_effect(
     kind: Kind,
     options: &Options,
 ) -> bool {
-    // A friction run has a leg for every speed both ways: its blocks are its legs.
+    // A friction run has one leg for each speed and direction, so that its blocks already are its legs.
     if kind == Kind::Friction {
         return false;
     }
@@ -38,7 +40,7 @@ pub fn is_random_leg_effect(
         return !shows_within(&own, &legs, ground, now.problem, options)
             && !shows_between(&own, term, &legs, ground, options);
     }
-    // The model has taken its own share of what the legs scatter by.
+    // The leg-constant columns of the model use degrees of freedom of the leg means.
     let taken = now.columns().into_iter().filter(|column| is_between(column, &legs)).count() as f64;
     let explained = own.len() as f64;
     let free = legs.len() as f64 - taken - explained;
@@ -53,7 +55,7 @@ pub fn is_random_leg_effect(
     FisherSnedecor::new(explained, free).is_ok_and(|law| places * (1.0 - law.cdf(f)) > options.alpha)
 }
 
-/// An effect of a model shows within blocks, with a zero of its own for each.
+/// Whether an effect of a model is significant within blocks, with a separate offset for each block.
 pub fn shows_within_blocks(term: &Term, now: &LinearModel, options: &Options) -> bool {
     let without = now.without(term.id());
     let ground = PartialRegression::of(&without);
@@ -61,7 +63,7 @@ pub fn shows_within_blocks(term: &Term, now: &LinearModel, options: &Options) ->
     shows_within(&own, &stretches(&without.problem.block), &ground, without.problem, options)
 }
 
-/// The effect shows within legs, with a zero of its own for each.
+/// Whether the effect is significant within legs, with a separate offset for each leg.
 fn shows_within(
     own: &[Vec<f64>],
     legs: &[Range<usize>],
@@ -76,7 +78,7 @@ fn shows_within(
     chance(&columns, &PartialRegression::new(basis, residual, problem), options) <= options.alpha
 }
 
-/// Its size stands out of what it would be without one leg after the other.
+/// Whether the coefficient of the effect is significant in a delete-one-leg jackknife.
 fn shows_between(
     own: &[Vec<f64>],
     term: &Term,
@@ -85,14 +87,14 @@ fn shows_between(
     options: &Options,
 ) -> bool {
     let mut taken = vec![0.0; ground.residual.len()];
-    for (column, factor) in own.iter().zip(ground.own(&term.columns).factors()) {
-        taken.iter_mut().zip(column).for_each(|(t, v)| *t += factor * v);
+    for (column, coefficient) in own.iter().zip(ground.own(&term.columns).coefficients()) {
+        taken.iter_mut().zip(column).for_each(|(t, v)| *t += coefficient * v);
     }
     let (sums, squares) = (products(&taken, &ground.residual, legs), products(&taken, &taken, legs));
     jackknife(&sums, &squares).is_some_and(|chance| chance <= options.alpha)
 }
 
-/// Legs too few to tell their scatter: a step is one where it is larger than what the readings scatter by.
+/// For too few legs to estimate their scatter: a step is rejected unless it exceeds the scatter of the readings.
 fn is_small(column: &[f64], residual: &[f64]) -> bool {
     let (square, along) = (dot(column, column), dot(column, residual));
     let left = (dot(residual, residual) - along * along / square).max(0.0) / residual.len() as f64;

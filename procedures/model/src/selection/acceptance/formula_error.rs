@@ -1,27 +1,27 @@
-//! An effect is named only where it explains more than the formulas of the other effects may leave.
+//! A candidate enters only if it explains more than the formula error of the other effects.
 
 use crate::Options;
 use crate::thresholds::{FORMULA_ERROR, UNMISTAKABLE_SHARE};
 use jointbench_instrument::Kind;
 
-/// What an effect must explain to be worth a name.
+/// Thresholds that a candidate has to reach.
 #[derive(Clone, Copy)]
 pub struct AcceptanceThreshold<'l> {
-    /// Squared error of the baseline, with what formulas explain that are exact.
+    /// Squared error of the baseline model with all effects whose formula is exact.
     pub plain: f64,
     pub kind: Kind,
     pub options: &'l Options,
 }
 
-/// No formula fits nature better than to this share of what it explains, squared (4.5 % in RMS). But an encoder's errors
-/// are waves over its own angle, steps and slopes: their formulas are no approximations.
+/// Relative formula error: no formula fits nature better than to this share of what it explains, squared (4.5 % in
+/// RMS). Encoder errors are waves over the encoder's own angle, steps and slopes. Their formulas are exact.
 fn form_error(kind: Kind) -> f64 {
     if kind == Kind::Encoder { 0.0 } else { FORMULA_ERROR }
 }
 
 impl AcceptanceThreshold<'_> {
-    /// The least share of the squared error `energy` that an effect must take beside a model: what the formulas of its
-    /// effects may leave is none.
+    /// Least partial R² of a candidate for a model with the squared error `energy`. A reduction within the formula
+    /// error of the other effects is no evidence.
     pub fn least_share(&self, energy: f64) -> f64 {
         let remainder = form_error(self.kind) * (self.plain - energy).max(0.0);
         self.options.practical_share.max((remainder / energy).min(UNMISTAKABLE_SHARE))

@@ -1,4 +1,4 @@
-//! What a candidate has to pass before it enters a model, one rule a file.
+//! Rules that a candidate has to pass before it enters a model, one file for each rule.
 
 pub(crate) mod aliasing;
 pub(crate) mod between_leg_variance;

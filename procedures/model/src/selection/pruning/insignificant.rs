@@ -1,19 +1,20 @@
-//! An added effect that brings too little on held-out data.
+//! Removes an added effect that hardly reduces the validation error.
 
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::Term;
 use crate::selection::floating_search::FloatingSearch;
 use rayon::prelude::*;
 
 impl<'p> FloatingSearch<'_, 'p> {
-    /// The added effect that brings least on what was held out, where that is not worth a name: whatever came in since
-    /// explains the rest of it. Asked when nothing more can be added, because on the way two effects may mask each other.
+    /// The added effect with the smallest reduction of the validation error, if that is too small because later
+    /// effects explain the same. This rule runs after the last addition, because two effects may mask each other
+    /// before.
     pub(crate) fn idle(&self) -> Option<&'p str> {
-        let present = held_out(&self.now).iter().sum::<f64>();
+        let present = validation_losses(&self.now).iter().sum::<f64>();
         let on_trial: Vec<&Term<'p>> = self.on_trial().collect();
         let idle = on_trial.into_par_iter().filter_map(|term| {
             let without = self.model_without(term.id());
-            let share = 1.0 - present / held_out(&without).iter().sum::<f64>();
+            let share = 1.0 - present / validation_losses(&without).iter().sum::<f64>();
             (share < self.options.practical_share).then_some((term.id(), share))
         });
         idle.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)

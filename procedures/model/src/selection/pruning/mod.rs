@@ -1,4 +1,4 @@
-//! Why an added effect leaves a model again, one rule a file.
+//! Rules that remove an added effect from a model, one file for each rule.
 
 pub(crate) mod infeasible;
 pub(crate) mod insignificant;

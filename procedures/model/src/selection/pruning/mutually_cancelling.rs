@@ -1,22 +1,24 @@
-//! An added effect that drives a given one below zero.
+//! Removes an added effect that makes a coefficient of a given effect negative.
 
 use crate::effect::Regime;
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::selection::floating_search::FloatingSearch;
 use jointbench_instrument::Kind;
 use rayon::prelude::*;
 
 impl<'p> FloatingSearch<'_, 'p> {
-    /// The added effect of friction that drives a given one below zero in the shapes in which all of them ended, as two
-    /// that cancel each other do; of several that without which the model is best.
+    /// The added friction effect that makes a given coefficient negative at the final nonlinear parameters: the two
+    /// cancel each other. If several do, the one without which the validation error is smallest.
     pub(crate) fn mutually_cancelling(&self) -> Option<&'p str> {
         if self.library.kind != Kind::Friction {
             return None;
         }
         let impossible = |terms: &LinearModel<'p>| {
-            let sized = terms.terms.iter().zip(terms.linear().factors);
-            sized.filter(|(term, factors)| self.initial_terms.contains(&term.id()) && !term.allows(factors)).count()
+            let sized = terms.terms.iter().zip(terms.linear().coefficients);
+            sized
+                .filter(|(term, coefficients)| self.initial_terms.contains(&term.id()) && !term.allows(coefficients))
+                .count()
         };
         let all = impossible(&self.now);
         if all == 0 {
@@ -26,7 +28,7 @@ impl<'p> FloatingSearch<'_, 'p> {
         let of_now: Vec<&str> = of_now.map(Term::id).collect();
         let freed = of_now.into_par_iter().filter_map(|id| {
             let without = self.model_without(id);
-            (impossible(&without) < all).then(|| (id, held_out(&without).iter().sum::<f64>()))
+            (impossible(&without) < all).then(|| (id, validation_losses(&without).iter().sum::<f64>()))
         });
         freed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
     }

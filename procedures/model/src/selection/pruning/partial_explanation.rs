@@ -1,4 +1,4 @@
-//! An added effect that explains only a part of what shows over its own axis.
+//! Removes an added effect that explains only a part of the structure over its axis.
 
 use crate::Options;
 use crate::effect::Regime;
@@ -9,22 +9,21 @@ use crate::residual_analysis::maps::Maps;
 use crate::selection::floating_search::FloatingSearch;
 use crate::thresholds::{PERIODS_SEEN, WHOLE_CURVE, WHOLE_EXPLANATION};
 
-/// An added effect that is only the nearest relative of what is missing: structure remains over its own axis, and any
-/// function of that axis would take away much more than it does. A wave over the angle is not the answer to a bump at
-/// one angle.
+/// An added effect that only resembles the missing one: structure remains over its axis, and a free function of that
+/// axis would explain much more. Example: a wave over the angle fitted to a bump at one angle.
 pub fn half_explained<'p>(
     search: &FloatingSearch<'_, 'p>,
     axis: &str,
     prepared: &Prepared,
     options: &Options,
 ) -> Option<&'p str> {
-    // What depends on the past is a function of no axis, even where a repeated motion makes it look like one.
+    // Hysteresis is a function of no axis, even if a repeated motion makes it look like one.
     let of_axes = search.added().filter(|term| term.effect.regime() != Regime::Hysteresis);
     least_whole(search, of_axes, axis, prepared, options)
 }
 
-/// A wave over a part of a turn of which less than two periods were seen, where any function of its angle would take more: a
-/// bump at this place. A weak one leaves nothing that could be called structure.
+/// A wave with less than two periods in the covered part of a turn, if a free function of the angle would explain
+/// more: the cause is a local bump. A weak bump leaves no significant structure.
 pub fn bump<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared, options: &Options) -> Option<&'p str> {
     let view = &search.now.problem.view;
     let is_open = |term: &&Term<'p>| {
@@ -36,7 +35,7 @@ pub fn bump<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared, options: &
     least_whole(search, search.added().filter(is_open), axis, prepared, options)
 }
 
-/// The effect that takes least of what any function of the axis would take, where that is too little.
+/// The effect with the smallest share of what a free function of the axis explains, if that share is too small.
 fn least_whole<'s, 'p: 's>(
     search: &'s FloatingSearch<'_, 'p>,
     terms: impl Iterator<Item = &'s Term<'p>>,
@@ -45,12 +44,12 @@ fn least_whole<'s, 'p: 's>(
     options: &Options,
 ) -> Option<&'p str> {
     let now = &search.now;
-    let (full, factors) = (now.linear().sse, now.linear().factors);
+    let (full, coefficients) = (now.linear().sse, now.linear().coefficients);
     let share = |term: &Term<'p>| {
         let at = now.terms.iter().position(|t| t.id() == term.id())?;
         let mut contribution = vec![0.0; now.problem.rows()];
-        for (column, factor) in term.columns.iter().zip(&factors[at]) {
-            contribution.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+        for (column, coefficient) in term.columns.iter().zip(&coefficients[at]) {
+            contribution.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
         }
         let residual = search.now.without(term.id()).linear().residual;
         let own = 1.0 - full / dot(&residual, &residual);
@@ -62,7 +61,7 @@ fn least_whole<'s, 'p: 's>(
     (least.1 < 1.0).then_some(least.0)
 }
 
-/// Share of what any function of its own axis would take that an effect has to take.
+/// Least share of a free function of its axis that an effect has to explain.
 fn least_share(term: &Term, problem: &Problem) -> f64 {
     let wave = term.effect.wave().zip(term.shape.first());
     match wave.is_some_and(|(angle, order)| order * problem.view.turns(angle) < PERIODS_SEEN) {

@@ -1,4 +1,4 @@
-//! An added effect that shows no more than a zero that wanders over time.
+//! Removes an added effect that is explained by a random-walk offset.
 
 use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::Term;
@@ -7,13 +7,14 @@ use crate::selection::acceptance::between_leg_variance::shows_within_blocks;
 use crate::selection::floating_search::FloatingSearch;
 
 impl<'p> FloatingSearch<'_, 'p> {
-    /// An added effect that shows from stretch to stretch of motion only, and there no more than a zero that wanders would.
+    /// An added effect that shows only between stretches of motion, and there explains no more than a drifting offset
+    /// does.
     pub(crate) fn follows_random_walk(&self) -> Option<&'p str> {
         self.added().next()?;
-        let wander = Ar1Offset::of(&self.now, self.options)?;
+        let random_walk = Ar1Offset::of(&self.now, self.options)?;
         let mut open: Vec<&str> = self.library.candidates.iter().map(Regressor::id).collect();
         open.dedup();
-        let explained = |term: &&Term<'p>| Some((wander.gain(term, open.len(), self.options)?, term.id()));
+        let explained = |term: &&Term<'p>| Some((random_walk.gain(term, open.len(), self.options)?, term.id()));
         let within = |term: &&Term<'p>| shows_within_blocks(term, &self.now, self.options);
         let explained = self.added().filter(|term| !within(term)).filter_map(|term| explained(&term));
         explained.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)

@@ -1,11 +1,12 @@
-//! An added effect without which the model is as good.
+//! Removes an added effect without which the model is as good.
 
 use crate::regression::linear_model::Term;
 use crate::selection::floating_search::FloatingSearch;
 use rayon::prelude::*;
 
 impl<'p> FloatingSearch<'_, 'p> {
-    /// The added effect without which the model is as good. What came last has just shown its reason.
+    /// The added effect without which the model is as good. The effect that was added last is exempt, because it has
+    /// just passed the test.
     pub(crate) fn redundant(&self) -> Option<&'p str> {
         let full = self.now.linear().sse;
         let ids = self.on_trial().map(Term::id).filter(|id| self.last != Some(id));
@@ -13,7 +14,7 @@ impl<'p> FloatingSearch<'_, 'p> {
         let share = |id: &'p str| {
             let without = self.now.without(id);
             let share = 1.0 - full / without.linear().sse;
-            // What would need another effect of an impossible size in its place is not needless.
+            // An effect is not redundant if the others become physically impossible without it.
             (share < self.options.practical_share && self.impossible(&without).is_none()).then_some((id, share))
         };
         ids.into_par_iter().filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)

@@ -1,4 +1,4 @@
-//! An added effect that explains nothing beside any function of the axis over which structure remains.
+//! Removes an added effect that explains nothing beyond a free function of the axis with structure.
 
 use crate::Options;
 use crate::effect::Regime;
@@ -9,8 +9,9 @@ use crate::residual_analysis::maps::Maps;
 use crate::selection::floating_search::FloatingSearch;
 use crate::thresholds::BIAS_TOLERANCE;
 
-/// An added effect that lives on what shows over an axis that is not its own: beside any function of that axis there is
-/// nothing that it explains. A wave whose mean changes from step to step follows any curve over the speed a little.
+/// An added effect that only follows structure over an axis that is not its own: together with a free function of
+/// that axis it explains nothing. Example: a wave whose mean changes from step to step follows any curve over speed a
+/// little.
 pub fn borrowing<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str, options: &Options) -> Option<&'p str> {
     let functions = maps.functions(axis);
     let is_borrowed = |term: &&Term<'p>| {

@@ -1,21 +1,22 @@
-//! An added effect whose size or shape the run does not decide.
+//! Removes an added effect whose size or shape the data does not determine.
 
 use crate::inference::intervals::intervals;
 use crate::preprocess::Prepared;
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState};
 use crate::selection::floating_search::FloatingSearch;
 use crate::thresholds::{NEEDED_WHERE_OPEN, NEEDED_WITHOUT_SIZE, NEEDED_WITHOUT_SIZE_AND_SHAPE};
 
-/// What the run leaves open about an effect.
+/// Doubts about an effect that the data leaves open.
 #[derive(Clone, Copy, Default)]
 pub struct Doubt {
-    /// Its factors could all be zero, be it because they trade off with the shape.
-    of_factors: bool,
-    /// They could with the shape held as well. What is open only because of the shape is no reason to doubt the effect.
+    /// All its coefficients can be zero, even if only because of a trade-off with its nonlinear parameters.
+    of_coefficients: bool,
+    /// All its coefficients can be zero with fixed nonlinear parameters, too. Otherwise the trade-off alone is no
+    /// reason to doubt the effect.
     of_size: bool,
-    /// Its shape lies at the edge of what the run can speak about, or a factor beyond what is physically possible.
+    /// A nonlinear parameter lies at the bound of the identifiable range, or a coefficient beyond its physical bound.
     of_shape: bool,
 }
 
@@ -24,14 +25,15 @@ impl Doubt {
         let own = |p: &&Parameter| p.effect == term.id();
         let sudden = term.effect.exponent_parameter();
         let mut others = parameters.iter().filter(own).filter(|p| sudden != Some(p.name.as_str()));
-        // Of a wave's two factors one may well be zero.
+        // One of the two coefficients of a wave may be zero.
         let is_there = |parameters: &[Parameter]| {
-            let mut factors = parameters.iter().filter(own).filter(|p| term.form.linear.contains(&p.name.as_str()));
-            factors.any(|p| p.state != ParameterState::Unidentified)
+            let mut coefficients =
+                parameters.iter().filter(own).filter(|p| term.form.linear.contains(&p.name.as_str()));
+            coefficients.any(|p| p.state != ParameterState::Unidentified)
         };
         let held = || intervals(&terms.held(term.id()), prepared.motion).parameters;
         Self {
-            of_factors: !is_there(parameters),
+            of_coefficients: !is_there(parameters),
             of_size: !is_there(parameters) && !is_there(&held()),
             of_shape: others.any(|p| p.state == ParameterState::AtBound),
         }
@@ -42,28 +44,29 @@ impl Doubt {
     }
 }
 
-/// A model says how large an effect is, and of which shape.
+/// Whether a model identifies the size and shape of an effect.
 pub fn is_decided<'p>(with: &LinearModel<'p>, term: &Term<'p>, prepared: &Prepared) -> bool {
     let doubt = Doubt::of(term, with, &intervals(with, prepared.motion).parameters, prepared);
-    !doubt.of_factors && !doubt.of_shape
+    !doubt.of_coefficients && !doubt.of_shape
 }
 
-/// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger. Where it
-/// decides neither, something else may show in its place: there it has to take half of the error away, and a third where it
-/// could be nothing whatever its shape. Beside structure from outside the library no size is decided: a part of that may be in it.
+/// An added effect whose size or shape the data does not determine, and whose removal hardly increases the validation
+/// error. If both are open, another cause is possible: then the effect has to be worth half of the error. If its size
+/// can be zero for any shape, it has to be worth a third. With structure from outside the library no size counts as
+/// identified, because a part of that structure can be in it.
 pub fn undecided<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
     let parameters = intervals(&search.now, prepared.motion).parameters;
-    let present: f64 = held_out(&search.now).iter().sum();
+    let present: f64 = validation_losses(&search.now).iter().sum();
     let open = search.added().filter_map(|term| {
         let doubt = Doubt::of(term, &search.now, &parameters, prepared);
-        let more = held_out(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
-        let goes = match doubt.of_factors && doubt.of_shape {
-            // Of two that this run cannot tell apart not the one of which it decides nothing.
+        let more = validation_losses(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
+        let is_removed = match doubt.of_coefficients && doubt.of_shape {
+            // Of two confounded effects, the one with open size and shape is removed.
             true => more < NEEDED_WITHOUT_SIZE_AND_SHAPE || !search.stand_ins(term).is_empty(),
             false if doubt.of_size => more < NEEDED_WITHOUT_SIZE,
             false => (search.unmodelled_structure || doubt.is_there()) && more < NEEDED_WHERE_OPEN,
         };
-        goes.then_some((term.id(), more))
+        is_removed.then_some((term.id(), more))
     });
     open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }

@@ -1,19 +1,19 @@
-//! Preisach's model in Everett's form, from measured reversal curves, and its inverse.
+//! The Preisach model in Everett's form, from measured reversal curves, and its inverse.
 
 use serde::{Deserialize, Serialize};
 
-/// Torque of a brake over its current, after any history since it was demagnetised.
+/// Torque of a brake over its current, for any history since demagnetisation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Everett {
-    /// Rising currents, the first 0 [A].
+    /// Currents in rising order, the first 0 [A].
     grid_a: Vec<f64>,
-    /// Torque that the fall from `grid_a[i]` to `grid_a[j]` takes away, for j ≤ i [Nm].
+    /// Torque reduction by the fall from `grid_a[i]` to `grid_a[j]`, for j ≤ i [Nm].
     falls_nm: Vec<Vec<f64>>,
-    /// Without current [Nm].
+    /// Torque at zero current [Nm].
     drag_nm: f64,
 }
 
-/// The turning points of a current that are not wiped out: highest, lowest, next highest and so on.
+/// The turning points of a current that are not erased: highest, lowest, next highest and so on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct History {
     turns_a: Vec<f64>,
@@ -21,7 +21,7 @@ pub struct History {
 }
 
 impl History {
-    /// The current goes straight to another value.
+    /// Moves the current monotonically to another value.
     pub fn go(&mut self, to_a: f64) {
         let to_a = to_a.max(0.0);
         if to_a != self.now_a {
@@ -31,7 +31,7 @@ impl History {
             }
             self.now_a = to_a;
         }
-        // A stretch beyond the turn before the last wipes out the loop between them.
+        // A current beyond the turning point before the last erases the loop between them.
         while let [.., outer, _] = self.turns_a[..] {
             let rises = self.turns_a.len().is_multiple_of(2);
             if (rises && to_a < outer) || (!rises && to_a > outer) {
@@ -44,7 +44,7 @@ impl History {
         }
     }
 
-    /// The history with the current gone on to another value.
+    /// The history after a move of the current to another value.
     pub fn after(&self, to_a: f64) -> Self {
         let mut next = self.clone();
         next.go(to_a);
@@ -53,8 +53,9 @@ impl History {
 }
 
 impl Everett {
-    /// From reversal curves: for each current of the grid but 0, the torques at the currents from 0 up to it, on the way
-    /// down; the last is the torque at the reversal. `None` where a curve is missing or too short.
+    /// From reversal curves: for each current of the grid except 0, the torques at the currents from 0 up to it,
+    /// measured while the current falls. The last value is the torque at the reversal. `None` if a curve is missing
+    /// or too short.
     pub fn from_reversals(grid_a: &[f64], curves_nm: &[Vec<f64>]) -> Option<Self> {
         let whole = curves_nm.iter().enumerate().all(|(i, curve)| curve.len() == i + 2);
         if grid_a.len() < 3 || curves_nm.len() + 1 != grid_a.len() || !whole {
@@ -66,8 +67,8 @@ impl Everett {
         Some(Self { grid_a: grid_a.to_vec(), falls_nm, drag_nm })
     }
 
-    /// The highest current that was measured.
-    /// How many currents it is made of, 0 among them.
+    /// The highest measured current.
+    /// Number of currents in the grid, including 0.
     pub fn currents(&self) -> usize {
         self.grid_a.len()
     }
@@ -76,7 +77,7 @@ impl Everett {
         self.grid_a[self.grid_a.len() - 1]
     }
 
-    /// Torque that a fall between two currents takes away; a rise between them adds as much.
+    /// Torque reduction by a fall between two currents; a rise between them adds the same torque.
     ///
     /// Linear between measured points: on squares of the grid in both currents, on the triangles along its edge.
     fn fall_nm(&self, from_a: f64, to_a: f64) -> f64 {
@@ -105,7 +106,7 @@ impl Everett {
         torque_nm
     }
 
-    /// The current that gives a torque when it is gone to from a history; `None` where the torque is beyond the range.
+    /// The current that gives a torque after a history; `None` if the torque is out of range.
     pub fn current_a(&self, history: &History, torque_nm: f64) -> Option<f64> {
         let rises = torque_nm >= self.torque_nm(history);
         let (mut low, mut high) = if rises { (history.now_a, self.top_a()) } else { (0.0, history.now_a) };
@@ -142,7 +143,7 @@ mod tests {
             for (up, down, on) in &mut self.0 {
                 *on = (*on || current >= *up) && current > *down;
             }
-            // Relays far apart hold more: the loop is wider at its top.
+            // Relays with distant thresholds hold more torque, so that the loop is wider at the top.
             let weight = |(up, down, on): &(f64, f64, bool)| if *on { 1.0 + up - down } else { 0.0 };
             self.0.iter().map(weight).sum::<f64>() / 1830.0
         }

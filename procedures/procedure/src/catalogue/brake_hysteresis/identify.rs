@@ -1,4 +1,4 @@
-//! The model of a run of sweeps, judged on the history that took no part in it.
+//! Identification of the model from a run of sweeps, validated on the random history.
 
 use super::super::demagnetise::rated_nm;
 use super::{Everett, History, Part};
@@ -6,12 +6,12 @@ use crate::findings::{Hold, Mean, Unusable, holds, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
 
-/// The settled end of a hold.
+/// Steady-state share at the end of a hold.
 pub(in super::super) const SETTLED: f64 = 0.35;
-/// A torque commanded through the model may be off by this share of the rated one.
+/// Largest accepted torque error of a command through the model, as a share of the rated torque.
 pub(in super::super) const BOUND: f64 = 0.01;
 
-/// One sweep as it was measured: currents and torques, from no current to none.
+/// One measured sweep: currents and torques, from zero current to zero current.
 struct Sweep {
     part: i64,
     points: Vec<(f64, f64)>,
@@ -43,7 +43,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let top = everett.top_a();
     let rated = rated_nm(run).unwrap_or_else(|| everett.torque_nm(&History::default().after(top)));
 
-    // The inverse is asked for the current that gave what was measured.
+    // The inverse has to return the current of each measured torque.
     let (mut judged, mut current_error) = (Vec::new(), 0.0_f64);
     for sweep in of(Part::Random).chain(of(Part::Minor)) {
         let mut history = History::default();
@@ -102,7 +102,8 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     })
 }
 
-/// The holds of every sweep, the first without current among them. One that a pause has cut off is made again as a whole.
+/// The holds of every sweep, including the first one at zero current. A sweep that a pause interrupted is repeated as
+/// a whole.
 fn sweeps(run: &RunTable) -> Vec<Sweep> {
     let torque = run.column("brake_torque_nm").unwrap_or_default();
     let held: Vec<Hold> = holds(run, 0.3).into_iter().filter(|hold| hold.repeat > Part::Demagnetise as i64).collect();
@@ -114,7 +115,7 @@ fn sweeps(run: &RunTable) -> Vec<Sweep> {
     held.chunk_by(|a, b| a.segment == b.segment).filter(is_whole).map(sweep).collect()
 }
 
-/// The grid, and for each current of it the torques on the way down, the lowest current first.
+/// The grid, and for each of its currents the torques of the falling branch, the lowest current first.
 fn reversals<'s>(
     major: &[&Sweep],
     others: impl Iterator<Item = &'s Sweep>,
@@ -146,23 +147,23 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// `None` for one value.
+/// `None` for a single value.
 fn spread(values: &[f64]) -> Option<[f64; 2]> {
     Mean::of(values).map(|mean| mean.ci95)
 }
 
-/// What the torque per current of the data sheet would err by.
+/// Error of the torque per current from the data sheet.
 fn by_line(sweeps: &[Sweep], rated: f64) -> f64 {
     let points = || sweeps.iter().flat_map(|sweep| &sweep.points);
     let (ii, it) = points().fold((0.0, 0.0), |(ii, it), (i, t)| (ii + i * i, it + i * t));
     points().map(|(i, t)| (t - it / ii * i).abs() / rated).fold(0.0, f64::max)
 }
 
-/// Places between two currents at which the model is drawn.
+/// Points between two currents at which the model is drawn.
 const PLACES: u32 = 12;
 
-/// Major loop and reversal curves, which the model is made of, and beside the minor loops and the random history what the
-/// model says of them.
+/// Major loop and reversal curves, from which the model is built, and the model's prediction for the minor loops and
+/// the random history.
 fn loops(sweeps: &[Sweep], everett: &Everett) -> Vec<Figure> {
     let measured = |label: &str, wanted: Part, mark: Mark| -> Vec<Series> {
         let series = |sweep: &Sweep| {
@@ -204,7 +205,7 @@ fn loops(sweeps: &[Sweep], everett: &Everett) -> Vec<Figure> {
     figures
 }
 
-/// What the model says on the way of a sweep, between its currents too.
+/// Prediction of the model along a sweep, including points between its currents.
 fn course(label: &str, sweep: &Sweep, everett: &Everett) -> Series {
     let mut history = History::default();
     let (mut x, mut y) = (vec![0.0], vec![everett.torque_nm(&history)]);

@@ -1,19 +1,20 @@
-//! How far each way of compensating stays behind the reference: ρ₁ = Σ|θ_d − θ|, ρ₂ = Σ(θ_d − θ)², ρ_max (eq. 4.9, 4.10).
+//! Tracking errors of each compensation method: ρ₁ = Σ|θ_d − θ|, ρ₂ = Σ(θ_d − θ)², ρ_max (eq. 4.9, 4.10).
 //!
-//! A velocity loop does not know where it began: what its integrator held before shifts the whole course. So the first
-//! period is left out, and the reference begins where it is closest to the rest, at the mean of the error.
+//! A velocity loop has no position reference, so that the initial state of its integrator shifts the whole
+//! trajectory. Therefore the first period is omitted, and the reference begins where the motion is closest to rest,
+//! at the mean of the error.
 
 use super::Way;
 use crate::findings::{Unusable, quantity};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
 
-/// What the drive gives is averaged over this time before it is compared with what was fed forward.
+/// Averaging time of the drive current before the comparison with the feedforward.
 const WINDOW_S: f64 = 0.1;
-/// A figure does not need every sample.
+/// Largest number of samples in a figure.
 const SHOWN: usize = 1500;
 
-/// What is told of each way: name, symbol, title and unit.
+/// Reported figures of each method: name, symbol, title and unit.
 pub(super) const FIGURES: [[&str; 4]; 5] = [
     ["rho_1", "ρ₁", "Sum of absolute errors", "rad"],
     ["rho_2", "ρ₂", "Sum of squared errors", "rad²"],
@@ -22,16 +23,16 @@ pub(super) const FIGURES: [[&str; 4]; 5] = [
     ["over", "Δτ", "Feed-forward minus drive torque", "Nm"],
 ];
 
-/// One way of compensating, as it was measured.
+/// One compensation method with its measured results.
 struct Followed {
     way: Way,
     time_s: Vec<f64>,
-    /// θ_d, from where the first row lies [rad].
+    /// θ_d relative to the position of the first row [rad].
     reference_rad: Vec<f64>,
     /// θ_d − θ at the link [rad].
     error_rad: Vec<f64>,
-    /// The largest that was fed forward beyond what the drive gave in all and its noise; 0 or less: never active (motor)
-    /// [Nm].
+    /// Largest feedforward in excess of the total drive torque and its noise. A value of 0 or less means never active
+    /// (motor) [Nm].
     over_nm: f64,
 }
 
@@ -82,7 +83,7 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
     })
 }
 
-/// The reference is what the drive was told: each set-point holds until the next.
+/// The reference is the commanded velocity: each set-point holds until the next one.
 fn follow(period_s: f64, run: &RunTable, way: Way) -> Option<Followed> {
     let column = |name: &str| run.column(name);
     let (time, setpoint) = (column("time_s")?, column("velocity_setpoint_rad_s")?);
@@ -90,7 +91,7 @@ fn follow(period_s: f64, run: &RunTable, way: Way) -> Option<Followed> {
     let (current, fed) = (column("motor_current_a")?, column("motor_current_setpoint_a")?);
     let gear = run.meta().gear_ratio?;
     let km = run.meta().torque_constant_nm_per_a?;
-    // The last attempt at it, where a pause has made it be repeated.
+    // Only the last attempt counts, if a pause caused a repetition.
     let last = (0..run.len()).rev().find(|i| repeat[*i] == way as u32 as f64)?;
     let first = (0..=last).rev().take_while(|i| segment[*i] == segment[last]).last()?;
     let first = (first..last).find(|i| time[*i] - time[first] >= period_s)?;
@@ -107,14 +108,14 @@ fn follow(period_s: f64, run: &RunTable, way: Way) -> Option<Followed> {
     let mean = error_rad.iter().sum::<f64>() / error_rad.len() as f64;
     error_rad.iter_mut().for_each(|e| *e -= mean);
     let window = ((WINDOW_S * rows.len() as f64 / (time[last] - time[first])) as usize).max(1);
-    // A window across a reversal says nothing: there the friction changes its side.
+    // A window across a reversal is not evaluated, because friction changes its sign there.
     let one_way = |chunk: &&[usize]| chunk.iter().all(|i| setpoint[*i] * setpoint[chunk[0]] > 0.0);
     let over = |chunk: &[usize]| {
         let side = setpoint[chunk[0]].signum();
         chunk.iter().map(|i| side * (fed[*i] - current[*i])).sum::<f64>() / chunk.len() as f64
     };
     let all: Vec<usize> = rows.clone().collect();
-    // The largest of hundreds of means of noise lies four of their standard deviations out.
+    // The largest of hundreds of noise means is about four standard deviations.
     let steps = rows.clone().skip(1).map(|i| (current[i] - current[i - 1]).powi(2));
     let noise_a = (steps.sum::<f64>() / (2.0 * rows.len() as f64)).sqrt();
     let doubt_a = 4.0 * noise_a / (window as f64).sqrt();
@@ -144,7 +145,7 @@ fn errors(followed: &[Followed]) -> Figure {
     }
 }
 
-/// Table 4.7 as bars: each figure as a share of what it is without compensation.
+/// Table 4.7 as bars: each figure relative to that without compensation.
 fn bars(followed: &[Followed]) -> Figure {
     let none = followed[0].rho();
     let places: Vec<f64> = (0..followed.len()).map(|i| i as f64).collect();
@@ -163,8 +164,8 @@ fn bars(followed: &[Followed]) -> Figure {
     }
 }
 
-/// The reference and how it is followed without compensation and with the best, over one period. Their errors are too small
-/// to be seen beside it, so they are drawn larger by a power of ten.
+/// The reference, and its tracking without compensation and with the best method, over one period. The errors are
+/// magnified by a power of ten, because they would not be visible otherwise.
 fn trajectories(followed: &[Followed], period_s: f64) -> Figure {
     let by_error = |a: &&Followed, b: &&Followed| a.rho()[0].total_cmp(&b.rho()[0]);
     let none = &followed[0];

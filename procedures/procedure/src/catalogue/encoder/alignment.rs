@@ -1,4 +1,4 @@
-//! How far the sensor may sit from its place (table 4.4 of the thesis), and where it sits best.
+//! Mounting tolerance of the sensor (table 4.4 of the thesis), and its best position.
 
 use super::edges::{Found, WAYS, Way, found};
 use super::say::{quantity, too_little};
@@ -19,11 +19,11 @@ use std::f64::consts::TAU;
 
 pub struct EncoderAlignment;
 
-/// Strides of a hunt before the halving begins.
+/// Strides of an edge search before the bisection.
 const STRIDES: u32 = 8;
-/// Every try sees a whole turn, with something to spare.
+/// Turns in each try: one whole turn with a margin.
 const TURNS_WATCHED: f64 = 1.2;
-/// What a move of the stage takes, at most, in the duration that is told beforehand.
+/// Largest duration of a stage move for the predicted duration of the run.
 const MOVE_S: f64 = 1.5;
 
 impl Procedure for EncoderAlignment {
@@ -96,7 +96,7 @@ impl Procedure for EncoderAlignment {
             let shift_m = reach_m * (2.0 * f64::from(position) / f64::from(positions - 1) - 1.0);
             both_ways(&mut legs, speed_rad_s, values.number("map_turns"), Place::At(radial(shift_m)));
         }
-        // Nobody should find the sensor where the map has ended.
+        // The sensor is returned to its nominal position after the map.
         both_ways(&mut legs, speed_rad_s, 1.0, Place::At(Pose::default()));
         Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
     }
@@ -120,7 +120,7 @@ impl Procedure for EncoderAlignment {
         let mut quantities: Vec<Quantity> = found.iter().filter_map(|(way, found)| way.quantity(found)).collect();
         let map = Map::of(run);
         let judged = Judgement::of(&found);
-        let mut summary = format!("{} {}", judged.said, told(&found));
+        let mut summary = format!("{} {}", judged.said, description(&found));
         if let Some(best) = map.as_ref().and_then(Map::best) {
             summary.push_str(&format!(
                 " The eccentricity error has its minimum of {:.0} µrad at a radial shift of {:.3} mm.",
@@ -147,7 +147,7 @@ impl Procedure for EncoderAlignment {
 
     fn follow_up(&self, found: &Identification) -> Option<FollowUp> {
         let best_m = found.quantity("best_radial_shift")?.value;
-        // To a tenth of a micrometre, which is finer than the stage.
+        // Rounded to a tenth of a micrometre, which is finer than the stage.
         let parameters =
             serde_json::Map::from_iter([("radial_shift_m".to_owned(), ((1e7 * best_m).round() / 1e7).into())]);
         Values::parse(EncoderLinearity.schema(), &parameters).ok()?;
@@ -157,7 +157,7 @@ impl Procedure for EncoderAlignment {
     }
 }
 
-fn told(found: &[(&Way, Found)]) -> String {
+fn description(found: &[(&Way, Found)]) -> String {
     let (lost, kept): (Vec<_>, Vec<_>) = found.iter().partition(|(_, found)| found.bad.is_some());
     let names = |ways: &[&(&Way, Found)]| ways.iter().map(|(way, _)| way.title).collect::<Vec<_>>().join(", ");
     match (lost.len(), kept.len()) {
@@ -169,10 +169,10 @@ fn told(found: &[(&Way, Found)]) -> String {
     }
 }
 
-/// Pieces that the fitted error is drawn in.
+/// Points of the fitted error in the figure.
 const FITTED: u32 = 60;
 
-/// The error's harmonics over the radial shift.
+/// The harmonics of the error over the radial shift.
 struct Map {
     shift_m: Vec<f64>,
     once_rad: Vec<[f64; 2]>,
@@ -183,7 +183,7 @@ struct Best {
     shift_m: f64,
     ci95: [f64; 2],
     once_rad: f64,
-    /// By how much the error changes with the shift, far from the best place.
+    /// Slope of the error over the shift, far from the best position.
     rad_per_m: f64,
 }
 
@@ -199,8 +199,8 @@ impl Map {
         (map.shift_m.len() >= 4).then_some(map)
     }
 
-    /// Eccentricity adds to the error once a turn as a vector in proportion to the shift; where the sum is shortest is the
-    /// best place.
+    /// Eccentricity adds a vector proportional to the shift to the once-per-turn error. The best position is that of
+    /// the shortest sum.
     fn best(&self) -> Option<Best> {
         let rows: Vec<[f64; 2]> = self.shift_m.iter().map(|shift| [1.0, *shift]).collect();
         let part = |i: usize| solve(&rows, &self.once_rad.iter().map(|once| once[i]).collect::<Vec<_>>());
@@ -208,7 +208,8 @@ impl Map {
         let slope = cos.values[1].hypot(sin.values[1]);
         let along = |once: [f64; 2]| (once[0] * cos.values[1] + once[1] * sin.values[1]) / slope;
         let shift_m = -along([cos.values[0], sin.values[0]]) / slope;
-        // What the vectors along the shift scatter, over the slope: the interval of the place where their line meets zero.
+        // The scatter of the vectors along the shift, divided by the slope: the interval of the position where their
+        // line crosses zero.
         let line = solve(&rows, &self.once_rad.iter().map(|once| along(*once)).collect::<Vec<_>>())?;
         let n = self.shift_m.len() as f64;
         let mean_m = self.shift_m.iter().sum::<f64>() / n;

@@ -1,4 +1,4 @@
-//! An error over the turn before the look-up table and after it, as figures.
+//! The error over the turn before and after the look-up table, as figures.
 
 use super::say::histogram;
 use super::spectrum::{ORDERS, PolePairs, Waves};
@@ -7,13 +7,13 @@ use super::table::{Table, means};
 use crate::identification::{Axis, Figure, Form, Mark, Series};
 use std::f64::consts::TAU;
 
-/// Means over the turn: each averages over many of the reference's own steps.
+/// Points over the turn; each averages over many counts of the reference.
 const PLACES: usize = 180;
 
-/// What is left of the error of a sweep at one of its readings.
+/// Remaining error of a sweep at one of its readings.
 pub type Left<'a> = &'a dyn Fn(&Sweep, usize) -> f64;
 
-/// `sweeps` have not been seen by the table.
+/// `sweeps` were not used for the table.
 pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [(&str, Left); 2]) -> Vec<Figure> {
     let slow_rad_s = sweeps.iter().map(|sweep| sweep.speed_rad_s.abs()).fold(f64::INFINITY, f64::min);
     let slow: Vec<&Sweep> = sweeps.iter().filter(|sweep| sweep.speed_rad_s.abs() < 1.1 * slow_rad_s).collect();
@@ -69,7 +69,7 @@ pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [(&st
     figures
 }
 
-/// Means over the turn; closed where the line goes round.
+/// Means over the turn; a closed line if requested.
 fn around<'s>(label: &str, sweeps: impl Iterator<Item = &'s Sweep>, left: Left, closed: bool) -> Series {
     let (mut x, mut y): (Vec<f64>, Vec<f64>) = means(sweeps, PLACES, left)
         .into_iter()
@@ -83,7 +83,7 @@ fn around<'s>(label: &str, sweeps: impl Iterator<Item = &'s Sweep>, left: Left, 
     Series::new(label, Mark::Line, x, y)
 }
 
-/// Those that have a meaning, before and after, over what noise alone would show.
+/// The named harmonics, before and after, compared with the noise level.
 fn harmonics(sweeps: &[Sweep], poles: &PolePairs, stages: [(&str, Left); 2]) -> Option<Figure> {
     let named = poles.orders();
     let places: Vec<f64> = (0..named.len()).map(|i| i as f64).collect();

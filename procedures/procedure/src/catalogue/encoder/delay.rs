@@ -1,4 +1,5 @@
-//! How late the encoder under test tells: its disparity over the speed (eq. 4.4 and 4.5, tables 4.2 and 4.3 of the thesis).
+//! Delay of the encoder under test: its difference to the reference over the speed (eq. 4.4 and 4.5, tables 4.2 and
+//! 4.3 of the thesis).
 
 use super::say::{quantity, too_little};
 use super::sweeps::sweeps;
@@ -91,7 +92,7 @@ impl Procedure for EncoderDelay {
         let mut summary = format!("The encoder under test lags by {:.2} µs.", 1e6 * delay_s);
         if without_s > 0.0 {
             let filter_s = delay_s - without_s;
-            // The delay without it comes from such a run, which was as unsure as this one.
+            // The delay without the filter comes from an equal run with the same uncertainty.
             let ends_s = solved.ci95(2).map(|end_s| filter_s + std::f64::consts::SQRT_2 * (end_s - delay_s));
             let name = ["filter_delay", "t_f", "Delay of the filter", "s"];
             quantities.push(quantity(name, filter_s, Some(ends_s)));

@@ -1,4 +1,4 @@
-//! The ways along the axes of the stage, and where on them the periods were lost.
+//! The directions along the axes of the stage, and the limits of consistent periods.
 
 use super::say::quantity;
 use crate::encoder_columns::POSE;
@@ -10,14 +10,14 @@ use jointbench_model::words;
 /// One axis of the stage in one direction.
 #[derive(Debug)]
 pub struct Way {
-    /// Of shifts, then rotations.
+    /// Index among the shifts, then the rotations.
     axis: usize,
     sign: f64,
-    /// The parameter that holds how far to go.
+    /// The parameter that limits the search.
     pub reach: &'static str,
     name: &'static str,
     pub title: &'static str,
-    /// Manufacturing tolerance of the data sheet (table 4.4), in the axis' unit.
+    /// Manufacturing tolerance of the data sheet (table 4.4), in the unit of the axis.
     pub manufacturing: f64,
 }
 
@@ -34,7 +34,7 @@ const fn way(
     Way { axis, sign, reach, name, title, manufacturing }
 }
 
-/// The axial shift towards the ring is left out: there is the ring.
+/// The axial shift towards the ring is omitted, because the ring is in the way.
 pub const WAYS: [Way; 9] = [
     way(0, -1.0, "radial_reach_m", "radial_negative", "Radial shift −", 0.15e-3),
     way(0, 1.0, "radial_reach_m", "radial_positive", "Radial shift +", 0.15e-3),
@@ -47,7 +47,7 @@ pub const WAYS: [Way; 9] = [
     way(1, 1.0, "vertical_reach_m", "vertical_positive", "Vertical shift +", 0.5e-3),
 ];
 
-/// The furthest consistent place, and the nearest that was not.
+/// The farthest consistent position, and the nearest inconsistent one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Found {
     pub good: f64,
@@ -68,7 +68,7 @@ impl Way {
         if self.axis < 3 { "m" } else { "rad" }
     }
 
-    /// A place on the way, in words and without its sign: the way has one.
+    /// A position in words, without its sign, which the direction already defines.
     pub fn length(&self, at: f64) -> String {
         words::figure(at.abs(), self.unit())
     }
@@ -77,7 +77,7 @@ impl Way {
         self.axis == other.axis && self.sign != other.sign
     }
 
-    /// Whether the periods are consistent as far as the data sheet says; `None` where nobody went so far.
+    /// Whether the periods are consistent up to the data sheet's tolerance; `None` if the search did not reach it.
     pub fn holds(&self, found: &Found) -> Option<bool> {
         match found.bad {
             _ if found.good.abs() >= self.manufacturing => Some(true),
@@ -86,7 +86,8 @@ impl Way {
         }
     }
 
-    /// Half-way between consistent and not; the interval are both places. `None` where the periods were never lost.
+    /// The midpoint between consistent and inconsistent, with both positions as its interval. `None` if the periods
+    /// stayed consistent.
     pub fn quantity(&self, found: &Found) -> Option<Quantity> {
         let (good, bad) = (found.good, found.bad?);
         let unit = self.unit();
@@ -96,7 +97,7 @@ impl Way {
     }
 }
 
-/// `None` where the run has not gone this way, or was inconsistent from its start.
+/// `None` if the run did not search this direction, or was inconsistent from the start.
 pub fn found(run: &RunTable, way: &Way) -> Option<Found> {
     let consistent = run.column("encoder_consistent")?;
     let poses: Vec<&[f64]> = POSE.iter().map(|name| run.column(name)).collect::<Option<_>>()?;
@@ -118,14 +119,14 @@ pub fn found(run: &RunTable, way: &Way) -> Option<Found> {
             *good = good.max(at);
         }
     }
-    // A place that lost its periods for a part of the turn only counts as lost.
+    // A position at which the periods were inconsistent for a part of the turn counts as inconsistent.
     let found = found?;
     let good =
         found.bad.map_or(found.good, |bad| if found.good < bad { found.good } else { last_before(run, way, bad) });
     Some(Found { good: way.sign * good, bad: found.bad.map(|bad| way.sign * bad) })
 }
 
-/// The furthest place on the way short of `bad`.
+/// The farthest position before `bad`.
 fn last_before(run: &RunTable, way: &Way, bad: f64) -> f64 {
     let axis = run.column(POSE[way.axis]).unwrap_or_default();
     axis.iter().map(|at| way.sign * at).filter(|at| *at < bad).fold(0.0, f64::max)

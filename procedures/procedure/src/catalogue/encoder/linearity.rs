@@ -1,4 +1,4 @@
-//! The shape of the error over the turn, the look-up table against it, and what precision is left (figs 4.4 to 4.11).
+//! Shape of the error over the turn, the look-up table for it, and the remaining precision (figs 4.4 to 4.11).
 
 use super::before_after::{Left, figures};
 use super::say::{quantity, too_little};
@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 
 pub struct EncoderLinearity;
 
-/// The thesis reaches 14 usable bits; this is what is asked of a compensation that goes beyond it.
+/// The thesis reaches 14 usable bits; this is the target for an extended compensation.
 const BEYOND_BITS: f64 = 15.0;
 
 impl Procedure for EncoderLinearity {
@@ -62,7 +62,7 @@ impl Procedure for EncoderLinearity {
         let counts = counts(bench)?;
         let rate_hz = values.number("sample_rate_hz");
         let shift_m = values.number("radial_shift_m");
-        // Where there is a stage it is taken to 0 too: nobody should believe so of a sensor that a run before has moved.
+        // With a stage, the position 0 is also commanded, because an earlier run may have moved the sensor.
         let place = if shift_m == 0.0 && !bench.has_stage {
             Place::AsLeft
         } else {
@@ -163,7 +163,7 @@ impl Procedure for EncoderLinearity {
     }
 }
 
-/// Whether more than table and velocity, the terms of the thesis, is needed for the bits that go beyond its 14.
+/// Whether table and velocity, the terms of the thesis, are sufficient for more than its 14 bits.
 fn what_it_takes(without_direction: f64, full: f64) -> String {
     match (without_direction >= BEYOND_BITS, full >= BEYOND_BITS) {
         (true, _) => format!("Table and velocity term are sufficient for {BEYOND_BITS} bits."),
@@ -172,11 +172,10 @@ fn what_it_takes(without_direction: f64, full: f64) -> String {
     }
 }
 
-/// Places of the turn at which repeats are held against each other.
+/// Angles of the turn at which repeats are compared.
 const PLACES: usize = 180;
 
-/// How far the error at one place of the turn, at one speed in one direction, differs from repeat to repeat. `None` for one
-/// repeat.
+/// Repeatability of the error at one angle, speed and direction. `None` for a single repeat.
 fn repeatability(known: &[Sweep], unseen: &[Sweep]) -> Option<Quantity> {
     let mut sweeps: Vec<&Sweep> = known.iter().chain(unseen).collect();
     sweeps.sort_by(|a, b| a.speed_rad_s.total_cmp(&b.speed_rad_s));

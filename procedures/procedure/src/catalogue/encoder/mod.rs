@@ -27,10 +27,10 @@ use jointbench_instrument::roles::Pose;
 use jointbench_instrument::{Kind, Meta};
 use std::f64::consts::TAU;
 
-/// The velocity loop has settled after this.
+/// Settling time of the velocity loop.
 const SETTLE_S: f64 = 0.4;
 
-/// Counts of a turn of reference and test encoder.
+/// Counts in a turn of reference and test encoder.
 fn counts(bench: &BenchFacts) -> Result<[f64; 2], PlanFault> {
     bench.encoder_counts.ok_or_else(|| PlanFault::MissingInstrument {
         bench: bench.name.clone(),
@@ -59,7 +59,7 @@ fn meta(counts: [f64; 2], rate_hz: f64) -> Meta {
     }
 }
 
-/// One speed, forwards and back, for whole turns each.
+/// One speed, forwards and backwards, for whole turns each.
 fn both_ways(legs: &mut Legs, speed_rad_s: f64, turns: f64, place: Place) {
     for speed_rad_s in [speed_rad_s, -speed_rad_s] {
         let dwell_s = SETTLE_S + turns * TAU / speed_rad_s.abs();

@@ -1,4 +1,4 @@
-//! How the zero of the encoder under test lies to that of the reference (eq. 4.1 to 4.3 of the thesis).
+//! Zero offset of the encoder under test relative to the reference (eq. 4.1 to 4.3 of the thesis).
 
 use super::say::{histogram, quantity, scatter, too_little};
 use super::sweeps::{Sweep, sweeps};
@@ -67,7 +67,7 @@ impl Procedure for EncoderOffset {
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
         let sweeps = sweeps(run);
         let way = |sign: f64| sweeps.iter().filter(move |sweep| sweep.speed_rad_s * sign > 0.0);
-        // Forwards and back together: delay and hysteresis fall out of their mean.
+        // Delay and hysteresis cancel in the mean of both directions.
         let pairs: Vec<[f64; 2]> = way(1.0)
             .zip(way(-1.0))
             .filter_map(|(up, down)| Some([up.shape()?.mean_rad, down.shape()?.mean_rad]))
@@ -117,7 +117,7 @@ impl Procedure for EncoderOffset {
     }
 }
 
-/// Mean and half the width of its 95 % interval.
+/// Mean and half width of its 95 % interval.
 fn mean(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let values: Vec<f64> = values.collect();
     let n = values.len() as f64;
@@ -126,7 +126,7 @@ fn mean(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (mean, t95(n - 1.0) * (variance / n).sqrt())
 }
 
-/// One point of an encoder.
+/// One count of an encoder.
 pub(super) fn step_rad(run: &RunTable, column: &str) -> f64 {
     let channel = run.trace().channels().iter().find(|channel| channel.name == column);
     channel.and_then(|channel| channel.resolution).unwrap_or(TAU / 262_144.0)

@@ -1,9 +1,9 @@
-//! What is said of an encoder: quantities, series, and that a run is too short.
+//! Results of an encoder: quantities, series, and the message for a run that is too short.
 
 pub(super) use crate::findings::quantity;
 use crate::identification::{Identification, Mark, Series, Verdict};
 
-/// At most so many points, evenly taken: more are not seen.
+/// Largest number of points in a figure, evenly spaced.
 const MOST_POINTS: usize = 1500;
 
 pub fn scatter(label: &str, x: &[f64], y: &[f64]) -> Series {
@@ -12,7 +12,7 @@ pub fn scatter(label: &str, x: &[f64], y: &[f64]) -> Series {
     Series::new(label, Mark::Points, thin(x), thin(y))
 }
 
-/// Shares of the values in equal bins between the lowest and the highest.
+/// Relative frequencies of the values in equal bins between the lowest and the highest.
 pub fn histogram(label: &str, values: &[f64], bins: usize) -> Series {
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let width = ((high - low) / bins as f64).max(f64::MIN_POSITIVE);

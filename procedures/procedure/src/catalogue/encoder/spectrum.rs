@@ -1,33 +1,34 @@
-//! Which waves over the turn an error has, how sure each of them is, and how many pole pairs they tell.
+//! Harmonics of an error over the turn with their uncertainty, and the resulting number of pole pairs.
 
 use super::sweeps::Sweep;
 use super::table::Table;
 use crate::findings::solve;
 
-/// Orders that the spectrum shows, and the first that can be that of the pole pairs.
+/// Number of orders in the spectrum, and the lowest order of the pole pairs.
 pub const ORDERS: u32 = 160;
 const FIRST_POLE_PAIR: u32 = 8;
-/// The next best order lies below this share of the best, or the pole pairs are not sure.
+/// The pole pairs are uncertain if the second-best order exceeds this share of the best.
 const APART: f64 = 0.5;
-/// Noise stays below this share of the reach of a wave's cosine and sine with 95 %: √(−2 ln 0.05) standard errors over 1.96.
+/// 95 % limit of a noise amplitude relative to the half interval of a wave's cosine and sine: √(−2 ln 0.05) standard
+/// errors over 1.96.
 const NOISE: f64 = 2.448 / 1.960;
 
-/// Orders with a known cause, and two without: those show what no cause makes.
+/// Number of evaluated orders: those with a known cause, and two without, which show the noise level.
 pub const NAMED: usize = 6;
 
 pub struct PolePairs {
     pub order: u32,
     pub amplitude_rad: f64,
-    /// The next best, where it is nearly as good.
+    /// The second-best order, if it is nearly as good.
     pub or: Option<u32>,
 }
 
 impl PolePairs {
-    /// `None` where the table has too few entries for any.
+    /// `None` if the table has too few entries.
     pub fn of(table: &Table) -> Option<Self> {
         let last = ORDERS.min((table.len() as u32).div_ceil(2) - 1);
         let best = |without: Option<u32>| {
-            // A wave inside the pole pair that is no sine shows at multiples of its order too.
+            // A wave within the pole pair that is not sinusoidal also has multiples of its order.
             let other = move |order: &u32| without.is_none_or(|best| !order.is_multiple_of(best));
             let amplitude = |order: u32| (order, table.harmonic(order));
             (FIRST_POLE_PAIR..=last).filter(other).map(amplitude).max_by(|a, b| a.1.total_cmp(&b.1))
@@ -57,7 +58,7 @@ impl PolePairs {
     }
 }
 
-/// The amplitudes of some orders with their 95 % intervals, and what noise alone stays below with 95 %.
+/// The amplitudes of some orders with their 95 % intervals, and the 95 % limit of noise.
 pub struct Waves {
     pub amplitude_rad: [f64; NAMED],
     pub ci95: [[f64; 2]; NAMED],
@@ -65,7 +66,7 @@ pub struct Waves {
 }
 
 impl Waves {
-    /// By least squares over every reading. `None` where the readings do not tell the orders apart.
+    /// Least squares over all readings. `None` if the readings do not separate the orders.
     pub fn of(sweeps: &[Sweep], orders: [u32; NAMED], left: &dyn Fn(&Sweep, usize) -> f64) -> Option<Self> {
         let row = |angle: &f64| -> [f64; 1 + 2 * NAMED] {
             std::array::from_fn(|i| match i {
@@ -96,7 +97,7 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Slow turns both ways with an error inside the pole pairs and another of nearly their order.
+    /// Slow turns in both directions with an error within the pole pairs and another one of nearly their order.
     fn sweeps(other_rad: f64) -> [Sweep; 4] {
         [5.0, -5.0, 50.0, -50.0].map(|speed_rad_s| {
             let angle_rad: Vec<f64> = (0..20_000).map(|i| f64::from(i) * 7.0 * TAU / 20_000.0).collect();
@@ -119,7 +120,7 @@ mod tests {
     fn waves_have_their_amplitudes_and_what_is_none_lies_below_the_noise() {
         let sweeps = sweeps(0.0);
         let named = PolePairs { order: 64, amplitude_rad: 3e-4, or: None }.orders().map(|(order, _)| order);
-        // As steps of a coarse encoder are: even, and unlike any wave.
+        // Like the counts of a coarse encoder: uniform, and unlike any wave.
         let left =
             |sweep: &Sweep, i: usize| sweep.error_rad[i] + 1e-4 * (f64::from(i as u32 * 7919 % 1000) / 1000.0 - 0.5);
         let waves = Waves::of(&sweeps, named, &left).unwrap();

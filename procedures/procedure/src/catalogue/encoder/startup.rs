@@ -1,4 +1,4 @@
-//! How far the zero of the encoder under test lies elsewhere after each power-up (its start-up initialisation error).
+//! Change of the zero of the encoder under test between power-ups (start-up initialisation error).
 
 use super::offset::step_rad;
 use super::say::{histogram, quantity, too_little};
@@ -16,9 +16,9 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 pub struct EncoderStartup;
 
-/// Pairs of ways at each power-up: their scatter is what the zero repeats to without one.
+/// Pairs of motions at each power-up; their scatter is the repeatability without a power-up.
 const PAIRS: u32 = 2;
-/// A spread beyond so many times that of one power-up is no scatter of the measurement.
+/// A spread above this multiple of the scatter within one power-up is significant.
 const APART: f64 = 3.0;
 
 impl Procedure for EncoderStartup {
@@ -77,7 +77,7 @@ impl Procedure for EncoderStartup {
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
         let (mut zeros, mut within, mut pairs) = (Vec::new(), 0.0, 0.0);
         for power_up in sweeps(run).chunk_by(|a, b| a.repeat == b.repeat) {
-            // Forwards and back together: delay and hysteresis fall out of their mean.
+            // Delay and hysteresis cancel in the mean of both directions.
             let of_pair = |pair: &[Sweep]| match pair {
                 [out, back] => Some(0.5 * (out.shape()?.mean_rad + back.shape()?.mean_rad)),
                 _ => None,
@@ -136,7 +136,7 @@ fn mean(values: &[f64]) -> Option<f64> {
     (values.len() > 1).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// Of a standard deviation, for deviations that are normal.
+/// 95 % interval of a standard deviation, for normal deviations.
 fn spread_ci95(spread: f64, freedom: f64) -> Option<[f64; 2]> {
     let squares = ChiSquared::new(freedom).ok()?;
     Some([0.975, 0.025].map(|share| spread * (freedom / squares.inverse_cdf(share)).sqrt()))
@@ -175,7 +175,7 @@ fn figures(zeros: &[f64]) -> Vec<Figure> {
 mod tests {
     use super::*;
 
-    /// Twelve deviations: √(11/21.920) and √(11/3.816), as tables of χ² have it.
+    /// Twelve deviations: √(11/21.920) and √(11/3.816), from tables of χ².
     #[test]
     fn a_spread_has_the_interval_of_its_distribution() {
         let [low, high] = spread_ci95(1.0, 11.0).unwrap();

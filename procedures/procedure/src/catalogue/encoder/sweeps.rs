@@ -1,4 +1,4 @@
-//! The parts of a run in which the shaft turned evenly, as differences of both encoders over the angle.
+//! The parts of a run at constant speed, as differences of both encoders over the angle.
 
 use super::SETTLE_S;
 use crate::encoder_columns::POSE;
@@ -11,13 +11,13 @@ use std::ops::Range;
 #[derive(Debug, Clone)]
 pub struct Sweep {
     pub repeat: i64,
-    /// As it was, from the reference.
+    /// Measured speed, from the reference.
     pub speed_rad_s: f64,
-    /// Of the reference, at the moments at which the encoder under test was read.
+    /// Angle of the reference at the reading times of the encoder under test.
     pub angle_rad: Vec<f64>,
     /// Test − reference by the wrap rule (eq. 4.3 of the thesis).
     pub error_rad: Vec<f64>,
-    /// The stage's first axis; 0 where the run does not move it.
+    /// First axis of the stage; 0 if the run does not move it.
     pub radial_m: f64,
 }
 
@@ -31,7 +31,7 @@ pub struct Shape {
 }
 
 impl Sweep {
-    /// By least squares, so that uneven sampling does not carry the shape into the mean.
+    /// By least squares, so that uneven sampling does not bias the mean.
     pub fn shape(&self) -> Option<Shape> {
         let row = |angle: &f64| [1.0, angle.cos(), angle.sin(), (2.0 * angle).cos(), (2.0 * angle).sin()];
         let rows: Vec<[f64; 5]> = self.angle_rad.iter().map(row).collect();
@@ -45,8 +45,8 @@ pub fn wrapped(n_rad: f64) -> f64 {
     (n_rad + PI).rem_euclid(TAU) - PI
 }
 
-/// Every even part of at least one turn, in the order of the run. Empty where the columns are not those of an encoder run of
-/// this product.
+/// Every part at constant speed of at least one turn, in the order of the run. Empty if the columns are not those of
+/// an encoder run of this product.
 pub fn sweeps(run: &RunTable) -> Vec<Sweep> {
     let Some(columns) = Columns::of(run) else { return Vec::new() };
     let mut sweeps = Vec::new();
@@ -67,9 +67,9 @@ struct Columns<'a> {
     setpoint: &'a [f64],
     segment: &'a [f64],
     repeat: &'a [f64],
-    /// Of the stage; empty where the run does not move it.
+    /// Pose of the stage; empty if the run does not move it.
     pose: Vec<&'a [f64]>,
-    /// A count tells the lower end of its step; the middle is nearer.
+    /// A count reports the lower end of its step; half a count is added.
     half_counts: [f64; 2],
 }
 
@@ -96,7 +96,7 @@ impl<'a> Columns<'a> {
         let top = self.setpoint[rows.clone()].iter().fold(0.0, |top: f64, v| top.max(v.abs()));
         let mut even = rows.filter(|row| top > 0.0 && self.setpoint[*row].abs() == top);
         let (first, last) = (even.next()?, even.next_back()?);
-        // A hunt for an edge holds the sensor in many places.
+        // An edge search has the sensor at many positions.
         if self.pose.iter().any(|axis| axis[first..=last].iter().any(|at| *at != axis[first])) {
             return None;
         }

@@ -1,21 +1,21 @@
-//! The look-up table over the turn, and what is left of an error where it is averaged over the reference's own steps.
+//! The look-up table over the turn, and the remaining error, averaged over the counts of the reference.
 
 use super::sweeps::Sweep;
 use crate::findings::solve;
 use crate::identification::{Mark, Series};
 use std::f64::consts::TAU;
 
-/// What of an error is not shape.
+/// Terms of an error that do not depend on the angle.
 #[derive(Debug, Clone, Copy)]
 pub struct Terms {
     pub offset_rad: f64,
-    /// Half its width, against the motion.
+    /// Half width of the hysteresis, against the motion.
     pub hysteresis_rad: f64,
     pub delay_s: f64,
 }
 
 impl Terms {
-    /// `None` where the sweeps do not tell them apart: one speed.
+    /// `None` if the sweeps do not separate the terms, for example at a single speed.
     pub fn of(sweeps: &[Sweep]) -> Option<Self> {
         let points: Vec<(f64, f64)> =
             sweeps.iter().filter_map(|sweep| Some((sweep.speed_rad_s, sweep.shape()?.mean_rad))).collect();
@@ -30,14 +30,14 @@ impl Terms {
     }
 }
 
-/// Errors over the reading of the encoder under test, in equal steps of the turn, lines in between.
+/// Errors over the reading of the encoder under test, in equal steps of the turn, with linear interpolation.
 #[derive(Debug, Clone)]
 pub struct Table {
     entries_rad: Vec<f64>,
 }
 
 impl Table {
-    /// Means of what the terms leave. `None` where more than a tenth of the entries has no sample.
+    /// Means of the error without the terms. `None` if more than a tenth of the entries has no sample.
     pub fn of(sweeps: &[Sweep], terms: &Terms, size: usize) -> Option<Self> {
         let mut sums = vec![(0.0, 0u32); size];
         for sweep in sweeps {
@@ -52,7 +52,7 @@ impl Table {
         if met.len() < size - size / 10 {
             return None;
         }
-        // A few entries that were not met lie on the line between their neighbours.
+        // Missing entries are interpolated between their neighbours.
         let mean = |i: usize| sums[i].0 / f64::from(sums[i].1);
         let entry = |i: usize| {
             if sums[i].1 > 0 {
@@ -72,7 +72,7 @@ impl Table {
 
     pub fn at(&self, angle_rad: f64) -> f64 {
         let size = self.len();
-        // Entries stand for the middles of their steps.
+        // Entries are the values at the middle of their steps.
         let place = angle_rad.rem_euclid(TAU) / TAU * size as f64 - 0.5;
         let below = place.floor();
         let (left, right) = (below.rem_euclid(size as f64) as usize, (below + 1.0).rem_euclid(size as f64) as usize);
@@ -80,7 +80,7 @@ impl Table {
         (1.0 - share) * self.entries_rad[left] + share * self.entries_rad[right]
     }
 
-    /// Amplitude of the part with so many periods on a turn.
+    /// Amplitude of the harmonic of this order.
     pub fn harmonic(&self, order: u32) -> f64 {
         let step = TAU * f64::from(order) / self.len() as f64;
         let sum = |wave: fn(f64) -> f64| -> f64 {
@@ -99,7 +99,8 @@ fn bin(angle_rad: f64, size: usize) -> usize {
     ((angle_rad.rem_euclid(TAU) / TAU * size as f64) as usize).min(size - 1)
 }
 
-/// So many readings average over the steps of the reference, which are far coarser than what is judged.
+/// Readings in a bin, which average over the counts of the reference, because these are much coarser than the
+/// evaluated error.
 const READINGS_IN_A_BIN: usize = 40;
 const BINS: [usize; 2] = [16, 256];
 
@@ -121,7 +122,7 @@ impl<'a> Class<'a> {
     }
 }
 
-/// Of what is left of an error in equal bins of the turn; `None` in one that was not met.
+/// Mean remaining error in equal bins of the turn; `None` in a bin without samples.
 pub fn means<'s>(
     sweeps: impl Iterator<Item = &'s Sweep>,
     bins: usize,

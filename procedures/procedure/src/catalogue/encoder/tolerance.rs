@@ -1,12 +1,12 @@
-//! Whether the sensor bears what the data sheet allows, and what to do where it does not.
+//! Whether the sensor tolerates the mounting errors of the data sheet, and advice if it does not.
 
 use super::edges::{Found, Way};
 use crate::identification::{Axis, Figure, Form, Mark, Series, Verdict};
 
-/// PASS, OUT OF TOLERANCE or NOT SURE, and the ways that are to blame.
+/// PASS, OUT OF TOLERANCE or NOT SURE, with the directions that cause it.
 pub struct Judgement {
     pub verdict: Verdict,
-    /// `None` where the travel does not decide it.
+    /// `None` if the range of the stage does not decide it.
     pub passes: Option<bool>,
     pub said: String,
     pub advice: Option<String>,
@@ -70,7 +70,8 @@ impl Judgement {
     }
 }
 
-/// Each way's last consistent place as a share of the data sheet's tolerance, and where the periods are lost.
+/// The last consistent position of each direction relative to the data sheet's tolerance, and the positions where the
+/// periods are lost.
 pub fn figure(found: &[(&Way, Found)]) -> Figure {
     let share = |way: &Way, at: f64| at.abs() / way.manufacturing;
     let places: Vec<f64> = (0..found.len()).map(|i| i as f64).collect();
@@ -104,7 +105,7 @@ mod tests {
     use super::super::edges::WAYS;
     use super::*;
 
-    /// The ways along the radial shift, consistent up to and lost at, in millimetres.
+    /// The directions of the radial shift, consistent up to and lost at these positions, in millimetres.
     fn judged(places_mm: [(f64, Option<f64>); 2]) -> Judgement {
         let found = |i: usize| {
             let (good, bad) = places_mm[i];

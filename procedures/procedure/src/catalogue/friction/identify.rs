@@ -1,6 +1,7 @@
-//! Coulomb, viscous and Stribeck friction of the free joint, each direction (seed-facts, tables 4.5 and 4.6).
+//! Coulomb, viscous and Stribeck friction of the joint without load, for each direction (seed-facts, tables 4.5 and
+//! 4.6).
 
-use super::left_open::{Side, hidden_rise_nm, is_small, rest};
+use super::inconclusive::{Side, hidden_rise_nm, is_small, rest};
 use crate::findings::{
     Leg, Line, Plateau, Unusable, combined, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter,
     settled,
@@ -20,11 +21,11 @@ type Figured = (f64, [f64; 2]);
 pub(crate) struct FreeFriction {
     pub coulomb: Figured,
     pub viscous: Figured,
-    /// `None`: the run shows no rise towards standstill.
+    /// `None`: no significant rise at low speed.
     pub stribeck: Option<Stribeck>,
 }
 
-/// What Coulomb friction rises by, the speed at which it does (motor) and how sharply.
+/// Rise of Coulomb friction, the motor speed at which it decays, and the exponent.
 pub(crate) struct Stribeck {
     pub rise: Figured,
     pub speed: Figured,
@@ -32,7 +33,7 @@ pub(crate) struct Stribeck {
 }
 
 impl FreeFriction {
-    /// Fits the free legs; the Stribeck part where the run decides it and predicts itself the better for it.
+    /// Fits the legs without load, with a Stribeck part if the run identifies it and its validation error is smaller.
     fn of(run: &Prepared) -> Result<Self, Unusable> {
         let (rich, plain) = (fit_with(run, &["stribeck"]), fit_with(run, &[])?);
         if let Ok(rich) = rich
@@ -64,24 +65,24 @@ impl FreeFriction {
         self.coulomb.0 + self.viscous.0 * speed_rad_s + rise
     }
 
-    /// What holds the joint at rest.
+    /// Breakaway torque at rest.
     pub fn breakaway(&self) -> Option<Figured> {
         self.stribeck.as_ref().map(|s| combined(self.coulomb, s.rise, 1.0))
     }
 }
 
-/// Coulomb and viscous friction, and more.
+/// Fits Coulomb and viscous friction with further effects.
 fn fit_with(run: &Prepared, more: &[&str]) -> Result<Fit, ModelError> {
     let load = run.main.view.find(Signal::Load).map(|_| "load_transmission");
     let effects = load.into_iter().chain(["coulomb", "viscous"]).chain(more.iter().copied());
     fit_prepared(run, &ModelSpec::new(run.kind, effects)?, &Options::default())
 }
 
-/// Coulomb friction beside a drag that grows with the square of speed, where it is elsewhere by this share: a Stribeck part
-/// that fades slowly looks like both.
+/// Share by which Coulomb friction changes if a quadratic drag replaces the Stribeck part: a Stribeck part that
+/// decays slowly looks like both.
 const ELSEWHERE: f64 = 0.15;
 
-fn beside_a_square(run: &Prepared, whole: &FreeFriction) -> Option<f64> {
+fn coulomb_with_quadratic_drag(run: &Prepared, whole: &FreeFriction) -> Option<f64> {
     whole.stribeck.as_ref()?;
     let square = fit_with(run, &["stribeck", "viscous_quadratic"]).ok()?;
     parameter(&square, "viscous_quadratic", "c_2")?;
@@ -89,7 +90,7 @@ fn beside_a_square(run: &Prepared, whole: &FreeFriction) -> Option<f64> {
     ((coulomb_nm - whole.coulomb.0).abs() > ELSEWHERE * coulomb_nm.abs()).then_some(coulomb_nm)
 }
 
-/// The legs without load and after the warm-up.
+/// The legs without load after the warm-up.
 pub(crate) fn free(run: &RunTable) -> Vec<Leg> {
     let warm_up = run.meta().other.get("warm_up_segments").and_then(serde_json::Value::as_i64).unwrap_or(0);
     let unloaded = |leg: &Leg| leg.brake_nm == Some(0.0) && leg.direction != 0.0;
@@ -103,13 +104,13 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
         return Err(Unusable::TooLittle("One unloaded step in each direction is required.", "Repeat the run."));
     }
     let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
-    // A run of hours takes seconds: the directions are looked at beside the whole.
+    // A run of hours takes seconds, so that the directions are fitted in parallel.
     let (whole, sides) = thread::scope(|scope| {
         let sides = scope.spawn(|| [1.0, -1.0].map(|sign| FreeFriction::of(&settled(&part(sign)?)?)));
         let whole = || -> Result<_, Unusable> {
             let both = settled(&keep(run, &free)?)?;
             let whole = FreeFriction::of(&both)?;
-            let square = beside_a_square(&both, &whole);
+            let square = coulomb_with_quadratic_drag(&both, &whole);
             Ok((whole, square, plateaus(&both)))
         };
         (whole(), sides.join())
@@ -173,7 +174,7 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
         let coulomb = words::figure(coulomb_nm, "Nm");
         format!(" Quadratic drag explains this run equally well; Coulomb friction would then be {coulomb}.")
     });
-    // Figures of a curve over speed are none of a friction that follows something else.
+    // The parameters of a curve over speed are not reported if friction depends on something else.
     let is_decided = is_decided && square.is_none() && rest.is_none();
     let advice = match (&rest, is_decided) {
         _ if square.is_some() => Some(
@@ -240,7 +241,7 @@ pub(super) fn friction_nm(point: &Plateau) -> f64 {
     point.target - point.load_nm
 }
 
-/// A line through speeds that begin beyond this share of the highest would be one through a single speed.
+/// The line starts at most at this share of the highest speed, so that it spans several speeds.
 const SPANNED: f64 = 0.7;
 
 fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
@@ -266,7 +267,7 @@ fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
     figure("friction_over_speed", "Friction over motor speed", "motor velocity", series)
 }
 
-/// Figures 4.12 to 4.18 show the slow end over the link's speed.
+/// Figures 4.12 to 4.18 show the low speeds over the link velocity.
 fn near_zero(points: &[Plateau], whole: &FreeFriction, gear: f64) -> Figure {
     let top = 5.0 * whole.stribeck.as_ref().map_or(0.1 * gear, |s| s.speed.0);
     let near: Vec<Plateau> = points.iter().copied().filter(|p| p.velocity_rad_s.abs() <= top).collect();

@@ -1,4 +1,4 @@
-//! The plan of a friction run, held against what has to be seen in its data.
+//! Tests of the plan of a friction run against the requirements on its data.
 
 use super::super::legs::testing::{joint_a, joint_b};
 use super::*;
@@ -60,7 +60,8 @@ fn the_grid_is_complete() {
     }
 }
 
-/// The fastest leg covers a whole turn of the link in both directions at every load, and slow legs lie apart.
+/// The fastest leg covers a whole turn of the link in both directions at every load, and slow legs have different
+/// positions.
 #[test]
 fn the_angle_of_the_link_is_covered() {
     for facts in [joint_a(), joint_b()] {
@@ -103,7 +104,7 @@ fn the_brake_rises_from_zero_and_falls_only_while_turning() {
     assert_eq!(before_a, 0.0);
 }
 
-/// Rank of speed and of load against time: neither may follow it.
+/// Rank correlation of speed and of load with time: both must be small.
 #[test]
 fn time_is_not_speed_and_not_load() {
     let plan = plan(json!({}), &joint_a());
@@ -176,12 +177,12 @@ proptest::proptest! {
         cases: 48, failure_persistence: None, ..Default::default()
     })]
 
-    /// Any choice within the schema is a plan or a refusal, and a plan returns to where it began.
+    /// Any choice within the schema gives a plan or a refusal, and a plan returns to its start.
     #[test]
     fn any_choice_is_planned_or_refused(shares in proptest::collection::vec(0.0..=1.0f64, SCHEMA.len())) {
         let mut given = Map::new();
         for (parameter, share) in SCHEMA.iter().zip(shares) {
-            // Within reach of the default: the longest plans only cost time.
+            // Limited to a multiple of the default, because the longest plans only cost time.
             let max = parameter.max.min(4.0 * parameter.default);
             let value = parameter.min + share * (max - parameter.min);
             let whole = parameter.kind == crate::parameter::ParameterKind::Integer;
@@ -195,7 +196,7 @@ proptest::proptest! {
     }
 }
 
-/// Under load a slow leg never reverses: the wind-up of joint and brake would outlast it.
+/// Under load a slow leg never reverses, because the wind-up of joint and brake would last longer than the leg.
 #[test]
 fn loaded_slow_legs_go_on_in_the_direction_before() {
     for facts in [joint_a(), joint_b()] {

@@ -1,4 +1,4 @@
-//! Compensation of the friction that the campaign itself has found.
+//! Compensation of the friction that the campaign itself identified.
 
 use super::super::compensation::{self, Compensation};
 use super::super::{Learnt, Procedure};
@@ -9,14 +9,14 @@ use jointbench_instrument::RunTable;
 use serde_json::Value;
 use std::ops::Range;
 
-/// Which of the parts waits for which.
+/// The part that waits, and the part that it depends on.
 pub(super) fn lesson(facts: &[Value]) -> Option<Lesson> {
     let [from, to] =
         [&Friction as &dyn Procedure, &Compensation].map(|part| Some(segments(&facts[place(facts, part)?])));
     Some(Lesson { from: from?, to: to?, earlier: None })
 }
 
-/// The steps of compensation with the friction that the rows before them show.
+/// The steps of compensation with the friction identified from the earlier rows.
 pub(super) fn compensation(run: &RunTable, bench: &BenchFacts) -> Result<Learnt, String> {
     let facts = parts_of(run).map_err(|why| why.to_string())?;
     let [from, to] = [&Friction as &dyn Procedure, &Compensation].map(|part| place(facts, part));

@@ -1,11 +1,11 @@
-//! The rows of one part of a campaign as its own procedure would have kept them.
+//! The rows of one part of a campaign, as a run of its own procedure.
 
 use crate::findings::{Unusable, keep_rows};
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use serde_json::Value;
 
-/// The table of one part. A step that was made again after a pause has a number of its own: it belongs to the part that the
-/// rows before it belong to.
+/// The table of one part. A step that was repeated after a pause has a new number: it belongs to the part of the rows
+/// before it.
 pub(super) fn table_of(run: &RunTable, facts: &[Value], number: usize) -> Result<RunTable, Unusable> {
     const NONE: Unusable = Unusable::TooLittle("The run ended before this part.", "Repeat the run.");
     let ranges: Vec<_> = facts
@@ -35,7 +35,7 @@ pub(super) fn table_of(run: &RunTable, facts: &[Value], number: usize) -> Result
     Ok(RunTable::new(meta, trace)?)
 }
 
-/// With the velocity of the link, which a run of friction leaves to its reader.
+/// Adds the velocity of the link, which is not a column of a friction run.
 fn of_link(trace: Trace, meta: &Meta, name: &str) -> Trace {
     let (mut channels, mut columns) = (trace.channels().to_vec(), trace.columns().to_vec());
     if let (Some(velocity), Some(gear)) = (trace.column("motor_velocity_rad_s"), meta.gear_ratio) {
@@ -45,7 +45,7 @@ fn of_link(trace: Trace, meta: &Meta, name: &str) -> Trace {
     Trace::from_columns(channels, columns)
 }
 
-/// Torque against the commanded way, and the commanded current instead of the torque that it stands for.
+/// Torque against the commanded direction, and the commanded current instead of the corresponding torque.
 fn of_brake(trace: Trace, meta: &Meta) -> Trace {
     let ways: Vec<f64> = trace
         .column("velocity_setpoint_rad_s")

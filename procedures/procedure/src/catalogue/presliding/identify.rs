@@ -1,4 +1,4 @@
-//! Dahl's parameters by least squares of the motor's way, and what follows from them for LuGre and for Maxwell slip.
+//! Dahl parameters by least squares of the motor displacement, and the derived parameters of LuGre and Maxwell slip.
 
 use super::loops::{Swings, dahl, swings};
 use crate::findings::{Unusable, curve, quantity, scatter, solve, t95};
@@ -10,12 +10,12 @@ use jointbench_model::words;
 const ROUNDS: usize = 30;
 /// Elements of the Maxwell-slip polygon.
 const ELEMENTS: usize = 4;
-/// The polygon ends where the contacts hold this share of the Coulomb torque.
+/// End of the polygon, as a share of the Coulomb torque.
 const POLYGON_END: f64 = 0.98;
-/// An interval wider than this, either way, decides nothing.
+/// Largest relative half width of the interval of an identified parameter.
 const WIDEST: f64 = 0.25;
 
-/// Compliance [rad/Nm], Coulomb torque [Nm] and the torque that something else holds [Nm].
+/// Compliance [rad/Nm], Coulomb torque [Nm] and a constant bias torque [Nm].
 #[derive(Debug, Clone, Copy)]
 struct Dahl {
     compliance: f64,
@@ -28,7 +28,7 @@ impl Dahl {
         1.0 / self.compliance
     }
 
-    /// τ_c/k: the way at which a straight spring would reach the Coulomb torque.
+    /// τ_c/k: the displacement at which a linear spring would reach the Coulomb torque.
     fn reach_rad(self) -> f64 {
         self.compliance * self.coulomb_nm
     }
@@ -36,7 +36,7 @@ impl Dahl {
     fn shifted(self, by: [f64; 3], share: f64, top_nm: f64) -> Self {
         Self {
             compliance: (self.compliance + share * by[0]).max(0.1 * self.compliance),
-            // Contacts that carried the largest swing hold more than it.
+            // Contacts that carried the largest amplitude have at least that Coulomb torque.
             coulomb_nm: (self.coulomb_nm + share * by[1]).max(1.001 * (top_nm + self.bias_nm.abs())),
             bias_nm: (self.bias_nm + share * by[2]).clamp(-0.2 * top_nm, 0.2 * top_nm),
         }
@@ -62,14 +62,15 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
             _ => Unusable::TooLittle("The joint broke away during the cycles.", "Reduce top_torque_nm."),
         });
     };
-    // Each step in turn is left out: what one step says is of one place and one start.
+    // Delete-one-step jackknife, because a step has one position and one initial state.
     let without = |left_out: usize| fit(&others(&held, left_out));
     let jackknife: Vec<Dahl> = (0..held.len()).filter_map(without).collect();
     let interval = |figure: fn(Dahl) -> f64| spread(&jackknife, figure).map(|reach| around(figure(dahl), reach));
     let points: usize = held.iter().map(|swings| swings.points.len()).sum();
     let wide = |ci95: Option<[f64; 2]>, value: f64| ci95.is_none_or(|[low, high]| high - low > 2.0 * WIDEST * value);
     let (k, coulomb, reach) = (interval(Dahl::stiffness), interval(|d| d.coulomb_nm), interval(Dahl::reach_rad));
-    // A sensor's zero, over the ratio, passes for such a torque: it is the same in every step, and no scatter tells of it.
+    // The zero of a torque sensor, divided by the gear ratio, looks like such a torque. It is the same in every step,
+    // so that the scatter does not contain it.
     let bias = run.column("link_torque_nm").is_none().then(|| interval(|d| d.bias_nm)).flatten();
     let decided = !wide(k, dahl.stiffness()) && !wide(coulomb, dahl.coulomb_nm) && broke_away == 0;
     let mut quantities = vec![
@@ -116,7 +117,7 @@ fn around(value: f64, reach: f64) -> [f64; 2] {
     [value - reach, value + reach]
 }
 
-/// Half the width of a 95 % interval, by the jackknife.
+/// Half width of a 95 % interval, by the jackknife.
 fn spread(jackknife: &[Dahl], figure: fn(Dahl) -> f64) -> Option<f64> {
     let n = jackknife.len() as f64;
     let mean = jackknife.iter().map(|d| figure(*d)).sum::<f64>() / n;
@@ -124,7 +125,7 @@ fn spread(jackknife: &[Dahl], figure: fn(Dahl) -> f64) -> Option<f64> {
     (jackknife.len() > 2).then(|| t95(n - 1.0) * variance.sqrt())
 }
 
-/// Gauss–Newton with halved steps; each step's own zero is taken off.
+/// Gauss–Newton with halved steps; the zero of each step is subtracted.
 fn fit(all: &[&Swings]) -> Option<Dahl> {
     let top_nm = all.iter().flat_map(|s| &s.torque_nm).fold(0.0, |top: f64, nm| top.max(nm.abs()));
     let ways: f64 = all.iter().filter_map(|s| width(s)).fold(0.0, f64::max);
@@ -140,7 +141,7 @@ fn fit(all: &[&Swings]) -> Option<Dahl> {
             by[i] = sizes[i];
             residuals(all, at.shifted(by, 1.0, top_nm)).0
         });
-        // In shares of each parameter's size: they differ by orders of magnitude.
+        // In shares of each parameter, because they differ by orders of magnitude.
         let rows: Vec<[f64; 3]> =
             (0..left.len()).map(|row| [0, 1, 2].map(|i| (left[row] - slopes[i][row]) / 1e-5)).collect();
         let step = solve(&rows, &left)?.values;
@@ -166,7 +167,7 @@ fn width(swings: &Swings) -> Option<f64> {
     (high > low).then_some(high - low)
 }
 
-/// Way measured less way of the model, without each step's mean, and the sum of the squares.
+/// Measured minus modelled displacement, without the mean of each step, and the sum of squares.
 fn residuals(all: &[&Swings], at: Dahl) -> (Vec<f64>, f64) {
     let mut left = Vec::new();
     for swings in all {
@@ -177,7 +178,7 @@ fn residuals(all: &[&Swings], at: Dahl) -> (Vec<f64>, f64) {
     (left, error)
 }
 
-/// Way measured less way of the model at every point, and their mean.
+/// Measured minus modelled displacement at every point, and their mean.
 fn errors(swings: &Swings, at: Dahl) -> (Vec<f64>, f64) {
     let way = dahl(&swings.torque_nm, at.coulomb_nm, at.bias_nm);
     let errors: Vec<f64> = swings.points.iter().map(|(row, q)| q - at.compliance * way[*row]).collect();
@@ -185,11 +186,12 @@ fn errors(swings: &Swings, at: Dahl) -> (Vec<f64>, f64) {
     (errors, mean)
 }
 
-/// Elements side by side whose first loading is a polygon on Dahl's: stiffness [Nm/rad] and torque of slip [Nm] of each.
+/// Parallel elements whose initial loading curve is a polygon on the Dahl curve: stiffness [Nm/rad] and slip torque
+/// [Nm] of each.
 fn maxwell(at: Dahl) -> Vec<(f64, f64)> {
     let loading = |way_rad: f64| first(at, way_rad);
     let end_rad = -at.reach_rad() * (1.0 - POLYGON_END).ln();
-    // Corners closer together where the curve bends more.
+    // Corners are closer together where the curvature is larger.
     let corner = |i: usize| end_rad * (i as f64 / ELEMENTS as f64).powf(1.5);
     let slope = |i: usize| (loading(corner(i + 1)) - loading(corner(i))) / (corner(i + 1) - corner(i));
     let slopes: Vec<f64> = (0..ELEMENTS).map(slope).chain([0.0]).collect();
@@ -201,7 +203,7 @@ fn maxwell(at: Dahl) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Torque of contacts that are bent for the first time.
+/// Torque of the contacts on the initial loading curve.
 fn first(at: Dahl, way_rad: f64) -> f64 {
     at.coulomb_nm * (1.0 - (-way_rad / at.reach_rad()).exp())
 }

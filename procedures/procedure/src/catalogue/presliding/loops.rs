@@ -1,24 +1,24 @@
-//! What a run says of the loops: where the encoder moved on, and how far Dahl's contacts would have moved.
+//! Data of the presliding loops: the rows at which the encoder count changed, and the displacement of the Dahl model.
 
 use jointbench_instrument::RunTable;
 
-/// Positions that change by less lie still [rad].
+/// A smaller change of position counts as rest [rad].
 const STILL_RAD: f64 = 1e-7;
 
-/// One swing step: the torques that were commanded and the points at which the position is known.
+/// One oscillation step: the commanded torques, and the points at which the position is known.
 pub struct Swings {
     /// Torque at each row (motor) [Nm].
     pub torque_nm: Vec<f64>,
-    /// Row, and motor position [rad] from some zero of this step.
+    /// Row, and motor position [rad] relative to an arbitrary zero of this step.
     pub points: Vec<(usize, f64)>,
-    /// The joint broke away and was caught: the rows before it are kept.
+    /// The joint broke away and was stopped; the rows before that are kept.
     pub broke_away: bool,
 }
 
-/// The link's torque is averaged over this, centred: less would let noise pass for reversals.
+/// Centred averaging time of the link torque: with less, noise would look like reversals.
 const LINK_S: f64 = 0.25;
 
-/// Every swing step of the run that was driven to its end, or until the joint broke away.
+/// Every oscillation step that was completed, or that ended with a breakaway.
 pub fn swings(run: &RunTable, torque_constant: f64) -> Option<Vec<Swings>> {
     let setpoint_a = run.column("motor_current_setpoint_a")?;
     let position_rad = run.column("motor_position_rad")?;
@@ -31,14 +31,14 @@ pub fn swings(run: &RunTable, torque_constant: f64) -> Option<Vec<Swings>> {
         let (from, end) = (start, start + rows.len());
         start = end;
         let Some(first) = setpoint_a[from..end].iter().position(|a| *a != 0.0) else { continue };
-        // From rest without torque on, where the swing begins.
+        // The step starts at rest without torque, where the oscillation begins.
         let from = from + first.saturating_sub(1);
-        // A row is read in the tick that sends its set-point: what moved the joint until then is the one before. An edge
-        // was crossed between the last reading and this one, in a ramp half a period before.
+        // A row is read in the tick that sends its set-point, so that the previous set-point caused its motion. A
+        // count edge was crossed between the previous reading and this one, on average half a period earlier.
         let before = |row: usize, by: usize| setpoint_a[row.max(from + by) - by];
         let mut torque_nm: Vec<f64> =
             (from..end).map(|row| 0.5 * torque_constant * (before(row, 1) + before(row, 2))).collect();
-        // What the link takes up is not of the contacts.
+        // The link torque does not act on the contacts.
         if let Some(link_nm) = link_nm {
             let taken = averaged(&link_nm[from..end], (LINK_S * rate_hz) as usize);
             torque_nm.iter_mut().zip(taken).for_each(|(motor_nm, link_nm)| *motor_nm -= link_nm / ratio);
@@ -46,7 +46,7 @@ pub fn swings(run: &RunTable, torque_constant: f64) -> Option<Vec<Swings>> {
         let last_nm = torque_nm[torque_nm.len() - 1];
         let top_nm = torque_nm.iter().fold(0.0, |top: f64, nm| top.max(nm.abs()));
         let (ended, slid) = (last_nm.abs() <= 0.1 * top_nm, slides(&position_rad[from..end], rate_hz));
-        // What a pause has cut off is made again.
+        // A step that a pause interrupted is repeated.
         if ended || slid {
             all.push(Swings { torque_nm, points: known(&position_rad[from..end]), broke_away: !ended });
         }
@@ -54,7 +54,7 @@ pub fn swings(run: &RunTable, torque_constant: f64) -> Option<Vec<Swings>> {
     Some(all)
 }
 
-/// Whether the joint was caught at the end: on the move in most of the last rows, or too fast for contacts that hold.
+/// Whether the joint slid at the end: motion in most of the last rows, or too fast for presliding.
 fn slides(position_rad: &[f64], rate_hz: f64) -> bool {
     let last = |rows: usize| &position_rad[position_rad.len().saturating_sub(rows + 1)..];
     let moving = last(50).windows(2).filter(|pair| (pair[1] - pair[0]).abs() > STILL_RAD).count();
@@ -77,15 +77,15 @@ fn averaged(values: &[f64], reach: usize) -> Vec<f64> {
     (0..values.len()).map(mean).collect()
 }
 
-/// Rows at which a reading tells the position. An encoder of few counts does where it moves on from one count to the next,
-/// and only there; one that is always on the move does everywhere.
+/// Rows at which a reading determines the position. A coarse encoder does so only where its count changes, a fine one
+/// everywhere.
 fn known(position_rad: &[f64]) -> Vec<(usize, f64)> {
     let moves = |row: usize| (position_rad[row] - position_rad[row - 1]).abs() > STILL_RAD;
     let moving = (1..position_rad.len()).filter(|row| moves(*row)).count();
     if 2 * moving > position_rad.len() {
         return position_rad.iter().copied().enumerate().collect();
     }
-    // Each move: the row at which it began, and how far it went.
+    // Each move: the row at which it began, and its length.
     let mut events: Vec<(usize, f64)> = Vec::new();
     let mut row = 1;
     while row < position_rad.len() {
@@ -101,8 +101,8 @@ fn known(position_rad: &[f64]) -> Vec<(usize, f64)> {
     counted(&events)
 }
 
-/// Where the edges between counts lie, which a reading may overshoot: it does so alike in moves that go on in one
-/// direction, and they tell the size of a count.
+/// Positions of the count edges. A reading may overshoot an edge, but it does so equally in consecutive moves in one
+/// direction, which therefore determine the size of a count.
 fn counted(events: &[(usize, f64)]) -> Vec<(usize, f64)> {
     let mut sizes: Vec<f64> =
         events.windows(2).filter(|pair| pair[0].1 * pair[1].1 > 0.0).map(|pair| pair[1].1.abs()).collect();
@@ -110,12 +110,13 @@ fn counted(events: &[(usize, f64)]) -> Vec<(usize, f64)> {
     let Some(count_rad) = sizes.get(sizes.len() / 2).copied() else { return Vec::new() };
     let (mut counts, mut sign, mut points) = (0.0, 0.0, Vec::new());
     for (row, went_rad) in events {
-        // After a turn, when the contacts are stiffest, one edge is crossed at a time, and it is the last one again.
+        // After a reversal, when the contacts are stiffest, one edge is crossed at a time, and it is the last one
+        // again.
         let crossed = if went_rad * sign > 0.0 { (went_rad.abs() / count_rad).round() } else { 1.0 };
         sign = went_rad.signum();
         let edge = counts + if *went_rad > 0.0 { crossed } else { 1.0 - crossed };
         counts += crossed * sign;
-        // Two edges in one move leave open when the first of them was crossed.
+        // For two edges in one move the time of the first crossing is unknown.
         if crossed == 1.0 {
             points.push((*row, edge * count_rad));
         }
@@ -123,8 +124,8 @@ fn counted(events: &[(usize, f64)]) -> Vec<(usize, f64)> {
     points
 }
 
-/// Motion of Dahl's contacts (1968, exponent 1) of unit stiffness that balance a torque, from the first row on: the way
-/// is dq = dτ/(k (1 − τ sgn(dτ)/τ_c)), which integrates in closed form over every stretch that rises or falls.
+/// Displacement of Dahl contacts (1968, exponent 1) of unit stiffness in equilibrium with a torque, from the first
+/// row on: dq = dτ/(k (1 − τ sgn(dτ)/τ_c)), integrated in closed form over every rising or falling section.
 pub fn dahl(torque_nm: &[f64], coulomb_nm: f64, bias_nm: f64) -> Vec<f64> {
     let mut way = Vec::with_capacity(torque_nm.len());
     let (mut at, mut before_nm) = (0.0, bias_nm);
@@ -146,7 +147,7 @@ mod tests {
     fn a_swing_closes_and_a_stiff_contact_is_a_spring() {
         let swing: Vec<f64> = [0.0, 0.5, 0.9, 0.2, -0.9, 0.0, 0.9].into();
         let way = dahl(&swing, 1.0, 0.0);
-        // From the reversal at 0.9 there and back.
+        // From the reversal at 0.9 back and forth.
         assert!((way[6] - way[2]).abs() < 1e-12, "{way:?}");
         assert!((way[1] - 2.0_f64.ln()).abs() < 1e-12);
         let spring = dahl(&swing, 1e6, 0.0);
@@ -155,7 +156,8 @@ mod tests {
 
     #[test]
     fn a_coarse_reading_is_known_at_the_edges_of_its_counts() {
-        // Up over the edges 1 and 2, then over 3 and 4 at once, and back over 4 and 3: the reading overshoots each way.
+        // Up over the edges 1 and 2, then over 3 and 4 at once, and back over 4 and 3: the reading overshoots each
+        // way.
         let reading = [0.2, 0.2, 1.2, 1.2, 1.2, 2.2, 2.2, 4.2, 4.2, 4.2, 3.8, 3.8, 2.8, 2.8, 2.8, 2.8];
         assert_eq!(known(&reading).iter().map(|(row, _)| *row).collect::<Vec<_>>(), [2, 5, 10, 12]);
         let edges = known(&reading).into_iter().map(|(_, at)| at);

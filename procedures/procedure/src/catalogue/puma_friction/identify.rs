@@ -1,5 +1,5 @@
-//! Lines of voltage over speed, each direction, and stiction, in the units of document 000: volts, degrees each second at
-//! the link; and beside them in newton metres at the motor.
+//! Lines of voltage over speed for each direction, and stiction, in the units of document 000: volts, and degrees in
+//! a second at the link. The same results are also given in newton metres at the motor.
 
 use super::super::breakaway::{Onset, onsets};
 use crate::findings::{Hold, Line, Mean, Unusable, combined, curve, holds, quantity, scatter};
@@ -8,16 +8,16 @@ use crate::parameter::Values;
 use jointbench_instrument::RunTable;
 use jointbench_model::words;
 
-/// After its set-point has become constant the joint settles for so long.
+/// Settling time of the joint at a constant set-point.
 const SETTLE_S: f64 = 0.2;
-/// The volts of one angle in a figure are means over such a part of the arc.
+/// Sections of the arc over which the volts in a figure are averaged.
 const ANGLES: usize = 24;
 
-/// One speed in one direction, within the arc that all have in common.
+/// One speed in one direction, within the common arc.
 struct Point {
     deg_s: f64,
     volts: f64,
-    /// What a volt gains for each unit of the sine of the link's angle.
+    /// Change of the voltage for each unit of the sine of the link angle.
     per_sine: f64,
 }
 
@@ -59,7 +59,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
 
     let top_a = values.number("top_torque_nm") / km;
     let (broke, held) = onsets(run, setpoint, values.count("increases") as usize, top_a);
-    // Off the upright pose the weight has helped or hindered.
+    // Gravity acts outside the upright pose and is corrected.
     let stiction = |sign: f64| -> Option<Mean> {
         let volts = |onset: &Onset| onset.current_a / scale - weight.value * figures.link_rad[onset.row].sin();
         Mean::of(&broke.iter().filter(|o| o.current_a * sign > 0.0).map(volts).collect::<Vec<_>>())
@@ -68,7 +68,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
 
     let offset = |line: &Line| (line.offset, line.offset_ci95);
     let slope = |line: &Line| (line.slope, line.slope_ci95);
-    // f⁻ is below 0: the sum is what the sizes differ by.
+    // f⁻ is negative, so that the sum is the difference of the magnitudes.
     let f_difference = combined(offset(&forward), offset(&backward), 1.0);
     let b_difference = combined(slope(&forward), slope(&backward), -1.0);
     let differ = |(_, [low, high]): (f64, [f64; 2])| low > 0.0 || high < 0.0;
@@ -90,7 +90,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
     let nm_per_v = km * scale;
     quantities.extend(at_motor(&forward, &backward, nm_per_v, nm_per_v * gear.recip().to_degrees()));
 
-    let told = match (differ(f_difference), differ(b_difference)) {
+    let comparison = match (differ(f_difference), differ(b_difference)) {
         (true, true) => "Coulomb and viscous friction differ between directions (95 %)",
         (true, false) => "Coulomb friction differs between directions (95 %); viscous friction does not",
         (false, true) => "Viscous friction differs between directions (95 %); Coulomb friction does not",
@@ -101,7 +101,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
     Ok(Identification {
         verdict: if complete { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Coulomb friction (motor side): {} in positive, {} in negative direction. {told}.",
+            "Coulomb friction (motor side): {} in positive, {} in negative direction. {comparison}.",
             words::figure(nm_per_v * forward.offset, "Nm"),
             words::figure(nm_per_v * backward.offset, "Nm"),
         ),
@@ -115,10 +115,10 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
 
 const FEW: Unusable = Unusable::TooLittle("Too few speeds were measured.", "Repeat the run.");
 
-/// The stretches of constant speed behind the work-out that were not broken off.
+/// The uninterrupted holds of constant speed after the work-out.
 fn measured(run: &RunTable, first: i64, count: i64, planned: i64) -> Vec<Hold> {
     let segment = run.column("segment").unwrap_or_default();
-    // A step that was made again after a pause has a number of its own: it belongs where the one before it does.
+    // A step that was repeated after a pause has a new number: it belongs to the rows before it.
     let mut belongs = false;
     holds(run, 2.0 * SETTLE_S)
         .into_iter()
@@ -133,19 +133,19 @@ fn measured(run: &RunTable, first: i64, count: i64, planned: i64) -> Vec<Hold> {
 }
 
 impl Figures<'_> {
-    /// The rows of a hold once the joint has settled.
+    /// The rows of a hold after the settling time.
     fn settled(&self, hold: &Hold) -> std::ops::Range<usize> {
         let from_s = self.time_s[hold.rows.start] + SETTLE_S;
         let start = hold.rows.clone().find(|row| self.time_s[*row] >= from_s).unwrap_or(hold.rows.end);
         start..hold.rows.end
     }
 
-    /// Means over the largest arc about the upright pose that every hold covers, and that arc to either side.
+    /// Means over the largest arc around the upright pose that every hold covers, and half of that arc.
     fn points(&self, holds: &[Hold]) -> Result<(Vec<Point>, f64), Unusable> {
         let reach = |hold: &Hold| {
             let rows = self.settled(hold);
             let (first, last) = (self.link_rad[rows.start.min(hold.rows.end - 1)], self.link_rad[hold.rows.end - 1]);
-            // How far it goes to the nearer side of 0; below 0 where it does not pass it.
+            // Distance to the nearer side of 0; negative if it does not pass 0.
             (-first * last.signum()).min(last.abs())
         };
         let arc_rad = holds.iter().map(reach).fold(f64::INFINITY, f64::min);
@@ -170,7 +170,7 @@ impl Figures<'_> {
         let per_sine = mean(&|row| (sine(row) - centre) * (self.volts[row] - volts)) / spread;
         let way_rad = self.link_rad[last] - self.link_rad[first];
         let deg_s = (way_rad / (self.time_s[last] - self.time_s[first])).to_degrees();
-        // The arc is even about 0: what is left of the weight is what its edges are apart.
+        // The arc is symmetric about 0, so that the remaining gravity torque is the difference of its ends.
         Some(Point { deg_s, volts: volts - per_sine * centre, per_sine })
             .filter(|p| p.volts.is_finite() && p.deg_s != 0.0)
     }
@@ -225,7 +225,7 @@ fn sides(forward: &Line, backward: &Line) -> Vec<Quantity> {
     all
 }
 
-/// The same in newton metres at the motor, sizes only.
+/// The same in newton metres at the motor, as magnitudes.
 fn at_motor(forward: &Line, backward: &Line, nm_per_v: f64, nm_s_per_slope: f64) -> Vec<Quantity> {
     let sized = |value: f64, ci95: [f64; 2], scale: f64| {
         let ends = ci95.map(|end| end * scale * value.signum());

@@ -1,4 +1,4 @@
-//! The plan, and what is refused.
+//! Tests of the plan and of refusals.
 
 use super::super::legs::testing::joint_a;
 use super::*;

@@ -1,4 +1,4 @@
-//! A line of torsion over torque with an offset by direction, and whether the joint asks for more than a line.
+//! A line of torsion over torque with an offset for each direction, and a test for nonlinear stiffness.
 
 use super::zones::zones;
 use crate::findings::{Unusable, holds, interval_of, keep_rows, parameter, quantity, scatter};
@@ -6,25 +6,25 @@ use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, 
 use jointbench_instrument::RunTable;
 use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit, residuals};
 
-/// The settled end of a hold: joint and brake wind up first.
+/// Steady-state share at the end of a hold, after the wind-up of joint and brake.
 const SETTLED: f64 = 0.5;
-/// A curve is worth more than the line where it predicts what it has not seen this much better.
+/// A nonlinear model replaces the line if its validation error is smaller than this share.
 const BETTER: f64 = 0.85;
 
-/// A joint that is soft until its teeth and belts carry: what it gives more than a spring ends at φ, and how sharply it
-/// gets there is left open. φ is then what β₀ is for a line through high loads.
+/// A soft start: additional torsion at low load that saturates at φ, with an unknown sharpness. φ corresponds to β₀
+/// of a line through high loads.
 const SOFT: &str = "soft_start";
-/// The end lies beyond the loads, and what is said of it hangs on the shape that leads there: one that bends late, and one
-/// that bends early.
+/// The saturation is beyond the loads, so that φ depends on the assumed shape: one that bends late, and one that
+/// bends early.
 const SHAPES: [&str; 2] = [
     "torsion = phi * load / (t_h^p + abs(load)^p)^(1/p)",
     "torsion = phi * sign(load) * (1 - (1 + abs(load) / t_h)^(-p))",
 ];
 
-/// No joint follows a shape to the last bit: those that leave less than this share of φ are equally good.
+/// Shapes whose errors differ by less than this share of φ are equally good, because no shape is exact.
 const ALIKE: f64 = 0.005;
 
-/// `None`: there is no load to speak of.
+/// `None`: the load is too small.
 fn softening(run: &RunTable, shape: &str) -> Option<OwnEffect> {
     let top = run.column("link_torque_nm")?.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     let parameter = |name: &str, unit: &str, min: Option<f64>, max: Option<f64>| OwnParameter {
@@ -50,7 +50,7 @@ fn softening(run: &RunTable, shape: &str) -> Option<OwnEffect> {
     OwnEffect::try_from(definition).ok()
 }
 
-/// A figure does not need every sample.
+/// Largest numbers of points in figures.
 const LOOP_POINTS: usize = 800;
 const CURVE_POINTS: usize = 100;
 
@@ -160,8 +160,8 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     })
 }
 
-/// A figure that several fits have: the middle of what they find, and an interval that holds all of theirs. `None` where one
-/// of them does not decide it.
+/// A parameter of several fits: the mean of the estimates, and an interval that contains all of theirs. `None` if one
+/// fit does not identify it.
 fn of_all(fits: &[Fit], effect: &str, name: &str) -> Option<(f64, [f64; 2])> {
     let found: Vec<_> =
         fits.iter().map(|fit| Some(interval_of(parameter(fit, effect, name)?, 1.0))).collect::<Option<_>>()?;
@@ -170,8 +170,8 @@ fn of_all(fits: &[Fit], effect: &str, name: &str) -> Option<(f64, [f64; 2])> {
     Some((0.5 * (least(|f| f.0) + most(|f| f.0)), [least(|f| f.1[0]), most(|f| f.1[1])]))
 }
 
-/// An offset is no surer than the encoders' steps, however many samples are averaged: a uniform error of one step each
-/// (GUM, 4.3.7).
+/// An offset is not more accurate than the encoder counts, independent of the number of samples: a uniform error of
+/// one count each (GUM, 4.3.7).
 fn with_steps((value, ci95): (f64, [f64; 2]), run: &RunTable, gear: f64) -> (f64, [f64; 2]) {
     let step = |name: &str| {
         let channel = run.trace().channels().iter().find(|channel| channel.name == name);
@@ -183,11 +183,11 @@ fn with_steps((value, ci95): (f64, [f64; 2]), run: &RunTable, gear: f64) -> (f64
     (value, [value - reach, value + reach])
 }
 
-/// The course from the middle of a hold at the highest load through the reversal to the middle of the next, and on to the
-/// one after it: there and back.
+/// A reversal in both directions: from the middle of a hold at the highest load to the middle of the next one, and
+/// back to the one after it.
 struct Reversal {
     course: Vec<Point>,
-    /// Rows of the way there.
+    /// Rows of the first half.
     there: usize,
 }
 
@@ -206,7 +206,7 @@ impl Reversal {
         Some(Self { course, there: turn - begin })
     }
 
-    /// Width of the loop and lost motion, where the run comes back to the load from which the loop began.
+    /// Width of the loop and lost motion, if the run returns to the load at which the loop began.
     fn quantities(&self) -> Vec<Quantity> {
         let (there, back) = self.course.split_at(self.there);
         let top = self.course.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
@@ -224,8 +224,8 @@ impl Reversal {
         found
     }
 
-    /// Work that it takes: the area between torsion and torque. What a straight spring between the ends of the way there
-    /// would take is given back; the rest is lost, in both halves.
+    /// Hysteresis loss: the area between torsion and torque in both halves, without the elastic energy of a linear
+    /// spring between the ends.
     fn area_j(&self) -> f64 {
         let there = &self.course[..self.there];
         let way: f64 = there.windows(2).map(|w| 0.5 * (w[1].0 + w[0].0) * (w[1].1 - w[0].1)).sum();
@@ -240,11 +240,11 @@ impl Reversal {
     }
 }
 
-/// Torque to either side between which the lost motion lies, as a share of the highest (catalogues of strain wave gears take 3
-/// or 4 % of the rated torque).
+/// Torque range of the lost motion to either side, as a share of the highest torque. Catalogues of strain wave gears
+/// use 3 or 4 % of the rated torque.
 const LOST_MOTION: f64 = 0.03;
 
-/// Mean torsion where a branch crosses a torque: noise crosses it more than once. `None` where it does not.
+/// Mean torsion where a branch crosses a torque, because noise causes several crossings. `None` without a crossing.
 fn crossing(branch: &[Point], torque: f64) -> Option<f64> {
     let crossings: Vec<f64> = branch
         .windows(2)
@@ -254,7 +254,7 @@ fn crossing(branch: &[Point], torque: f64) -> Option<f64> {
     (!crossings.is_empty()).then(|| crossings.iter().sum::<f64>() / crossings.len() as f64)
 }
 
-/// The chosen model over the loads that were held, each direction on its own.
+/// The selected model over the held loads, separately for each direction.
 fn model(settled: &RunTable, best: &Fit) -> Result<[Series; 2], Unusable> {
     let set = residuals(settled, best, &Options::default())?;
     let load = set.axes.iter().find(|axis| axis.name == "link_torque_nm");
@@ -286,7 +286,7 @@ fn torsion_over_torque(points: &[Point], model: [Series; 2], reversal: Option<&R
     }
 }
 
-/// The look-up table: mean torsion at each torque, both sides.
+/// The look-up table: mean torsion at each torque, both signs.
 fn table(points: &[Point]) -> Series {
     let top = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
     let mut sorted = points.to_vec();
@@ -300,7 +300,7 @@ fn table(points: &[Point]) -> Series {
     Series::new("look-up table", Mark::Line, x, y)
 }
 
-/// Without the slope of the line through high loads, beside which a loop and a soft start are too thin to be seen.
+/// Without the slope of the line through high loads, because a loop and a soft start are not visible otherwise.
 fn beyond_the_slope(whole: &Figure, inverse: f64) -> Figure {
     let level = |one: &Series| Series {
         y: one.x.iter().zip(&one.y).map(|(torque, torsion)| torsion - inverse * torque).collect(),

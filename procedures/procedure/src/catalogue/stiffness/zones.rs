@@ -1,15 +1,15 @@
-//! Stiffness of three thirds of the torque, as catalogues of gears give it: K₁, K₂ and K₃.
+//! Stiffness of three thirds of the torque, as in catalogues of gears: K₁, K₂ and K₃.
 
 use crate::findings::{Line, quantity};
 use crate::identification::Quantity;
 
-/// From means of holds, torque and torsion of both sides, each side about its own offset; the bearing's compliance taken off.
-/// A third that the loads do not decide is left out.
+/// From means of holds (torque and torsion) of both signs, each relative to its own offset, without the compliance of
+/// the bearing. A third that the loads do not determine is omitted.
 pub(super) fn zones(points: &[(f64, f64)], bearing: f64) -> Vec<Quantity> {
     let top = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
     let zone = |number: usize| {
         let (low, high) = (number as f64 / 3.0 * top, (number + 1) as f64 / 3.0 * top);
-        // The load at a border belongs to both of its thirds.
+        // A load at a border belongs to both thirds.
         let inside = |torque: f64| (0.98 * low..=1.02 * high).contains(&torque.abs());
         let side = |sign: f64| centred(points.iter().filter(|p| inside(p.0) && p.0 * sign > 0.0));
         let line = Line::through(&[side(1.0), side(-1.0)].concat())?;
@@ -26,7 +26,7 @@ pub(super) fn zones(points: &[(f64, f64)], bearing: f64) -> Vec<Quantity> {
     (0..3).filter_map(zone).collect()
 }
 
-/// Points about their own mean.
+/// Points relative to their mean.
 fn centred<'p>(points: impl Iterator<Item = &'p (f64, f64)>) -> Vec<(f64, f64)> {
     let points: Vec<(f64, f64)> = points.copied().collect();
     let n = points.len() as f64;
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn a_joint_that_stiffens_has_a_stiffness_for_each_third() {
-        // 100, 200 and 400 Nm/rad between 0, 10, 20 and 30 Nm, both ways about an offset.
+        // 100, 200 and 400 Nm/rad between 0, 10, 20 and 30 Nm, both signs about an offset.
         let torsion = |t: f64| t.min(10.0) / 100.0 + (t - 10.0).clamp(0.0, 10.0) / 200.0 + (t - 20.0).max(0.0) / 400.0;
         let torques = (1..=12).map(|i| f64::from(i) * 2.5);
         let points: Vec<(f64, f64)> = torques

@@ -1,5 +1,5 @@
-//! How a hysteresis brake holds: laws of the literature of which the library uses others. Currents as shares of the rated
-//! one.
+//! Torque of a hysteresis brake, by laws of the literature that differ from the library's. Currents as shares of the
+//! rated current.
 
 use super::Run;
 use crate::made::Dice;
@@ -9,7 +9,7 @@ pub const EFFECTS: &[&str] =
     &["drag", "saturation", "hysteresis", "velocity_dependence", "cogging", "temperature_dependence"];
 pub const OUTSIDE: &[&str] = &["current_window", "intermittent", "rub_at_angle"];
 
-/// What a cause adds to the torque [Nm].
+/// Contribution of a cause to the torque [Nm].
 pub fn torque(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
     let full = run.full_nm;
     let rows = 0..run.time.len();
@@ -24,7 +24,7 @@ pub fn torque(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
             let inputs: Vec<f64> = run.current.iter().map(|i| 2.0 * i - 1.0).collect();
             let bent = preisach(&inputs, dice.uniform(-0.3, 0.3), dice.uniform(0.3, 0.8));
             let size = full * dice.size(0.02, 0.12);
-            // Magnetisation lags: more torque on the way down.
+            // Magnetisation has hysteresis: more torque while the current falls.
             bent.iter().zip(&inputs).map(|(b, i)| size * (i - b)).collect()
         }
         "velocity_dependence" => {
@@ -32,9 +32,9 @@ pub fn torque(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
             rows.map(|i| size * run.velocity[i] / run.fastest * if of_current { run.current[i] } else { 1.0 }).collect()
         }
         "cogging" => {
-            let (size, phase, beside) = (full * dice.size(0.008, 0.04), dice.phase(), dice.phase());
+            let (size, phase, second_phase) = (full * dice.size(0.008, 0.04), dice.phase(), dice.phase());
             let (order, second) = (f64::from(run.poles), dice.uniform(0.0, 0.3));
-            let wave = |a: f64| (order * a + phase).sin() + second * (2.0 * order * a + beside).sin();
+            let wave = |a: f64| (order * a + phase).sin() + second * (2.0 * order * a + second_phase).sin();
             let excited = dice.coin();
             rows.map(|i| size * wave(run.angle[i]) * if excited { run.current[i] } else { 0.5 }).collect()
         }

@@ -1,4 +1,4 @@
-//! Brake runs: currents of all shapes on a shaft that is turned.
+//! Brake runs: currents of all shapes on a rotating shaft.
 
 mod laws;
 
@@ -44,7 +44,7 @@ pub fn make(dice: &mut Dice) -> Recording {
     let hidden: Vec<Part> = plan.hidden.iter().map(&mut part).collect();
     let outside = plan.outside.as_ref().map(&mut part);
     let shapes: Vec<&str> = EFFECTS.iter().flat_map(|id| [*id; SHAPES]).collect();
-    let rivals = if hidden.is_empty() { Vec::new() } else { shapes.iter().map(&mut part).collect() };
+    let alternatives = if hidden.is_empty() { Vec::new() } else { shapes.iter().map(&mut part).collect() };
     let truth = truth(&base, &plan, &run);
     let (columns, response, meta) = shown(&run, base.iter().chain(&hidden).chain(&outside), repeats, dice);
     let facts = json!({"fs": rate_hz, "repeats": repeats, "duration_s": run.time.last()});
@@ -56,7 +56,7 @@ pub fn make(dice: &mut Dice) -> Recording {
         base,
         hidden,
         outside,
-        rivals,
+        alternatives,
         truth,
         optional: if plan.hides("hysteresis") || ids.contains(&"hysteresis") { vec!["saturation"] } else { Vec::new() },
         facts: facts.as_object().cloned().unwrap_or_default(),
@@ -100,7 +100,7 @@ fn run(style: &str, rate_hz: f64, repeats: usize, dice: &mut Dice) -> Run {
     let one = profile(style, rate_hz, dice);
     let one = lag(&one, 1.0 - (-1.0 / (0.02 * rate_hz)).exp());
     let (rows, fastest) = (one.len() * repeats, dice.uniform(4.0, 25.0));
-    // The drive keeps to a few speeds, each for a while.
+    // The drive uses a few speeds, each for a while.
     let speeds: Vec<f64> = (0..3 * repeats).map(|_| fastest * dice.size(0.15, 1.0)).collect();
     let wished: Vec<f64> = (0..rows).map(|i| speeds[i * speeds.len() / rows]).collect();
     let velocity = lag(&wished, 1.0 - (-1.0 / (0.2 * rate_hz)).exp());

@@ -18,22 +18,22 @@ pub const EFFECTS: &[&str] = &[
 ];
 pub const OUTSIDE: &[&str] = &["intermittent", "scratch_at_angle"];
 
-/// What a cause adds to the difference of the two readings [rad].
+/// Contribution of a cause to the difference of the two readings [rad].
 pub fn error(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
     let size = run.noise * dice.size(0.3, 6.0);
     let phase = dice.phase();
     let of_angle = |law: &dyn Fn(f64) -> f64| run.angle.iter().map(|a| law(*a)).collect::<Vec<f64>>();
     match id {
         "delay" => {
-            let late = size / run.fastest;
-            let after = lag(&run.angle, (1.0 / (run.rate_hz * late)).min(1.0));
-            if 1.0 / (run.rate_hz * late) > 1.0 {
+            let delay_s = size / run.fastest;
+            let after = lag(&run.angle, (1.0 / (run.rate_hz * delay_s)).min(1.0));
+            if 1.0 / (run.rate_hz * delay_s) > 1.0 {
                 // Shorter than a row: the filter has settled within it.
-                return run.velocity.iter().map(|v| -late * v).collect();
+                return run.velocity.iter().map(|v| -delay_s * v).collect();
             }
             after.iter().zip(&run.angle).map(|(a, q)| a - q).collect()
         }
-        // A disc off its centre: the angle under which its true centre is seen.
+        // An eccentric disc: the angle relative to its true centre.
         "harmonic_1" => of_angle(&|a| (size * (a + phase).sin()).atan2(1.0 + size * (a + phase).cos())),
         // A tilted disc: the projection of a circle is an ellipse.
         "harmonic_2" => of_angle(&|a| {

@@ -1,4 +1,4 @@
-//! Encoder runs: two encoders on one shaft that sweeps, stops, goes to and fro.
+//! Encoder runs: two encoders on one shaft that sweeps, stops, and moves back and forth.
 
 mod laws;
 
@@ -41,10 +41,11 @@ pub fn make(dice: &mut Dice) -> Recording {
     let hidden: Vec<Part> = plan.hidden.iter().map(&mut part).collect();
     let outside = plan.outside.as_ref().map(&mut part);
     let shapes: Vec<&str> = effects.iter().flat_map(|id| [*id; SHAPES]).collect();
-    let mut rivals: Vec<Part> = if hidden.is_empty() { Vec::new() } else { shapes.iter().map(&mut part).collect() };
-    // A step between two repeats is a start-up as well.
-    if repeats == 2 && !rivals.is_empty() {
-        rivals.push(Part { id: "slip", values: run.repeat.clone() });
+    let mut alternatives: Vec<Part> =
+        if hidden.is_empty() { Vec::new() } else { shapes.iter().map(&mut part).collect() };
+    // A step between two repeats is a start-up offset as well.
+    if repeats == 2 && !alternatives.is_empty() {
+        alternatives.push(Part { id: "slip", values: run.repeat.clone() });
     }
     let mut truth = BTreeMap::new();
     if !["slip", "startup_offset", "temperature_drift"].iter().any(|id| plan.hides(id)) {
@@ -63,7 +64,7 @@ pub fn make(dice: &mut Dice) -> Recording {
         base,
         hidden,
         outside,
-        rivals,
+        alternatives,
         truth,
         optional,
         facts: facts.as_object().cloned().unwrap_or_default(),

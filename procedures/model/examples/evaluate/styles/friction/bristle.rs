@@ -1,15 +1,15 @@
-//! Contacts that bend before they slip: three models of the literature.
+//! Presliding contacts: three models of the literature.
 
 use crate::made::Dice;
 
-/// How contacts follow a motion. Deflections are shares of the distance over which they bend.
+/// How contacts follow a motion. Deflections are shares of the presliding displacement.
 #[derive(Clone)]
 pub enum Bristle {
     /// Canudas de Wit, Olsson, Åström, Lischinsky 1995.
     LuGre(f64),
     /// Dupont, Hayward, Armstrong, Altpeter 2002: no slip below the share.
     ElastoPlastic(f64, f64),
-    /// Al-Bender, Lampaert, Swevers 2005: reach, part and deflection of each element.
+    /// Al-Bender, Lampaert, Swevers 2005: reach, weight and deflection of each element.
     MaxwellSlip(Vec<(f64, f64, f64)>),
 }
 
@@ -34,7 +34,7 @@ impl Bristle {
         }
     }
 
-    /// The state after a way, given as share of the distance over which the contacts bend.
+    /// The state after a displacement, given as a share of the presliding displacement.
     pub fn after(&mut self, way: f64) -> f64 {
         match self {
             Self::LuGre(state) => {

@@ -1,4 +1,4 @@
-//! What the joint is asked to do: speeds as shares of the fastest, loads as shares of the heaviest, by milliseconds.
+//! Excitations of a joint: speeds as shares of the fastest, loads as shares of the heaviest, by milliseconds.
 
 use crate::made::Dice;
 use std::f64::consts::TAU;
@@ -13,7 +13,7 @@ pub const STYLES: &[&str] =
 pub struct Program {
     pub speed: Vec<f64>,
     pub segment: Vec<f64>,
-    /// Share of the fastest speed in one tick.
+    /// Change of speed in one tick, as a share of the fastest.
     rise: f64,
 }
 
@@ -34,7 +34,7 @@ impl Program {
         program
     }
 
-    /// Ramp to a speed and hold it: one segment.
+    /// Ramps to a speed and holds it: one segment.
     fn hold(&mut self, speed: f64, lasts_s: f64) {
         let number = self.segment.last().map_or(0.0, |s| s + 1.0);
         let mut now = self.speed.last().copied().unwrap_or(0.0);
@@ -138,7 +138,7 @@ impl Program {
     }
 }
 
-/// Load of a brake over a whole run: levels that change now and then, or a wave.
+/// Load of a brake over a whole run: levels that change sometimes, or a wave.
 pub fn brake(waves: bool, ticks: usize, dice: &mut Dice) -> Vec<f64> {
     if waves {
         let (frequency, phase) = (dice.size(0.05, 0.4), dice.phase());

@@ -1,4 +1,4 @@
-//! Joints as they are built: strain waves, planetaries, belts, direct drives.
+//! Typical joints: strain wave gears, planetary gears, belts, direct drives.
 
 use super::bristle::Bristle;
 use super::excitation::STYLES;
@@ -53,11 +53,11 @@ pub struct Joint {
     pub repeats: usize,
     pub bristle: Bristle,
     pub torque_constant: f64,
-    /// How long the run lasts.
+    /// Duration of the run.
     pub last_s: f64,
 }
 
-/// Inertia beyond the gear of a joint without a load, as a share of its own.
+/// Inertia behind the gear of a joint without a load, as a share of its own.
 const FREE_END: f64 = 0.02;
 
 impl Joint {
@@ -71,7 +71,7 @@ impl Joint {
         let (fastest, dry) = (dice.uniform(low, high), dice.size(0.008, 0.15));
         let motor_inertia = dry * dice.size(0.05, 0.4) / fastest;
         let share = if load == Load::Inertia || load == Load::Arm { dice.uniform(0.5, 2.5) } else { 0.3 };
-        // Bristles that are stiffer than the simulation is quick do not move otherwise.
+        // Stiffer bristles would be unstable with the time step of the simulation.
         let quick = 4e-6 * dry / motor_inertia;
         let bend =
             if plan.hides("presliding") { fastest * dice.size(2e-3, 1.2e-2) } else { quick * dice.size(1.0, 8.0) };
@@ -98,12 +98,12 @@ impl Joint {
         }
     }
 
-    /// What turns with the motor as far as its torque tells.
+    /// Inertia that moves with the motor, as far as the motor torque determines it.
     pub fn inertia(&self) -> f64 {
         if self.load == Load::None { self.motor_inertia + self.link_inertia } else { self.motor_inertia }
     }
 
-    /// What the torque of the motor moves beside what a sensor in the link feels.
+    /// Inertia that the motor torque accelerates and that a sensor in the link does not measure.
     fn felt_inertia(&self) -> f64 {
         if self.load == Load::None { (1.0 + FREE_END) * self.inertia() } else { self.inertia() }
     }
@@ -121,7 +121,7 @@ impl Joint {
     }
 
     pub fn plant(&self, start: f64, damped: f64) -> Plant {
-        // Without a load link and motor are one mass: the gear has nothing to bend against.
+        // Without a load link and motor are one mass, so that the gear does not twist.
         let (inertia, link_inertia) = match self.load {
             Load::None => (self.inertia(), FREE_END * self.inertia()),
             _ => (self.motor_inertia, self.link_inertia),
@@ -159,7 +159,7 @@ impl Joint {
         }
     }
 
-    /// Parameters that mean the same in the library: what another law of the same axis shares is left out.
+    /// Parameters with the same meaning in the library, except those that another law of the same axis shares.
     pub fn truth(&self, plan: &Plan, offset: Option<f64>) -> BTreeMap<String, f64> {
         let hides = |ids: &[&str]| ids.iter().any(|id| plan.hides(id));
         let speed = ["stribeck", "viscous_sublinear", "viscous_quadratic", "speed_hump", "presliding"];

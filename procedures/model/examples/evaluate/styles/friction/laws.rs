@@ -1,4 +1,4 @@
-//! What the friction of a joint depends on: laws of the literature of which the library uses others.
+//! Laws of the friction of a joint, from literature that differs from the library's formulas.
 
 use crate::made::Dice;
 use std::f64::consts::TAU;
@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 pub struct Moment {
     pub time: f64,
     pub velocity: f64,
-    /// How far the bristles are bent, −1 to 1: the direction of dry friction.
+    /// Deflection of the bristles, −1 to 1: the direction of dry friction.
     pub bristle: f64,
     /// Torque through the gear [Nm].
     pub load: f64,
@@ -16,16 +16,16 @@ pub struct Moment {
     pub motor: f64,
     /// Above 25 °C [K].
     pub warmth: f64,
-    /// Torque that the motor gives [Nm].
+    /// Motor torque [Nm].
     pub torque: f64,
     pub acceleration: f64,
-    /// What the dry bristles carry, with their damping [Nm].
+    /// Torque of the dry bristles, with their damping [Nm].
     pub dry: f64,
 }
 
 pub type Law = Box<dyn Fn(&Moment) -> f64>;
 
-/// Sizes of a joint that the sizes of its effects follow.
+/// Magnitudes of a joint, to which the magnitudes of its effects are proportional.
 pub struct Scale {
     pub dry: f64,
     pub oil: f64,
@@ -53,7 +53,7 @@ pub const EFFECTS: &[&str] = &[
 pub const OF_LOAD: &[&str] = &["load_linear", "load_quadratic", "load_viscous", "stribeck_load"];
 pub const OUTSIDE: &[&str] = &["speed_hump", "bump_angle", "stick_spot_time", "driving_asymmetry", "intermittent"];
 
-/// How much of the dry friction below a speed is gone above it.
+/// Reduction of the dry friction above a speed.
 fn lubrication(slow: f64, dice: &mut Dice) -> Box<dyn Fn(f64) -> f64> {
     let exponent = dice.uniform(0.6, 2.0);
     match dice.uniform(0.0, 5.0) as u32 {
@@ -65,7 +65,7 @@ fn lubrication(slow: f64, dice: &mut Dice) -> Box<dyn Fn(f64) -> f64> {
     }
 }
 
-/// The law of an effect in the library's words, or of something outside it. Without load the laws of load are zero.
+/// The law of an effect by its library id, or of something outside the library. Without load the load laws are zero.
 pub fn law(id: &str, joint: &Scale, dice: &mut Dice) -> Law {
     match id {
         "load_linear" | "load_quadratic" | "load_viscous" | "stribeck_load" => of_load(id, joint, dice),
@@ -154,7 +154,7 @@ fn of_load(id: &str, joint: &Scale, dice: &mut Dice) -> Law {
 }
 
 fn of_angle(id: &str, joint: &Scale, dice: &mut Dice) -> Law {
-    let (dry, phase, beside) = (joint.dry, dice.phase(), dice.phase());
+    let (dry, phase, second_phase) = (joint.dry, dice.phase(), dice.phase());
     match id {
         "gravity" => {
             let size = dry * dice.uniform(0.1, 0.7);
@@ -164,14 +164,14 @@ fn of_angle(id: &str, joint: &Scale, dice: &mut Dice) -> Law {
             let (order, size) = (*dice.pick(&[4.0, 6.0, 7.0, 12.0, 14.0, 24.0]), dry * dice.uniform(0.08, 0.4));
             let second = dice.uniform(0.0, 0.3);
             Box::new(move |m| {
-                size * ((order * m.motor + phase).sin() + second * (2.0 * order * m.motor + beside).sin())
+                size * ((order * m.motor + phase).sin() + second * (2.0 * order * m.motor + second_phase).sin())
             })
         }
         _ => {
             let (order, size) = (*dice.pick(&[1.0, 2.0, 3.0, 5.0, 8.0]), dry * dice.uniform(0.08, 0.35));
             let band = dice.uniform(0.0, 0.25);
             Box::new(move |m| {
-                let wave = (order * m.link + phase).sin() + band * ((order + 1.0) * m.link + beside).sin();
+                let wave = (order * m.link + phase).sin() + band * ((order + 1.0) * m.link + second_phase).sin();
                 size * wave * m.bristle
             })
         }
@@ -212,7 +212,8 @@ fn outside(id: &str, joint: &Scale, dice: &mut Dice) -> Law {
     }
 }
 
-/// A law that carries torque through the bristles or adds to it. The torque constant is of the reading alone.
+/// Whether a law acts on the motion, through the bristles or in addition to them. The torque constant only changes
+/// the reading.
 pub fn moves_the_joint(id: &str) -> bool {
     !matches!(id, "torque_constant_saturation" | "presliding" | "intermittent")
 }

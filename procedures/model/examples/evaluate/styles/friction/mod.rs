@@ -15,10 +15,10 @@ use laws::{EFFECTS, Law, Moment, OF_LOAD, OUTSIDE, law};
 use record::Rows;
 use serde_json::json;
 
-/// Shapes of each rival that are held against a hidden effect.
+/// Shapes of each candidate that are compared with a hidden effect.
 const SHAPES: usize = 5;
 const RATES_HZ: [f64; 5] = [100.0, 200.0, 250.0, 500.0, 1000.0];
-/// A run is recorded at a rate at which it has no more rows.
+/// A run is recorded at a rate that gives no more rows.
 const MOST_ROWS: f64 = 60_000.0;
 
 pub fn make(dice: &mut Dice) -> Recording {
@@ -38,11 +38,11 @@ pub fn make(dice: &mut Dice) -> Recording {
     let always = offset.into_iter().map(|law| ("direction_offset", law));
     let laws: Vec<(&str, Law)> = always.chain(named).collect();
     let rows = record::run(&joint, &setup, laws, dice);
-    let rivals = rivals(&joint, &plan, &rows.moments, dice);
-    recording(&joint, &plan, rows, rivals)
+    let alternatives = alternatives(&joint, &plan, &rows.moments, dice);
+    recording(&joint, &plan, rows, alternatives)
 }
 
-fn rivals(joint: &Joint, plan: &Plan, moments: &[Moment], dice: &mut Dice) -> Vec<Part> {
+fn alternatives(joint: &Joint, plan: &Plan, moments: &[Moment], dice: &mut Dice) -> Vec<Part> {
     if plan.hidden.is_empty() {
         return Vec::new();
     }
@@ -55,7 +55,7 @@ fn rivals(joint: &Joint, plan: &Plan, moments: &[Moment], dice: &mut Dice) -> Ve
     shapes.map(part).filter(|part| part.values.iter().any(|v| *v != 0.0)).collect()
 }
 
-fn recording(joint: &Joint, plan: &Plan, rows: Rows, rivals: Vec<Part>) -> Recording {
+fn recording(joint: &Joint, plan: &Plan, rows: Rows, alternatives: Vec<Part>) -> Recording {
     let Rows { columns, moments, torque, laws, lag_s } = rows;
     let part = |id, of: &dyn Fn(&Moment) -> f64| Part { id, values: moments.iter().map(of).collect() };
     let mut base =
@@ -68,7 +68,7 @@ fn recording(joint: &Joint, plan: &Plan, rows: Rows, rivals: Vec<Part>) -> Recor
     let mut ids = vec!["inertia", "coulomb", "viscous"];
     ids.extend(has_load.then_some("load_transmission"));
     let (mut hidden, mut outside) = (Vec::new(), None);
-    // What bends is told from what does not by the difference of the two.
+    // Presliding is identified by its difference from instantaneous dry friction.
     if plan.hides("presliding") {
         let jumps = part("coulomb", &|m| joint.dry * m.velocity.signum());
         let values = bends.values.iter().zip(&jumps.values).map(|(b, j)| b - j).collect();
@@ -89,8 +89,8 @@ fn recording(joint: &Joint, plan: &Plan, rows: Rows, rivals: Vec<Part>) -> Recor
             }
         }
     }
-    let is_late = lag_s > 0.0;
-    ids.extend(is_late.then_some("signal_delay"));
+    let is_delayed = lag_s > 0.0;
+    ids.extend(is_delayed.then_some("signal_delay"));
     let facts = json!({"joint": joint.name, "load": joint.load.name(), "repeats": joint.repeats, "bristle": joint.bristle.name(),
         "fs": joint.rate_hz, "duration_s": moments.last().map_or(0.0, |m| m.time), "velocity_lag_ms": 1e3 * lag_s,
         "encoder_bits": joint.bits});
@@ -103,8 +103,8 @@ fn recording(joint: &Joint, plan: &Plan, rows: Rows, rivals: Vec<Part>) -> Recor
         base,
         hidden,
         outside,
-        rivals,
-        optional: if is_late { Vec::new() } else { vec!["signal_delay"] },
+        alternatives,
+        optional: if is_delayed { Vec::new() } else { vec!["signal_delay"] },
         facts: facts.as_object().cloned().unwrap_or_default(),
     }
 }

@@ -15,14 +15,14 @@ pub struct Plant {
     pub dry: f64,
     pub oil: f64,
     pub bristle: Bristle,
-    /// The way over which the bristles bend [rad], and how they damp [Nm·s].
+    /// Presliding displacement [rad], and damping of the bristles [Nm·s].
     pub bend: f64,
     pub bristle_damping: f64,
-    /// Weight of an arm on the link [Nm].
+    /// Gravity torque of an arm on the link [Nm].
     pub arm: f64,
     pub brake: f64,
     pub fastest: f64,
-    /// Laws that push the joint.
+    /// Laws that act on the motion of the joint.
     pub laws: Vec<Law>,
     pub state: State,
 }
@@ -37,7 +37,7 @@ pub struct State {
 }
 
 impl Plant {
-    /// One step under a motor torque and a share of the brake. `at` holds what the laws look at.
+    /// One step under a motor torque and a share of the brake. `at` contains the quantities of the laws.
     pub fn step(&mut self, torque: f64, brake: f64, at: &mut Moment, dt: f64) {
         let s = &mut self.state;
         at.load = self.stiffness * (s.motor - s.link) + self.damping * (s.velocity - s.link_velocity);
@@ -50,7 +50,7 @@ impl Plant {
         at.acceleration = (torque - at.load - at.dry - self.oil * s.velocity - laws) / self.inertia;
         s.velocity += at.acceleration * dt;
         s.motor += s.velocity * dt;
-        // The brake is implicit: it is steeper than the step is short.
+        // The brake is integrated implicitly, because its slope is too steep for the time step.
         let slow = 0.02 * self.fastest;
         let grips = (s.link_velocity / slow).tanh();
         let slope = brake * self.brake / slow * (1.0 - grips * grips);
@@ -60,7 +60,7 @@ impl Plant {
     }
 }
 
-/// Position and velocity control on a quantised encoder, with a current loop that lags.
+/// Position and velocity control on a quantised encoder, with a current loop that has a lag.
 pub struct Drive {
     pub count: f64,
     bandwidth: f64,
@@ -94,7 +94,7 @@ impl Drive {
         rounded(motor, self.count)
     }
 
-    /// The torque of the motor for a wanted speed.
+    /// The motor torque for a velocity set-point.
     pub fn torque(&mut self, wanted: f64, motor: f64, dt: f64) -> f64 {
         self.wanted += wanted * dt;
         self.observed.follow(rounded(motor, self.count / 16.0), dt);
@@ -106,7 +106,7 @@ impl Drive {
     }
 }
 
-/// A tracking loop of second order: the velocity that a drive shows.
+/// A tracking loop of second order: the velocity that a drive reports.
 pub struct Observer {
     pub angle: f64,
     pub velocity: f64,

@@ -1,4 +1,4 @@
-//! Simulates a joint and writes down what its instruments show.
+//! Simulates a joint and records the readings of its instruments.
 
 use super::excitation::{self, Program, TICK_S};
 use super::joint::{Joint, Load};
@@ -7,19 +7,19 @@ use super::plant::{Drive, Observer};
 use crate::made::{Coloured, Dice, rounded};
 use std::rc::Rc;
 
-/// Columns, and beside them the truth at every row.
+/// Columns, with the truth at every row.
 pub struct Rows {
     pub columns: Vec<(&'static str, Vec<f64>)>,
     pub moments: Vec<Moment>,
-    /// Motor torque as it was measured.
+    /// Motor torque as measured.
     pub torque: Vec<f64>,
     pub laws: Vec<(&'static str, Law)>,
     pub lag_s: f64,
 }
 
-/// What the run of a joint is made of.
+/// Definition of the run of a joint.
 pub struct Setup {
-    /// Wanted speed, brake, segment and repeat by ticks.
+    /// Speed set-point, brake, segment and repeat by ticks.
     speed: Vec<f64>,
     brake: Vec<f64>,
     segment: Vec<f64>,
@@ -69,7 +69,7 @@ pub fn run(joint: &Joint, asked: &Setup, laws: Vec<(&'static str, Law)>, dice: &
         if step.is_multiple_of(substeps) && step > 0 {
             rows.push((at.clone(), seen.velocity, tick));
         }
-        // Steps of the wanted speed in time with the samples would show another torque than the mean.
+        // Set-point steps in phase with the samples would show another torque than the mean.
         let next = asked.speed[(tick + 1).min(asked.speed.len() - 1)];
         let wanted = asked.speed[tick] + (next - asked.speed[tick]) * (at.time / TICK_S).fract();
         let torque = drive.torque(wanted * joint.fastest, plant.state.motor, dt);
@@ -82,7 +82,7 @@ pub fn run(joint: &Joint, asked: &Setup, laws: Vec<(&'static str, Law)>, dice: &
     shown(joint, asked, rows, laws, (drive.count, 1.6 / seen.bandwidth), dice)
 }
 
-/// What the instruments show of the truth.
+/// Readings of the instruments for the truth.
 fn shown(
     joint: &Joint,
     asked: &Setup,
@@ -97,7 +97,7 @@ fn shown(
     let velocity = *dice.pick(&["clean", "observer", "absent"]);
     let kept = |dice: &mut Dice| dice.uniform(0.0, 1.0) < 0.6;
     let (keeps_segment, keeps_temperature, has_repeats) = (kept(dice), kept(dice), joint.repeats > 1);
-    // Without a column of temperature a law of temperature is not identifiable.
+    // Without a temperature column a temperature effect is not identifiable.
     let keeps_temperature = keeps_temperature || laws.iter().any(|law| law.0.starts_with("temperature"));
     let quiet = 1e-3 * joint.fastest;
     let load_noise = joint.scale().heaviest * joint.gear * dice.size(5e-4, 3e-3);

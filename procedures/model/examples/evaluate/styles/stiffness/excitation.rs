@@ -1,7 +1,7 @@
 //! Torques and angles of stiffness runs.
 
 use crate::made::Dice;
-use crate::styles::waves::{lines, multisine, sine, stairs, wander};
+use crate::styles::waves::{lines, multisine, random_walk, sine, stairs};
 
 pub const STYLES: &[&str] = &[
     "locked_sine",
@@ -17,7 +17,8 @@ pub fn is_turning(style: &str) -> bool {
     style.starts_with("turning")
 }
 
-/// Torque as share of the full one, speed of the link as share of its own, and the number of the step, for one repeat.
+/// Torque as a share of the full torque, link speed as a share of its own, and the number of the step, for one
+/// repeat.
 pub struct Program {
     pub torque: Vec<f64>,
     pub speed: Vec<f64>,
@@ -53,7 +54,7 @@ pub fn draw(style: &str, rate_hz: f64, dice: &mut Dice) -> Program {
         }
         "turning_sine" => sine(slow, 5.0, rate_hz),
         _ if dice.coin() => multisine(dice.uniform(20.0, 40.0), rate_hz, dice),
-        _ => wander(dice.uniform(20.0, 40.0), rate_hz, dice),
+        _ => random_walk(dice.uniform(20.0, 40.0), rate_hz, dice),
     };
     torque.push(torque.last().copied().unwrap_or(0.0));
     let speed = speed(style, torque.len(), slow, rate_hz, dice);
@@ -62,7 +63,7 @@ pub fn draw(style: &str, rate_hz: f64, dice: &mut Dice) -> Program {
     Program { torque, speed, segment }
 }
 
-/// A turning joint goes to and fro with periods of its own.
+/// A turning joint moves back and forth with separate periods.
 fn speed(style: &str, rows: usize, slow: f64, rate_hz: f64, dice: &mut Dice) -> Vec<f64> {
     if !is_turning(style) {
         return vec![0.0; rows];

@@ -1,4 +1,4 @@
-//! How a joint twists, by laws of the literature of which the library uses others.
+//! Twist of a joint, by laws of the literature that differ from the library's.
 
 use super::Run;
 use crate::made::Dice;
@@ -10,7 +10,7 @@ pub const OF_MOTION: &[&str] = &["directional_offset", "transmission_error", "de
 pub const OUTSIDE: &[&str] = &["intermittent", "soft_window"];
 pub const OUTSIDE_OF_MOTION: &[&str] = &["tooth_at_angle", "intermittent", "soft_window"];
 
-/// What a cause adds to the twist [rad], of a size in shares of the twist at full torque.
+/// Contribution of a cause to the twist [rad], with a size in shares of the twist at full torque.
 pub fn twist(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
     let size = run.full_twist * dice.size(0.02, 0.12);
     let shares: Vec<f64> = run.torque.iter().map(|t| t / run.full_nm).collect();
@@ -27,7 +27,7 @@ pub fn twist(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
             } else {
                 bouc_wen(&shares, dice.uniform(0.1, 0.5), dice.uniform(1.0, 2.0))
             };
-            // What is in phase with the torque is compliance.
+            // The part in phase with the torque is compliance.
             bent.iter().zip(&shares).map(|(b, s)| size * (b - s)).collect()
         }
         "creep" => creep(&shares, run, size * 1.5, dice),
@@ -38,17 +38,18 @@ pub fn twist(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
         }
         "directional_offset" => bouc_wen(&run.link, dice.size(2e-4, 2e-3), 1.0).iter().map(|d| size * d).collect(),
         "transmission_error" => {
-            let (order, phase, beside) = (*dice.pick(&[1.0, 2.0, 3.0, 6.0, 11.0, 20.0]), dice.phase(), dice.phase());
+            let (order, phase, second_phase) =
+                (*dice.pick(&[1.0, 2.0, 3.0, 6.0, 11.0, 20.0]), dice.phase(), dice.phase());
             let band = dice.uniform(0.0, 0.3);
             run.link
                 .iter()
-                .map(|q| size * ((order * q + phase).sin() + band * (2.0 * order * q + beside).sin()))
+                .map(|q| size * ((order * q + phase).sin() + band * (2.0 * order * q + second_phase).sin()))
                 .collect()
         }
         "delay" => {
-            // The motor's encoder passes a filter, the link's does not.
-            let late = dice.size(0.3, 4.0) * 0.5 * size / run.speed.max(1e-6);
-            let after = lag(&run.link, (1.0 / (run.rate_hz * late)).min(1.0));
+            // The motor encoder passes a filter, the link encoder does not.
+            let delay_s = dice.size(0.3, 4.0) * 0.5 * size / run.speed.max(1e-6);
+            let after = lag(&run.link, (1.0 / (run.rate_hz * delay_s)).min(1.0));
             after.iter().zip(&run.link).map(|(a, q)| a - q).collect()
         }
         "tooth_at_angle" => {
@@ -73,7 +74,7 @@ fn hardening(shares: &[f64], size: f64, dice: &mut Dice) -> Vec<f64> {
         way * s.signum()
     };
     let law: Box<dyn Fn(f64) -> f64> = match dice.uniform(0.0, 3.0) as u32 {
-        // Stiffness in three pieces: catalogues of strain waves.
+        // Stiffness in three sections: catalogues of strain waves.
         0 => Box::new(move |s: f64| 3.0 * size * (pieces(s) - s)),
         1 => Box::new(move |s: f64| 3.0 * size * (s.abs().powf(0.6) * s.signum() - s)),
         // Torque = twist + b·twist³.
@@ -86,7 +87,7 @@ fn hardening(shares: &[f64], size: f64, dice: &mut Dice) -> Vec<f64> {
     shares.iter().map(|s| law(*s)).collect()
 }
 
-/// One, two or many retarded parts: Kelvin–Voigt, double, logarithmic.
+/// One, two or many retarded elements: Kelvin–Voigt, double, logarithmic.
 fn creep(shares: &[f64], run: &Run, size: f64, dice: &mut Dice) -> Vec<f64> {
     let slow = dice.size(0.4, 3.0);
     let parts: Vec<(f64, f64)> = match dice.uniform(0.0, 3.0) as u32 {

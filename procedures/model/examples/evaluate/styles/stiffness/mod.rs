@@ -37,7 +37,7 @@ pub fn make(dice: &mut Dice) -> Recording {
     let turns = excitation::is_turning(style);
     let effects: Vec<&str> = if turns { [OF_TORQUE, OF_MOTION].concat() } else { OF_TORQUE.to_vec() };
     let plan = Plan::draw(dice, &effects, if turns { OUTSIDE_OF_MOTION } else { OUTSIDE });
-    // A joint that slips a little always, as its model says.
+    // A joint that always slips a little, as its model states.
     let slips = !plan.hides("torsional_hysteresis") && dice.uniform(0.0, 1.0) < 0.3;
     let full = run.full_twist;
     let base = |id, values| Part { id, values };
@@ -50,11 +50,11 @@ pub fn make(dice: &mut Dice) -> Recording {
     }
     let hidden: Vec<Part> = plan.hidden.iter().map(|id| base(id, twist(id, &run, dice))).collect();
     let outside = plan.outside.map(|id| base(id, twist(id, &run, dice)));
-    let rivals = OF_TORQUE.iter().chain(OF_MOTION).flat_map(|id| [*id; SHAPES]);
-    let mut rivals: Vec<Part> =
-        rivals.filter(|id| turns || !OF_MOTION.contains(id)).map(|id| base(id, twist(id, &run, dice))).collect();
+    let alternatives = OF_TORQUE.iter().chain(OF_MOTION).flat_map(|id| [*id; SHAPES]);
+    let mut alternatives: Vec<Part> =
+        alternatives.filter(|id| turns || !OF_MOTION.contains(id)).map(|id| base(id, twist(id, &run, dice))).collect();
     if hidden.is_empty() {
-        rivals.clear();
+        alternatives.clear();
     }
     let truth = truth(&parts, &plan, &run);
     let (columns, response, meta) = shown(&run, &parts, hidden.iter().chain(&outside), repeats, dice);
@@ -68,7 +68,7 @@ pub fn make(dice: &mut Dice) -> Recording {
         base: parts,
         hidden,
         outside,
-        rivals,
+        alternatives,
         truth,
         optional,
         facts: facts.as_object().cloned().unwrap_or_default(),
@@ -104,7 +104,7 @@ fn run(style: &str, repeats: usize, dice: &mut Dice) -> Run {
     }
 }
 
-/// Compliance is shared by what else follows the torque.
+/// Compliance is shared with other effects that follow the torque.
 fn truth(base: &[Part], plan: &Plan, run: &Run) -> BTreeMap<String, f64> {
     let shared = ["torsional_hysteresis", "hardening", "creep", "backlash", "temperature_compliance", "soft_window"];
     let mut truth = BTreeMap::new();
@@ -133,7 +133,7 @@ fn shown<'p>(
     let mut twist = vec![0.0; run.time.len()];
     let parts: Vec<&Part> = base.iter().chain(more).collect();
     parts.iter().for_each(|p| twist.iter_mut().zip(&p.values).for_each(|(t, v)| *t += v));
-    // A locked link still gives a little: its bearing.
+    // A locked link still yields a little, in its bearing.
     let gives = run.full_twist / run.full_nm * dice.size(1e-3, 1e-2);
     let link: Vec<f64> = run.link.iter().zip(&run.torque).map(|(q, t)| rounded(q - gives * t, link_step)).collect();
     let motor: Vec<f64> = (0..twist.len())

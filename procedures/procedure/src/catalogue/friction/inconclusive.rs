@@ -1,19 +1,19 @@
-//! What a run of friction leaves open: a rise towards standstill that could hide in it, and scatter that speed does not
+//! Open questions of a friction run: a Stribeck rise below the detection limit, and scatter that speed does not
 //! explain.
 
 use super::identify::{FreeFriction, friction_nm};
 use crate::findings::{Plateau, solve};
 use jointbench_model::words;
 
-/// A rise below this share of Coulomb friction need not be known.
+/// A rise below this share of Coulomb friction is negligible.
 const SMALL_RISE: f64 = 0.1;
-/// Where the actual Stribeck velocity may lie, as shares of the expected one.
+/// Tested Stribeck velocities relative to the expected one.
 const WHERE_IT_RISES: [f64; 3] = [0.5, 1.0, 2.0];
-/// Speed explains friction where it explains so much of how it varies, or leaves no more than such a share of it.
+/// Speed explains friction if r² reaches this value, or if the remaining RMS is below this share of Coulomb friction.
 const EXPLAINED: f64 = 0.9;
 const SMALL_REST: f64 = 0.02;
 
-/// The largest rise towards standstill, or fall, that the points can hold at 95 %. The directions may differ.
+/// The largest rise or fall at low speed that is compatible with the points at 95 %. The directions may differ.
 pub(super) fn hidden_rise_nm(points: &[Plateau], expected_rad_s: f64) -> Option<f64> {
     let values: Vec<f64> = points.iter().map(|p| friction_nm(p) * p.velocity_rad_s.signum()).collect();
     let of_width = |share: f64| {
@@ -27,12 +27,12 @@ pub(super) fn hidden_rise_nm(points: &[Plateau], expected_rad_s: f64) -> Option<
     WHERE_IT_RISES.into_iter().try_fold(0.0, |most: f64, share| Some(most.max(of_width(share)?)))
 }
 
-/// Whether a rise of this size need not be known.
+/// Whether a rise of this size is negligible.
 pub(super) fn is_small(rise_nm: f64, whole: &FreeFriction) -> bool {
     rise_nm <= SMALL_RISE * whole.coulomb.0
 }
 
-/// How well one direction's own curve explains it.
+/// Quality of the separate fit of one direction.
 pub(super) struct Side {
     /// Share of the scatter explained.
     pub r2: f64,
@@ -53,7 +53,7 @@ impl Side {
     }
 }
 
-/// What follows something else than speed, in a sentence of its own.
+/// A dependence on something other than speed, in a separate sentence.
 pub(super) fn rest(sides: &[(&str, Side); 2], whole: &FreeFriction) -> Option<String> {
     let open = |side: &Side| side.r2 < EXPLAINED && side.rest_rms_nm > SMALL_REST * whole.coulomb.0;
     let (way, side) =

@@ -1,13 +1,13 @@
-//! A plan laid out as the model sees it.
+//! Steady-state stretches of a plan for the model.
 
 use crate::plan::{Before, BenchFacts, Phase, Plan, Step};
 use jointbench_instrument::Kind;
 use jointbench_model::{Choice, Stretch};
 use serde_json::{Map, Value};
 
-/// The settled stretches of a plan. A warm-up may be cut short: nobody counts on it.
+/// The steady-state stretches of a plan, without the warm-up, which may end early.
 ///
-/// `warmer_k`: how much warmer the joint is after so many seconds.
+/// `warmer_k`: warming of the joint after a number of seconds.
 pub fn choice(
     plan: &Plan,
     parameters: &Map<String, Value>,
@@ -51,14 +51,14 @@ pub fn choice(
     }
 }
 
-/// Parts of a time in a step in which the brake current keeps still. A joint whose load has changed is not settled before
+/// Intervals of a step with a constant brake current. After a change of load a joint is not at steady state before
 /// its next step.
 fn constant_current(step: &Step, from_s: f64, to_s: f64, kind: Kind) -> Vec<(f64, f64)> {
     let within = step.brake.knots().iter().map(|(t_s, _)| *t_s).filter(|t_s| from_s < *t_s && *t_s < to_s);
     let edges: Vec<f64> = std::iter::once(from_s).chain(within).chain([to_s]).collect();
-    let pieces = edges.windows(2).map(|edge| (edge[0], edge[1]));
+    let intervals = edges.windows(2).map(|edge| (edge[0], edge[1]));
     let still =
         |(from_s, to_s): &(f64, f64)| to_s > from_s && step.brake.at(*from_s) == step.brake.at(0.5 * (from_s + to_s));
-    let still: Vec<_> = pieces.filter(still).collect();
+    let still: Vec<_> = intervals.filter(still).collect();
     if kind != Kind::Brake && edges.len() > 2 { Vec::new() } else { still }
 }

@@ -1,4 +1,4 @@
-//! A bench of which nothing is known but a run.
+//! Facts of a bench that is only known from a run.
 
 use crate::plan::BenchFacts;
 use jointbench_instrument::bench::JointConstants;
@@ -6,11 +6,11 @@ use jointbench_instrument::{Kind, Limits, RunTable};
 use std::f64::consts::{PI, TAU};
 
 impl BenchFacts {
-    /// A bench that may do what a run has shown that it can, where nothing else is known of it.
+    /// A bench that can do what the run has shown.
     pub fn shown_by(run: &RunTable) -> Self {
         let largest = |name: &str| run.column(name).map(|c| c.iter().fold(0.0f64, |m, v| m.max(v.abs())));
         let meta = run.meta();
-        // Whatever loads a joint for its stiffness is called its brake, at full load with 1 A where no current was recorded.
+        // Any load of a stiffness run counts as a brake, with full load at 1 A if no current was recorded.
         let brake_a = match run.kind() {
             Kind::Stiffness => largest("brake_current_a").filter(|a| *a > 0.0).unwrap_or(1.0),
             _ => largest("brake_current_a").unwrap_or(0.0),
@@ -20,7 +20,7 @@ impl BenchFacts {
         let motor_rad = motor_rad(run, gear_ratio);
         let (low, high) = motor_rad.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), q| (l.min(*q), h.max(*q)));
         let range_rad = (high - low) / gear_ratio;
-        // What turns on and on has no range.
+        // An axis that turns continuously has no range.
         let turns_on = matches!(run.kind(), Kind::Encoder | Kind::Brake) && range_rad > TAU;
         let rated_a = meta.rated_current_a.unwrap_or(brake_a).max(f64::MIN_POSITIVE);
         Self {
@@ -56,7 +56,7 @@ impl BenchFacts {
     }
 }
 
-/// Where the motor was: of an encoder bench the shaft, of a brake what a joint of this gear would have turned.
+/// Motor position: of an encoder bench the shaft, of a brake the position that a joint with this gear would have.
 fn motor_rad(run: &RunTable, gear_ratio: f64) -> Vec<f64> {
     let column = |name: &str| run.column(name).unwrap_or_default();
     match run.kind() {
