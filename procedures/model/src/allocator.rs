@@ -3,8 +3,8 @@
 /// Makes all threads of a program share one heap. It must be called before the first thread starts.
 ///
 /// glibc gives every thread a separate heap, up to eight for each core, and each keeps the memory that its columns
-/// once needed. One heap reduces the memory of a diagnosis of 50,000 rows from 5 times the run to less than 4 times,
-/// at the same speed. On other platforms the function has no effect.
+/// once needed. For a diagnosis of 50,000 rows, one heap reduces the memory from 5 times the run to less than 4
+/// times. The speed is the same. On other platforms the function has no effect.
 pub fn one_heap() {
     #[cfg(target_env = "gnu")]
     #[allow(unsafe_code)]

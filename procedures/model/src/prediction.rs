@@ -1,4 +1,4 @@
-//! What a fit predicts on a run that is prepared as the fitted one was.
+//! Prediction of a fit on a run that is preprocessed like the fitted one.
 
 use crate::preprocess::{Prepared, Problem, prepare_with};
 use crate::regression::linear_model::columns;

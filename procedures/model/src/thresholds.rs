@@ -10,9 +10,9 @@ pub struct Threshold {
     pub name: &'static str,
     /// Its value in `unit`.
     pub value: f64,
-    /// What the value counts or is a share of.
+    /// Quantity that the value counts or is a share of.
     pub unit: &'static str,
-    /// What is decided with it.
+    /// Decision that uses it.
     pub meaning: &'static str,
     /// The command, runs or convention that it comes from.
     pub calibrated_on: &'static str,

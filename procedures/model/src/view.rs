@@ -162,7 +162,7 @@ impl View {
 
     /// Mean of cos(h·angle) and sin(h·angle) over each point.
     ///
-    /// At constant speed the mean over a chunk of n samples, each δ further, is the value at the middle times the
+    /// At constant speed a chunk has n samples, each δ further. Its mean is the value at the middle times the
     /// Dirichlet kernel sin(n·h·δ/2)/(n·sin(h·δ/2)). A periodic effect is thus attenuated at speed as in the data.
     pub fn harmonic(&self, signal: Signal, order: f64) -> [Vec<f64>; 2] {
         let angle = self.get(signal);

@@ -84,7 +84,7 @@ fn with_confounded(suggestion: &Suggestion) -> String {
     }
 }
 
-/// What remains at the end of the search, where `fit` is its model. `is_cut`: it ended at the requested number of effects.
+/// Summary of the final model of the search, which is `fit`. `is_cut`: it ended at the requested number of effects.
 pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Options, is_cut: bool) -> String {
     let unit = Scale::of(fit.validation_rms, &fit.unit);
     let (error, floor) = (unit.figure(fit.validation_rms), floor(found, fit, &unit));
@@ -156,8 +156,8 @@ const CORRECT: &str = "Correct this first: the results are based on these column
 const CORRECT_ALL: &str =
     "Correct this first: no effect is suggested until then, and the results are based on these columns. ";
 
-/// Problems that a user has to correct first: contradicting columns, a parameter that is physically impossible in all
-/// fits, and a constant input of an offset term, whose sensor may not have been connected.
+/// Problems that a user has to correct first: contradicting columns, and a parameter that is physically impossible in
+/// all fits. A constant input of an offset term is also reported, because its sensor may not have been connected.
 fn attention(found: &Findings, fits: &[&Fit]) -> String {
     let problem = |what: &String| format!("Data problem: {what}. ");
     let clashes = &found.start.prepared.clashes;

@@ -120,8 +120,8 @@ pub struct Next {
 
 /// The recommended next run. None is recommended for contradicting columns, which have to be corrected first.
 ///
-/// The priority is: confounded effects, an effect that may be present as well, a temperature effect confounded with
-/// time, missing repeats, then effects that this run could not show.
+/// Confounded effects have priority, then an effect that may be present as well. After these come a temperature
+/// effect confounded with time, missing repeats, and effects that this run could not show.
 pub fn next_run(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Result<Next, ModelError> {
     let mut next = choose(run, open, menu, options)?;
     if let (Some(next), Motion::Linear) = (&mut next.experiment, run.meta().motion) {

@@ -13,9 +13,9 @@ use crate::signal::{Signal, Signals};
 use crate::view::{Start, View};
 
 /// Half width of the dead band, in standard deviations of the noise: a narrower band passes noise peaks, a wider one
-/// delays reversals. Measured on a joint with 12 mNm of torque noise and slip over 0.3 Nm: an error of 26 µrad
-/// without a dead band, 16 with one, 9 with two, 8 with three, 9 with four, and 7 for the model with the smoothed
-/// torque.
+/// delays reversals. Measured on a joint with 12 mNm of torque noise and slip over 0.3 Nm. The error is 26 µrad
+/// without a dead band, 16 with one standard deviation, 9 with two, 8 with three and 9 with four. The model with the
+/// smoothed torque has 7 µrad.
 pub const NOISES: f64 = 3.0;
 
 /// The dead band of a signal, if the fit removed noise from it.

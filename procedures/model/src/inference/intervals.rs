@@ -110,8 +110,8 @@ fn active(grams: &BlockGrams) -> Vec<Vec<usize>> {
     (0..grams.groups).map(|g| (0..p).filter(|a| grams.xx(g)[a * p + a] > 0.0).collect()).collect()
 }
 
-/// Effective number of blocks of a parameter: the number of equal blocks with the same accuracy, (Σ w)²/Σ w², where w
-/// is the share of each block in the variance of the parameter.
+/// Effective number of blocks of a parameter: the number of equal blocks with the same accuracy, (Σ w)²/Σ w². The
+/// weight w is the share of a block in the variance of the parameter.
 fn effective_blocks(grams: &BlockGrams, active: &[Vec<usize>], spd: &Cholesky, k: usize) -> f64 {
     let p = grams.columns;
     let mut unit = vec![0.0; p];

@@ -7,8 +7,8 @@ const FEWEST: usize = 8;
 
 /// The block of every row, and the number of blocks.
 ///
-/// Whole segments, because an offset or tilt that differs between segments is common to all rows of one segment, so
-/// that half a segment is no independent evidence. Shorter blocks if there are too few segments for `columns`
+/// Blocks are whole segments, because an offset or tilt that differs between segments is common to all rows of one
+/// segment. Half a segment is no independent evidence. Shorter blocks if there are too few segments for `columns`
 /// parameters.
 pub fn independent_blocks(problem: &Problem, columns: usize) -> (Vec<usize>, usize) {
     let leg_of_row = legs(problem);

@@ -9,8 +9,8 @@ use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
 use crate::thresholds::{BETTER_FORM, COMPONENT_OWN_SHARE};
 
-/// Adds a component to an effect that is a sum of components, while it passes the same tests as a new effect and no
-/// other effect explains the same share better.
+/// Adds a component to an effect that is a sum of components. The component has to pass the same tests as a new
+/// effect, and no other effect may explain the same share better.
 pub fn extend<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p>, options: &Options) {
     for at in 0..terms.terms.len() {
         while let Some(longer) = one_more(terms, at, library, options) {

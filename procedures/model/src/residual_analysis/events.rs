@@ -1,8 +1,8 @@
 //! Events that do not repeat: a sensor that jumps for a while, a particle that passes once.
 //!
 //! No function of an axis predicts an event, and in the difference of two repeats it looks like noise. An event is a
-//! short section whose mean is an outlier of the scatter of all sections, and that is absent in the repeats of the
-//! same moment.
+//! short section whose mean is an outlier of the scatter of all sections. The repeats of the same moment do not show
+//! it.
 
 use crate::effect::ShapeSearch;
 use crate::preprocess::Problem;

@@ -24,7 +24,7 @@ pub fn read(kind: Kind, text: &str) -> Result<OwnEffect, FormulaFault> {
     let definition =
         Definition { id, kind, formula: formula.to_owned(), parameters, title: String::new(), sentence: String::new() };
     OwnEffect::try_from(definition).map_err(|fault| {
-        // Of equal names the last one is the error.
+        // The last of several equal names is the error.
         let parameter = || names.iter().rposition(|n| *n == fault.text).map_or(0, |p| places[p].start);
         let start = match fault.field {
             "formula" => formula_at.start,

@@ -54,8 +54,8 @@ impl Effect for Hysteresis {
         }
         let one = |name| Form { name, linear: vec!["h"], shape: shape.clone(), grid: grid.clone() };
 
-        // A stop with a reach of more than half the range never slips on the way back, so that it is confounded with
-        // a straight line. The positions of the bands are stored with the fit, because another run has another range.
+        // A stop with a reach of more than half the range never slips on the way back. It is then confounded with a
+        // straight line. The positions of the bands are stored with the fit, because another run has another range.
         let current = view.samples.find(Signal::Current).unwrap_or_default();
         let ends = current.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), i| (l.min(*i), h.max(*i)));
         let most = (ends.1 - ends.0) / 2.0;

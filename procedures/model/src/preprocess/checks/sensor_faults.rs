@@ -18,8 +18,8 @@ const CLIPPED_SHARE: f64 = 0.003;
 const ALONE: f64 = 25.0;
 const ALONE_RANGE: f64 = 0.15;
 const AGREE: f64 = 0.2;
-/// A pulse is no fault if the speed over this number of samples before and after it changes by more than this share of
-/// the largest speed: the drive accelerates.
+/// A pulse is no fault while the drive accelerates: the speed over this number of samples before and after it changes
+/// by more than this share of the largest speed.
 const SPEED_SAMPLES: usize = 5;
 const PUSHED: f64 = 0.02;
 

@@ -97,8 +97,8 @@ const MOST_REPLICATES: usize = 8;
 
 /// Pairs of rows of the same condition in different repeats whose phases differ by `apart` rows.
 ///
-/// For chunks, neighbouring phases are paired instead of equal ones. A change from chunk to chunk, such as the ripple
-/// of a control loop that starts alike in every repeat, is no repeatable effect of the joint.
+/// For chunks, neighbouring phases are paired instead of equal ones. A change from chunk to chunk is no repeatable
+/// effect of the joint. An example is the ripple of a control loop that starts alike in every repeat.
 pub fn replicate_pairs(condition: &[usize], phase: &[usize], repeat: &[i64], apart: usize) -> Vec<(usize, usize)> {
     let mut seen: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
     for row in 0..condition.len() {

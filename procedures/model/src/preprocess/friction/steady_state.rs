@@ -44,8 +44,8 @@ pub fn find(samples: &Source, gear_ratio: f64, options: &Options) -> Vec<Range<u
     samples.legs().into_par_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, (n, link_s))).collect()
 }
 
-/// A load that changes by more than the link motion can cause (`link_s` for each rad/s of the motor) twists the joint
-/// without sliding, so that the stretch is rejected.
+/// Rejects a stretch whose load changes by more than the link motion can cause (`link_s` for each rad/s of the
+/// motor). Such a load twists the joint without sliding.
 fn settled(
     leg: Range<usize>,
     velocity: &[f64],

@@ -1,7 +1,7 @@
 //! Tests an effect that differs from leg to leg against the scatter between legs.
 //!
 //! The permutation test flips the signs of blocks, and blocks are parts of long legs. An offset of a whole leg is
-//! common to all its blocks, for example the rest position of an encoder in its coupling or of a gear. A few
+//! common to all its blocks. An example is the rest position of an encoder in its coupling or of a gear. A few
 //! consecutive legs can then differ like a step in time.
 
 use crate::Options;

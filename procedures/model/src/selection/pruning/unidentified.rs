@@ -61,7 +61,7 @@ pub fn undecided<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared) -> Op
         let doubt = Doubt::of(term, &search.now, &parameters, prepared);
         let more = validation_losses(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
         let is_removed = match doubt.of_coefficients && doubt.of_shape {
-            // Of two confounded effects, the one with open size and shape is removed.
+            // An effect with open size and shape is removed if another effect is confounded with it.
             true => more < NEEDED_WITHOUT_SIZE_AND_SHAPE || !search.stand_ins(term).is_empty(),
             false if doubt.of_size => more < NEEDED_WITHOUT_SIZE,
             false => (search.unmodelled_structure || doubt.is_there()) && more < NEEDED_WHERE_OPEN,
