@@ -18,9 +18,36 @@ fn the_hidden_effect_is_found() {
     assert!(said.contains("Missing effect found: load_linear."), "{said}");
 }
 
+fn assert_found(kind: &str, effect: &str) {
+    let said = demo(&["--kind", kind, "--effect", effect]);
+    let found = said.lines().find_map(|line| line.strip_prefix("Missing effect found: ")).expect("the conclusion");
+    let (names, hidden) = found.split_once(". Hidden effect: ").expect("both");
+    assert!(names.contains(effect) && hidden.starts_with(effect), "{said}");
+}
+
+#[test]
+fn an_encoder_bench_shows_what_it_hides() {
+    assert_found("encoder", "slip");
+}
+
+#[test]
+fn a_gear_shows_what_it_hides() {
+    assert_found("stiffness", "creep");
+}
+
+#[test]
+fn a_brake_shows_what_it_hides() {
+    assert_found("brake", "velocity_dependence");
+}
+
 #[test]
 fn an_unknown_effect_is_refused_with_what_there_is() {
     let output = run(&["demo", "--exit", "--effect", "magic"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("stribeck"), "{}", stderr(&output));
+    for known in ["friction: stribeck", "encoder: harmonic_n", "stiffness: hardening", "brake: "] {
+        assert!(stderr(&output).contains(known), "{}", stderr(&output));
+    }
+    let output = run(&["demo", "--exit", "--kind", "encoder", "--effect", "stribeck"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("slip") && !stderr(&output).contains("gravity"), "{}", stderr(&output));
 }

@@ -179,17 +179,25 @@ fn the_same_seed_tells_the_same_story() {
 
 #[test]
 fn every_effect_can_be_hidden_and_shows_in_the_truth() {
-    for effect in jointbench_devices::sim::HIDDEN_EFFECTS {
-        let mock = MockBench::start(MockSettings::new(Joint::JointB, 5).hiding(&[effect])).unwrap();
-        let hidden = &mock.truth().hidden;
-        assert_eq!(hidden.len(), 1);
-        assert_eq!(hidden[0].effect, effect);
-        assert!(!hidden[0].parameters.is_empty());
+    let started = |joint: Joint, effect: &str| MockBench::start(MockSettings::new(joint, 5).hiding(&[effect]));
+    for joint in [Joint::JointB, Joint::EncoderShaft] {
+        for effect in joint.hides() {
+            let mock = started(joint, effect).unwrap();
+            let hidden = &mock.truth().hidden;
+            assert_eq!(hidden.len(), 1);
+            assert_eq!(hidden[0].effect, effect);
+            assert!(!hidden[0].parameters.is_empty());
+        }
     }
-    let Err(error) = MockBench::start(MockSettings::new(Joint::JointB, 5).hiding(&["magic"])) else {
-        panic!("an unknown effect was taken");
-    };
-    assert!(error.to_string().contains("magic") && error.to_string().contains("stribeck"), "{error}");
+    for (joint, effect, known) in [
+        (Joint::JointB, "magic", "hardening"),
+        (Joint::JointB, "slip", "velocity_dependence"),
+        (Joint::EncoderShaft, "hardening", "slip"),
+        (Joint::Puma, "slip", "stribeck"),
+    ] {
+        let Err(error) = started(joint, effect) else { panic!("{joint:?} has taken {effect}") };
+        assert!(error.to_string().contains(effect) && error.to_string().contains(known), "{error}");
+    }
 }
 
 #[test]

@@ -1,4 +1,6 @@
-//! `jointbench demo`: the main job on a simulated joint, through the same path as every other run.
+//! `jointbench demo`: the main job on a simulated bench, through the same path as every other run.
+
+mod hidden;
 
 use super::arguments::Demo;
 use super::exit::{Done, Exit};
@@ -10,15 +12,11 @@ use crate::config::BenchDescription;
 use crate::daemon::{Daemon, asked_to_end};
 use crate::lab::{LOCAL, Lab, reread};
 use crate::view::{Model, Run, RunState, Suggestion};
-use jointbench_devices::sim::HIDDEN_EFFECTS;
-use jointbench_devices::{Joint, MockSettings};
-use rand::rngs::StdRng;
-use rand::{RngExt, SeedableRng};
+use hidden::{Hidden, Setup};
+use jointbench_devices::MockSettings;
 use serde_json::Map;
 use std::time::Instant;
 
-const BENCH: &str = "joint-a-mock";
-const PROCEDURE: &str = "friction";
 /// More than this never is missing in the demo; a surprise shall still come to an end.
 const MOST_EFFECTS: usize = 5;
 /// An effect is added where the error on data outside the fit falls below this share of what it was.
@@ -26,8 +24,8 @@ const WORTH_ADDING: f64 = 0.98;
 
 pub fn demo(arguments: Demo) -> Done {
     let hidden = Hidden::choose(&arguments)?;
-    let mock = MockSettings::new(Joint::JointA, hidden.seed).hiding(&[&hidden.effect]);
-    let benches = vec![BenchDescription::mock(BENCH, mock)];
+    let mock = MockSettings::new(hidden.setup.joint, hidden.seed).hiding(&[hidden.effect]);
+    let benches = vec![BenchDescription::mock(hidden.setup.bench, mock)];
     let stays = !arguments.exit;
     runtime()?.block_on(async {
         let daemon = Daemon::start(settings(arguments.place, "jointbench-data/demo", benches)?).await?;
@@ -55,50 +53,23 @@ pub fn demo(arguments: Demo) -> Done {
     })
 }
 
-/// What the joint hides. The measuring and modelling side is not told.
-struct Hidden {
-    effect: String,
-    seed: u64,
-    is_secret: bool,
-}
-
-impl Hidden {
-    fn choose(arguments: &Demo) -> Result<Self, Exit> {
-        if let Some(seed) = arguments.seed {
-            let pick = StdRng::seed_from_u64(seed).random_range(0..HIDDEN_EFFECTS.len());
-            return Ok(Self { effect: HIDDEN_EFFECTS[pick].to_owned(), seed, is_secret: true });
-        }
-        if !HIDDEN_EFFECTS.contains(&arguments.effect.as_str()) {
-            let known = HIDDEN_EFFECTS.join(", ");
-            return Err(Exit::bad_input(format!(
-                "--effect {}: the simulated joint can hide {known}",
-                arguments.effect
-            )));
-        }
-        Ok(Self { effect: arguments.effect.clone(), seed: 1, is_secret: false })
-    }
-}
-
 /// The whole loop. Returns the run.
 async fn show(lab: &Lab, hidden: &Hidden) -> Result<i64, Exit> {
     let began = Instant::now();
-    println!("Simulated joint (strain-wave gear 177.8:1) with simulated instruments on the real protocols.");
+    let Setup { bench, procedure, title, ordinary, .. } = hidden.setup;
+    println!("Simulated {title} with simulated instruments on the real protocols.");
     match hidden.is_secret {
         true => {
-            println!(
-                "One hidden effect in addition to Coulomb and viscous friction, revealed at the end (seed {}).",
-                hidden.seed
-            )
+            println!("One hidden effect in addition to {ordinary}, revealed at the end (seed {}).", hidden.seed)
         }
         false => println!(
-            "Hidden effect: {}, in addition to Coulomb and viscous friction. The initial model does not \
-                           contain it.",
+            "Hidden effect: {}, in addition to {ordinary}. The initial model does not contain it.",
             hidden.effect
         ),
     }
     println!();
-    println!("1  Measure: procedure {PROCEDURE} on {BENCH}");
-    let run = measure(lab).await?;
+    println!("1  Measure: procedure {procedure} on {bench}");
+    let run = measure(lab, &hidden.setup).await?;
     println!("   {}", ending(&run));
 
     println!();
@@ -115,9 +86,9 @@ async fn show(lab: &Lab, hidden: &Hidden) -> Result<i64, Exit> {
     Ok(run.summary.id)
 }
 
-async fn measure(lab: &Lab) -> Result<Run, Exit> {
-    let run = lab.start_run(BENCH, PROCEDURE, &Map::new(), LOCAL).await?.summary.id;
-    let mut watch = lab.handle(BENCH)?.watch();
+async fn measure(lab: &Lab, &Setup { bench, procedure, .. }: &Setup) -> Result<Run, Exit> {
+    let run = lab.start_run(bench, procedure, &Map::new(), LOCAL).await?.summary.id;
+    let mut watch = lab.handle(bench)?.watch();
     let mut shown = RunProgress::begin();
     loop {
         if watch.changed().await.is_err() {
@@ -127,7 +98,7 @@ async fn measure(lab: &Lab) -> Result<Run, Exit> {
         if let Some(progress) = &progress {
             shown.show(progress);
         }
-        if !lab.handle(BENCH)?.is_busy() {
+        if !lab.handle(bench)?.is_busy() {
             break;
         }
     }

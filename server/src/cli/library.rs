@@ -33,9 +33,10 @@ pub fn effects(asked: Option<&str>) -> Done {
             println!("{kind}");
             all.iter().filter(|one| one.kind == kind).for_each(|one| println!("  {:<24} {}", one.id, one.title));
         }
-        println!("\nDescription: jointbench effects ID. A mock bench of joint a or b can hide these effects:");
-        println!("  {}", HIDDEN_EFFECTS.join(", "));
-        println!("with `effects = [\"gravity\"]` in [bench.mock], or for a demo with jointbench demo --effect gravity");
+        println!("\nDescription: jointbench effects ID. A mock bench can hide these effects:");
+        HIDDEN_EFFECTS.iter().for_each(|(kind, effects)| println!("  {:<10} {}", kind.name(), effects.join(", ")));
+        println!("The encoder bench hides effects of encoders. Joints a and b hide effects of stiffness and brake.");
+        println!("Write `effects = [\"gravity\"]` in [bench.mock], or for a demo: jointbench demo --effect gravity");
         return Ok(());
     };
     let named: Vec<_> = library().filter(|effect| effect.info().id == asked).collect();

@@ -6,7 +6,7 @@ use super::mistake::{Collector, Mistakes};
 use super::raw::{RawBench, RawFile, RawMock};
 use super::values::{choice, positive};
 use super::{BenchDescription, Source};
-use jointbench_devices::sim::{HIDDEN_EFFECTS, Load, MockInstrument, PlannedTrouble, Supply, Transport, Trouble};
+use jointbench_devices::sim::{Load, MockInstrument, PlannedTrouble, Supply, Transport, Trouble};
 use jointbench_devices::{Joint, MockSettings};
 use jointbench_instrument::spelling::plainly;
 use serde::Serialize;
@@ -129,9 +129,11 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     let joints =
         [("a", Joint::JointA), ("b", Joint::JointB), ("encoder_shaft", Joint::EncoderShaft), ("puma", Joint::Puma)];
     let joint = choice(&raw.joint, "joint", &joints, wrong);
-    for effect in raw.effects.iter().filter(|effect| !HIDDEN_EFFECTS.contains(&effect.get_ref().as_str())) {
-        let known = HIDDEN_EFFECTS.join(", ");
-        wrong.add(effect.span(), format!("effect {:?}: the mock bench can hide {known}", effect.get_ref()));
+    let hideable = joint.map(Joint::hides).unwrap_or_default();
+    for effect in raw.effects.iter().filter(|effect| joint.is_some() && !hideable.contains(&effect.get_ref().as_str()))
+    {
+        let what = format!("effect {:?}: this mock bench can hide {}", effect.get_ref(), hideable.join(", "));
+        wrong.add(effect.span(), what);
     }
     let loads = [("brake_a", Load::BrakeA), ("gear_and_brake_b", Load::GearAndBrakeB)];
     let load = raw.load.as_ref().map(|load| choice(load, "load", &loads, wrong));

@@ -3,7 +3,7 @@
 use super::clock::SteppedClock;
 use super::data_sheet::{Joint, Load};
 use super::firmware::{AMPERES_PER_VOLT, Firmware, Odrive, PUMA_COUNTS, Puma};
-use super::plant::{HIDDEN_EFFECTS, Hidden, Plant, Truth};
+use super::plant::{Hidden, Plant, Truth};
 #[cfg(unix)]
 use super::port::serve_terminal;
 use super::port::{Line, Port, lock, serve_inside, serve_tcp};
@@ -47,7 +47,7 @@ pub struct MockSettings {
     pub seed: u64,
     /// Whether the filter of the encoder under test is on.
     pub filter: bool,
-    /// Names out of [`HIDDEN_EFFECTS`].
+    /// Names out of [`Joint::hides`].
     pub effects: Vec<String>,
     /// Bench seconds for each second of wall time. `None`: as fast as it goes.
     pub pace: Option<f64>,
@@ -126,8 +126,8 @@ impl MockSettings {
 
 #[derive(Debug, thiserror::Error)]
 pub enum MockError {
-    #[error("unknown effect {0}: the mock bench can hide {known}", known = HIDDEN_EFFECTS.join(", "))]
-    UnknownEffect(String),
+    #[error("effect {effect}: this mock bench can hide {known}", known = joint.hides().join(", "))]
+    UnknownEffect { effect: String, joint: Joint },
     #[error("pace {0} of the mock bench: expected a number above 0")]
     Pace(f64),
     #[error("the system provides no port for the mock bench: {0}")]
@@ -151,8 +151,8 @@ impl MockBench {
         {
             return Err(MockError::Pace(pace));
         }
-        let hidden =
-            Hidden::draw(settings.joint, settings.seed, &settings.effects).map_err(MockError::UnknownEffect)?;
+        let hidden = Hidden::draw(settings.joint, settings.seed, &settings.effects)
+            .map_err(|effect| MockError::UnknownEffect { effect, joint: settings.joint })?;
         let mut plant = Plant::new(settings.joint, settings.load, settings.seed, hidden);
         plant.filter_s2(settings.filter);
         let truth = plant.truth(settings.joint, settings.seed);

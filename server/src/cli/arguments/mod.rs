@@ -17,6 +17,7 @@ use super::own::OwnEffects;
 use super::ports::Ports;
 use super::require::Requirement;
 use clap::{Args, Parser, Subcommand};
+use jointbench_instrument::Kind;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -113,10 +114,13 @@ pub enum Command {
 
 #[derive(Debug, Args)]
 pub struct Demo {
-    /// The effect to hide in the joint, such as stribeck or gravity
-    #[arg(long, value_name = "ID", conflicts_with = "seed", default_value = "load_linear")]
-    pub effect: String,
-    /// Hide a random effect, revealed at the end
+    /// The kind of run: friction, encoder, stiffness or brake [default: friction, or that of the effect]
+    #[arg(long, value_name = "KIND", value_parser = kind)]
+    pub kind: Option<Kind>,
+    /// The effect to hide, such as gravity, slip or hardening [default: load_linear, or one of the kind]
+    #[arg(long, value_name = "ID", conflicts_with = "seed")]
+    pub effect: Option<String>,
+    /// Hide a random effect, of a random kind without --kind, revealed at the end
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// Exit after the report instead of keeping the dashboard open
@@ -124,6 +128,11 @@ pub struct Demo {
     pub exit: bool,
     #[command(flatten)]
     pub place: Place,
+}
+
+fn kind(name: &str) -> Result<Kind, String> {
+    let known = || Kind::ALL.map(Kind::name).join(", ");
+    Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| format!("expected {}", known()))
 }
 
 #[derive(Debug, Args)]

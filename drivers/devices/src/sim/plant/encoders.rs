@@ -1,5 +1,6 @@
 //! The two encoders of the encoder bench on the motor's shaft: S1 optical, S2 a magnetic ring whose sensor sits on the stage.
 
+use super::hidden::HiddenEncoder;
 use super::{Noise, Signal};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -72,25 +73,33 @@ pub struct Encoders {
     pub pose: Pose,
     pub filtered: bool,
     noise: Noise,
+    hidden: HiddenEncoder,
     startup_points: f64,
     phase_rad: f64,
+    angle_rad: f64,
+    travelled_rad: f64,
     drag_rad: f64,
 }
 
 impl Encoders {
-    pub fn new(noise: Noise) -> Self {
+    pub fn new(noise: Noise, hidden: HiddenEncoder) -> Self {
         Self {
             pose: Pose::default(),
             filtered: false,
             noise,
+            hidden,
             startup_points: STARTUP_POINTS * noise.trait_of(Signal::EncoderStartup),
             phase_rad: TAU * noise.trait_of(Signal::EncoderPhase),
+            angle_rad: 0.0,
+            travelled_rad: 0.0,
             drag_rad: 0.0,
         }
     }
 
     /// After one step of the shaft: the magnetic ring's reading drags behind a reversal.
     pub fn advance(&mut self, angle_rad: f64) {
+        self.travelled_rad += (angle_rad - self.angle_rad).abs();
+        self.angle_rad = angle_rad;
         let half_rad = HYSTERESIS_POINTS / S2_COUNTS * TAU;
         self.drag_rad = self.drag_rad.clamp(angle_rad - half_rad, angle_rad + half_rad);
     }
@@ -105,9 +114,11 @@ impl Encoders {
     }
 
     pub fn s2_counts(&self, velocity_rad_s: f64) -> i64 {
-        let angle_rad = self.drag_rad - self.delay_s() * velocity_rad_s;
+        let slipped_rad = self.hidden.slipped_points(self.travelled_rad) / S2_COUNTS * TAU;
+        let angle_rad = self.drag_rad - self.delay_s() * velocity_rad_s + slipped_rad;
         let points = S2_COUNTS * angle_rad / TAU;
-        (points + self.shape_points(angle_rad) + self.startup_points).floor() as i64
+        let error_points = self.shape_points(angle_rad) + self.hidden.error_points(angle_rad);
+        (points + error_points + self.startup_points).floor() as i64
     }
 
     fn delay_s(&self) -> f64 {
@@ -149,5 +160,43 @@ impl Encoders {
             && axial_m <= AXIAL_M
             && about_rad.abs() <= ROTATION_RAD
             && a_rad.abs().max(b_rad.abs()) <= TILT_RAD
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::data_sheet::Joint;
+    use crate::sim::plant::Hidden;
+    use crate::sim::plant::hidden::HiddenEffect;
+
+    /// What the ring hides at an angle after so many turns, against a ring that hides nothing, in points.
+    fn hidden_points(effect: &str, turns: f64, angle_rad: f64) -> (f64, HiddenEffect) {
+        let hidden = Hidden::draw(Joint::EncoderShaft, 5, &[effect.to_owned()]).unwrap();
+        let counts = |hidden: HiddenEncoder| {
+            let mut encoders = Encoders::new(Noise::new(5), hidden);
+            encoders.advance(turns * TAU);
+            encoders.advance(angle_rad);
+            encoders.s2_counts(0.0) as f64
+        };
+        (counts(hidden.encoder) - counts(HiddenEncoder::default()), hidden.described().remove(0))
+    }
+
+    #[test]
+    fn lobes_are_waves_over_the_turn() {
+        for angle_rad in [0.1, 1.0, 2.0, 4.0] {
+            let (points, truth) = hidden_points("harmonic_n", 0.0, angle_rad);
+            let [size, harmonic, phase_rad] = ["points", "harmonic", "phase_rad"].map(|name| truth.parameters[name]);
+            let expected = size * (harmonic * angle_rad + phase_rad).sin();
+            assert!((points - expected).abs() < 2.0, "{points} at {angle_rad} rad, expected {expected}");
+        }
+    }
+
+    #[test]
+    fn a_loose_ring_gives_way_once() {
+        let (before, truth) = hidden_points("slip", 2.0, 0.0);
+        assert_eq!(before, 0.0);
+        let (after, _) = hidden_points("slip", truth.parameters["after_turns"], 0.0);
+        assert!((after - truth.parameters["points"]).abs() < 5.0, "{after} points of {truth:?}");
     }
 }

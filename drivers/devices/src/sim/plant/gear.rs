@@ -1,6 +1,8 @@
 //! The gear's elasticity between rotor and link, and the stops of a joint that has some.
 
 use super::super::data_sheet::DataSheet;
+use super::STEP_S;
+use super::hidden::{Contact, HiddenGear};
 
 /// Damping ratio of the link on the gear.
 const DAMPING: f64 = 0.1;
@@ -21,10 +23,15 @@ pub struct Gear {
     damping_nm_s: f64,
     link_inertia_kg_m2: f64,
     range_rad: f64,
+    hidden: HiddenGear,
+    /// Where teeth that rub on each other hold the twist.
+    seat_rad: f64,
+    /// What the gear has given way under load.
+    crept_rad: f64,
 }
 
 impl Gear {
-    pub fn new(sheet: &DataSheet, link_inertia_kg_m2: f64) -> Self {
+    pub fn new(sheet: &DataSheet, link_inertia_kg_m2: f64, hidden: HiddenGear) -> Self {
         Self {
             ratio: sheet.ratio,
             stiffness_nm_rad: 1.0 / (1.0 / sheet.stiffness_nm_rad + 1.0 / sheet.bearing_nm_rad),
@@ -34,6 +41,9 @@ impl Gear {
             damping_nm_s: 2.0 * DAMPING * (sheet.stiffness_nm_rad * link_inertia_kg_m2).sqrt(),
             link_inertia_kg_m2,
             range_rad: sheet.range_rad.unwrap_or(f64::INFINITY),
+            hidden,
+            seat_rad: 0.0,
+            crept_rad: 0.0,
         }
     }
 
@@ -41,17 +51,36 @@ impl Gear {
         self.link_inertia_kg_m2
     }
 
-    /// After the link has turned: it changes flanks.
-    pub fn advance(&mut self, turned_rad: f64) {
+    /// After a step in which the link has turned: it changes flanks.
+    pub fn advance(&mut self, motor_rad: f64, link_rad: f64, turned_rad: f64) {
         let end = if turned_rad < 0.0 { -1.0 } else { 1.0 };
         self.flank = end + (self.flank - end) * (-turned_rad.abs() / LOST_OVER_RAD).exp();
+        let twist_rad = self.twist_rad(motor_rad, link_rad);
+        if let Some(contact) = self.hidden.contact {
+            self.seat_rad = self.seat_rad.clamp(twist_rad - contact.bends_rad, twist_rad + contact.bends_rad);
+        }
+        if let Some(yielding) = self.hidden.yielding {
+            let end_rad = yielding.share * self.spring(twist_rad) / self.stiffness_nm_rad;
+            self.crept_rad += (end_rad - self.crept_rad) * STEP_S / yielding.lag_s;
+        }
     }
 
     /// Torque that the gear hands to the link.
     pub fn torque(&self, motor_rad: f64, link_rad: f64, motor_rad_s: f64, link_rad_s: f64) -> f64 {
-        let twist_rad = motor_rad / self.ratio - link_rad - self.lost_rad * self.flank;
-        self.stiffness_nm_rad * (twist_rad - self.given(twist_rad))
+        let twist_rad = self.twist_rad(motor_rad, link_rad);
+        let rubbing = |contact: Contact| contact.holds_nm * (twist_rad - self.seat_rad) / contact.bends_rad;
+        self.spring(twist_rad)
+            + self.hidden.contact.map_or(0.0, rubbing)
             + self.damping_nm_s * (motor_rad_s / self.ratio - link_rad_s)
+    }
+
+    fn twist_rad(&self, motor_rad: f64, link_rad: f64) -> f64 {
+        let stands_rad = link_rad + self.hidden.pitch_rad(link_rad);
+        motor_rad / self.ratio - stands_rad - self.lost_rad * self.flank - self.crept_rad
+    }
+
+    fn spring(&self, twist_rad: f64) -> f64 {
+        self.stiffness_nm_rad * self.hidden.stiffening(twist_rad) * (twist_rad - self.given(twist_rad))
     }
 
     /// The part of a twist that the belts give before they pull with all their teeth: `soft_rad` to either side at most.
@@ -70,9 +99,58 @@ impl Gear {
 mod tests {
     use super::*;
     use crate::sim::data_sheet::Joint;
+    use crate::sim::plant::Hidden;
+
+    /// Joint A with one hidden effect, and its true figures.
+    fn hiding(effect: &str) -> (Gear, impl Fn(&str) -> f64) {
+        let hidden = Hidden::draw(Joint::JointA, 5, &[effect.to_owned()]).unwrap();
+        let truth = hidden.described().remove(0).parameters;
+        (Gear::new(&Joint::JointA.data_sheet(), 0.01, hidden.gear), move |name: &str| truth[name])
+    }
+
+    /// Torque once the motor has twisted the gear to `twist_rad` and has held it for `held_s`.
+    fn twisted(gear: &mut Gear, twist_rad: f64, held_s: f64) -> f64 {
+        (0..=(held_s / STEP_S) as usize).for_each(|_| gear.advance(twist_rad * gear.ratio, 0.0, 0.0));
+        gear.torque(twist_rad * gear.ratio, 0.0, 0.0, 0.0)
+    }
+
+    #[test]
+    fn a_progressive_gear_is_twice_as_stiff_at_its_twist() {
+        let (mut gear, truth) = hiding("hardening");
+        let twist_rad = truth("twice_as_stiff_rad");
+        let stiffness = twisted(&mut gear, twist_rad, 0.0) / twist_rad;
+        assert!((stiffness / gear.stiffness_nm_rad - 2.0).abs() < 1e-9, "{stiffness}");
+    }
+
+    #[test]
+    fn teeth_that_rub_part_both_ways_by_what_they_hold() {
+        let (mut gear, truth) = hiding("torsional_hysteresis");
+        let far_rad = 0.003;
+        assert!(far_rad > 2.0 * truth("bends_rad"));
+        let (up, _, down) =
+            (twisted(&mut gear, 0.0, 0.0), twisted(&mut gear, far_rad, 0.0), twisted(&mut gear, 0.0, 0.0));
+        assert!((up - down - truth("holds_nm")).abs() < 1e-9, "{up} {down}");
+    }
+
+    #[test]
+    fn a_gear_that_yields_loses_torque_while_it_is_held() {
+        let (mut gear, truth) = hiding("creep");
+        let at_once = twisted(&mut gear, 0.002, 0.0);
+        let later = twisted(&mut gear, 0.002, 20.0 * truth("lag_s"));
+        assert!((at_once / later - 1.0 - truth("of_twist")).abs() < 1e-3, "{at_once} {later}");
+    }
+
+    #[test]
+    fn each_tooth_has_its_own_pitch() {
+        let (gear, truth) = hiding("transmission_error");
+        let link_rad = 0.3;
+        let torque = gear.torque(link_rad * gear.ratio, link_rad, 0.0, 0.0);
+        let off_rad = truth("rad") * (truth("harmonic") * link_rad + truth("phase_rad")).sin();
+        assert!((torque + gear.stiffness_nm_rad * off_rad).abs() < 1e-9, "{torque}");
+    }
 
     fn stiffness_nm_rad(joint: Joint, twist_rad: f64) -> f64 {
-        let gear = Gear::new(&joint.data_sheet(), 0.01);
+        let gear = Gear::new(&joint.data_sheet(), 0.01, HiddenGear::default());
         let torque = |twist_rad: f64| gear.torque(twist_rad * gear.ratio, 0.0, 0.0, 0.0);
         (torque(twist_rad + 1e-6) - torque(twist_rad - 1e-6)) / 2e-6
     }

@@ -2,6 +2,7 @@
 
 use super::brake::Brake;
 use super::friction::Friction;
+use super::hidden::HiddenBrake;
 use super::{CoilSupply, curve};
 use crate::sim::data_sheet::{LINE_RATIO as RATIO, Load, brake};
 
@@ -19,7 +20,7 @@ struct Geared {
 enum Behind {
     Nothing,
     BrakeA,
-    Gear(Geared),
+    Gear(Box<Geared>),
 }
 
 pub struct Line {
@@ -28,11 +29,14 @@ pub struct Line {
 
 impl Line {
     pub fn new(load: Load) -> Self {
-        let geared = || Geared { idle: Brake::new(), friction: Friction::new(GRIP_NM[0].1, 0.0, inertia_kg_m2(load)) };
+        let geared = || Geared {
+            idle: Brake::new(HiddenBrake::default()),
+            friction: Friction::new(GRIP_NM[0].1, 0.0, inertia_kg_m2(load)),
+        };
         let behind = match load {
             Load::None => Behind::Nothing,
             Load::BrakeA => Behind::BrakeA,
-            Load::GearAndBrakeB => Behind::Gear(geared()),
+            Load::GearAndBrakeB => Behind::Gear(Box::new(geared())),
         };
         Self { behind }
     }
@@ -42,7 +46,7 @@ impl Line {
         let Geared { idle, friction } = match &mut self.behind {
             Behind::Nothing => return 0.0,
             Behind::BrakeA => return fed.advance(supply, link_rad_s),
-            Behind::Gear(geared) => geared,
+            Behind::Gear(geared) => geared.as_mut(),
         };
         let grip_nm = curve::at(&GRIP_NM, link_rad_s.abs());
         let gear_nm = friction.advance(link_rad_s, grip_nm);

@@ -12,9 +12,11 @@ mod hidden;
 mod line;
 mod noise;
 mod thermal;
+mod truth;
 
 pub use encoders::{EncoderTruth, S1_COUNTS, S2_COUNTS};
-pub use hidden::{HIDDEN_EFFECTS, HiddenEffect, Truth};
+pub use hidden::{HIDDEN_EFFECTS, HiddenEffect};
+pub use truth::Truth;
 
 use super::data_sheet::{DataSheet, Joint, Load};
 use brake::Brake;
@@ -96,16 +98,16 @@ impl Plant {
         let viscous_nm_s = sheet.viscous_nm_s * (1.0 + 0.08 * noise.trait_of(Signal::Viscous));
         Self {
             inputs: Inputs::default(),
-            brake: Brake::new(),
+            brake: Brake::new(hidden.brake),
             torque_constant_nm_per_a: sheet.torque_constant_nm_per_a,
             sensor_shift_nm: 0.0,
             thermistor_fault_k: 0.0,
             friction: Friction::new(coulomb_nm, viscous_nm_s, sheet.rotor_inertia_kg_m2),
-            gear: Gear::new(&sheet, sheet.link_inertia_kg_m2 + line_inertia_kg_m2),
+            gear: Gear::new(&sheet, sheet.link_inertia_kg_m2 + line_inertia_kg_m2, hidden.gear),
             line: Line::new(load),
             line_inertia_kg_m2,
             thermal: Thermal::new(AMBIENT_C),
-            encoders: Encoders::new(noise),
+            encoders: Encoders::new(noise, hidden.encoder),
             hidden,
             step: 0,
             motor_angle_rad: 0.0,
@@ -134,23 +136,23 @@ impl Plant {
         );
         let velocity = self.motor_velocity_rad_s;
         let held_nm = if self.inputs.holding_brake { HOLDING_NM } else { 0.0 };
-        let grip = held_nm + self.hidden.grip(&self.friction, velocity, gear_nm, self.link_angle_rad);
-        let drag_nm = self.hidden.drag(&self.friction, velocity, self.thermal.gear_c());
+        let grip = held_nm + self.hidden.friction.grip(&self.friction, velocity, gear_nm, self.link_angle_rad);
+        let drag_nm = self.hidden.friction.drag(&self.friction, velocity, self.thermal.gear_c());
         let friction_nm = self.friction.advance(velocity, grip) + drag_nm;
 
         let drive_nm = self.torque_constant_nm_per_a * self.motor_current_a;
-        let cogging_nm = self.hidden.cogging(self.motor_angle_rad);
+        let cogging_nm = self.hidden.friction.cogging(self.motor_angle_rad);
         let motor_nm = drive_nm - friction_nm - cogging_nm - gear_nm / self.sheet.ratio;
         self.motor_velocity_rad_s += motor_nm / self.sheet.rotor_inertia_kg_m2 * STEP_S;
         self.motor_angle_rad += self.motor_velocity_rad_s * STEP_S;
         self.encoders.advance(self.motor_angle_rad);
 
         let brake_nm = self.line.advance(&mut self.brake, self.inputs.coil, self.link_velocity_rad_s);
-        let outside_nm = self.hidden.gravity(self.link_angle_rad) + self.gear.stop(self.link_angle_rad);
+        let outside_nm = self.hidden.friction.gravity(self.link_angle_rad) + self.gear.stop(self.link_angle_rad);
         let link_acceleration = (gear_nm - outside_nm - brake_nm) / self.gear.link_inertia_kg_m2();
         self.link_velocity_rad_s += link_acceleration * STEP_S;
         self.link_angle_rad += self.link_velocity_rad_s * STEP_S;
-        self.gear.advance(self.link_velocity_rad_s * STEP_S);
+        self.gear.advance(self.motor_angle_rad, self.link_angle_rad, self.link_velocity_rad_s * STEP_S);
 
         let felt_nm = brake_nm + self.line_inertia_kg_m2 * link_acceleration;
         self.sensor_torque_nm += self.sensor_gain * (felt_nm - self.sensor_torque_nm);

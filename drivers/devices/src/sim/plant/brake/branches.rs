@@ -36,12 +36,13 @@ pub fn rising(current: f64) -> f64 {
 }
 
 /// What elements of finite width have turned over along a monotonic stretch.
-fn turned(stretch: f64) -> f64 {
-    SHARE * (stretch - WIDTH * (stretch / WIDTH).atan())
+fn turned(stretch: f64, width: f64) -> f64 {
+    SHARE * (stretch - width * (stretch / width).atan())
 }
 
 /// Currents and torques as fractions of the rating.
 pub struct Branches {
+    width: f64,
     /// Turning points, the oldest first: a maximum, a minimum, and so on.
     turns: Vec<f64>,
     /// Torque of the elements up to the last turning point.
@@ -50,8 +51,9 @@ pub struct Branches {
 }
 
 impl Branches {
-    pub fn new() -> Self {
-        Self { turns: Vec::new(), settled: 0.0, current: 0.0 }
+    /// Of this width, or of that of the data sheet.
+    pub fn new(width: Option<f64>) -> Self {
+        Self { width: width.unwrap_or(WIDTH), turns: Vec::new(), settled: 0.0, current: 0.0 }
     }
 
     /// Torque after the current has gone straight to `current`.
@@ -64,7 +66,7 @@ impl Branches {
         self.current = current;
         self.wipe();
         // Elements of no width follow the current; on the first rise the sum of both is the rising branch.
-        rising(current) - turned(current) + self.settled + self.since_last_turn()
+        rising(current) - turned(current, self.width) + self.settled + self.since_last_turn()
     }
 
     fn turn(&mut self) {
@@ -100,7 +102,7 @@ impl Branches {
         let (mut from, mut sign) = (0.0, 1.0);
         self.settled = 0.0;
         for turn in &self.turns {
-            self.settled += sign * turned((turn - from).abs());
+            self.settled += sign * turned((turn - from).abs(), self.width);
             (from, sign) = (*turn, -sign);
         }
     }
@@ -108,7 +110,7 @@ impl Branches {
     fn since_last_turn(&self) -> f64 {
         let from = self.turns.last().copied().unwrap_or(0.0);
         let sign = if self.turns.len().is_multiple_of(2) { 1.0 } else { -1.0 };
-        sign * turned((self.current - from).abs())
+        sign * turned((self.current - from).abs(), self.width)
     }
 }
 
@@ -122,7 +124,7 @@ mod tests {
 
     #[test]
     fn the_falling_branch_lies_above_and_both_meet_at_the_ends() {
-        let mut branches = Branches::new();
+        let mut branches = Branches::new(None);
         let up = go(&mut branches, 0.0, 0.5);
         assert!((up - rising(0.5)).abs() < 1e-12);
         assert!((go(&mut branches, 0.5, 1.0) - 1.0).abs() < 1e-12);
@@ -134,7 +136,7 @@ mod tests {
 
     #[test]
     fn minor_loops_close_and_larger_ones_wipe_them_out() {
-        let mut branches = Branches::new();
+        let mut branches = Branches::new(None);
         let (top, mut low, mut high) = (go(&mut branches, 0.0, 0.8), Vec::new(), Vec::new());
         let outer = go(&mut branches, 0.8, 0.3);
         go(&mut branches, 0.3, 0.4);
@@ -154,7 +156,7 @@ mod tests {
 
     #[test]
     fn torque_follows_the_current_everywhere() {
-        let mut branches = Branches::new();
+        let mut branches = Branches::new(None);
         let mut last = 0.0;
         for turn in [1.2, 0.1, 0.9, 0.2, 0.7, 0.05, 1.3] {
             let start = branches.current;

@@ -9,6 +9,7 @@ mod heat;
 mod poles;
 
 use super::super::data_sheet::brake::{COIL_OHM_25C, RATED_CURRENT_A, RATED_TORQUE_NM};
+use super::hidden::HiddenBrake;
 use super::{CoilSupply, STEP_S};
 use branches::Branches;
 use heat::Heat;
@@ -34,6 +35,7 @@ const EDDY_MOST_RAD_S: f64 = 628.0;
 pub struct Brake {
     /// Of a bad contact in the coil's circuit.
     pub contact_ohm: f64,
+    hidden: HiddenBrake,
     current_a: f64,
     branches: Branches,
     poles: Poles,
@@ -46,11 +48,12 @@ pub struct Brake {
 }
 
 impl Brake {
-    pub fn new() -> Self {
+    pub fn new(hidden: HiddenBrake) -> Self {
         Self {
+            branches: Branches::new(hidden.width),
+            hidden,
             contact_ohm: 0.0,
             current_a: 0.0,
-            branches: Branches::new(),
             poles: Poles::default(),
             magnetic_nm: 0.0,
             wind_up_rad: 0.0,
@@ -81,16 +84,17 @@ impl Brake {
     /// Torque against the rotor after one step. Without a supply the current dies in the flyback diode with the same lag.
     pub fn advance(&mut self, supply: Option<CoilSupply>, velocity_rad_s: f64) -> f64 {
         self.current_a += self.coil_gain * (self.settled_a(supply) - self.current_a);
-        let current = self.current_a / RATED_CURRENT_A;
+        let field = self.hidden.field(self.current_a / RATED_CURRENT_A);
         let speed_rad_s = velocity_rad_s.abs();
         let eddy = EDDY_PER_RAD_S * speed_rad_s / (1.0 + (speed_rad_s / EDDY_MOST_RAD_S).powi(2));
         let warm = 1.0 + PER_K * (self.heat.rotor_c - 25.0);
-        let target_nm = RATED_TORQUE_NM * self.branches.advance(current) * warm * (1.0 + eddy);
+        let target_nm =
+            RATED_TORQUE_NM * self.branches.advance(field) * warm * (1.0 + eddy + self.hidden.eddy(speed_rad_s));
         self.magnetic_nm += self.torque_gain * (target_nm - self.magnetic_nm);
 
         let turned_rad = velocity_rad_s * STEP_S;
         self.angle_rad += turned_rad;
-        let cogging_nm = RATED_TORQUE_NM * self.poles.advance(current, self.angle_rad, turned_rad);
+        let cogging_nm = RATED_TORQUE_NM * self.poles.advance(field, self.angle_rad, turned_rad);
 
         let holding_nm = self.magnetic_nm + DRAG_NM;
         let before = self.wind_up_rad;
@@ -104,5 +108,44 @@ impl Brake {
 
         self.heat.advance((torque_nm * velocity_rad_s).max(0.0), self.current_a.powi(2) * self.coil_ohm());
         torque_nm
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::data_sheet::Joint;
+    use crate::sim::plant::Hidden;
+
+    /// Torque at the end of holds of 2 s at each current, turning at one speed.
+    fn torque_nm(effects: &[&str], speed_rad_s: f64, currents_a: &[f64]) -> f64 {
+        let names: Vec<String> = effects.iter().map(|effect| (*effect).to_owned()).collect();
+        let mut brake = Brake::new(Hidden::draw(Joint::JointA, 5, &names).unwrap().brake);
+        let held = |current_a: &f64| {
+            let supply = Some(CoilSupply { current_a: *current_a, voltage_v: 45.0 });
+            (0..(2.0 / STEP_S) as usize).map(|_| brake.advance(supply, speed_rad_s)).last().unwrap()
+        };
+        currents_a.iter().map(held).last().unwrap()
+    }
+
+    #[test]
+    fn a_thick_rotor_brakes_more_the_faster_it_turns() {
+        let gain = |effects: &[&str]| torque_nm(effects, 1.5, &[0.4]) / torque_nm(effects, 0.1, &[0.4]);
+        assert!((gain(&[]) - 1.0).abs() < 2e-3);
+        assert!((1.03..1.09).contains(&gain(&["velocity_dependence"])), "{}", gain(&["velocity_dependence"]));
+    }
+
+    #[test]
+    fn a_wider_loop_meets_the_other_at_the_top() {
+        let fall = |effects: &[&str]| torque_nm(effects, 1.0, &[0.6, 0.3]) - torque_nm(effects, 1.0, &[0.3]);
+        assert!(fall(&["hysteresis"]) > 1.3 * fall(&[]), "{} {}", fall(&["hysteresis"]), fall(&[]));
+        let top = |effects: &[&str]| torque_nm(effects, 1.0, &[0.6]);
+        assert!((top(&["hysteresis"]) - top(&[])).abs() < 1e-6);
+    }
+
+    #[test]
+    fn iron_that_saturates_early_takes_from_the_top() {
+        let share = |current_a: f64| torque_nm(&["saturation"], 1.0, &[current_a]) / torque_nm(&[], 1.0, &[current_a]);
+        assert!(share(0.6) < 0.95 && share(0.6) < share(0.2), "{} {}", share(0.2), share(0.6));
     }
 }
