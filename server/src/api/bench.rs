@@ -1,7 +1,8 @@
 //! Benches and their instruments.
 
 use super::extract::{Answer, Json, Path};
-use super::problem::{Problem, Refusals};
+use super::problem::Problem;
+use super::refusals::Refusals;
 use crate::lab::{Caller, Lab, names};
 use crate::view::{Acknowledgement, Bench, Instrument, SafetyEntry};
 use axum::Extension;

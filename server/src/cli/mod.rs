@@ -10,6 +10,7 @@ mod demo;
 mod exit;
 mod files;
 mod identify;
+mod junit;
 mod library;
 mod log;
 mod model;

@@ -18,6 +18,7 @@ use super::ports::Ports;
 use super::require::Requirement;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use std::time::Duration;
 
 const EXAMPLES: &str = "\
 Getting started:
@@ -180,8 +181,18 @@ pub struct Run {
     /// Write a JUnit report with one test case per limit; waits for the end
     #[arg(long, value_name = "REPORT.XML")]
     pub junit: Option<PathBuf>,
+    /// Maximum time to wait for the end [s], by the clock; waits for the end. A run that takes longer is aborted, the bench
+    /// is secured, and the exit code is 1
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub timeout: Option<Duration>,
     #[command(flatten)]
     pub reach: Reach,
+}
+
+pub(super) fn seconds(text: &str) -> Result<Duration, String> {
+    let wrong = || "expected a number of seconds above 0, such as 600".to_owned();
+    let seconds = text.parse::<f64>().ok().filter(|seconds| *seconds > 0.0).ok_or_else(wrong)?;
+    Duration::try_from_secs_f64(seconds).map_err(|_| wrong())
 }
 
 const DECIDED: &str = "\
