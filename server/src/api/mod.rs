@@ -124,6 +124,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(bench::retry))
         .routes(routes!(bench::description))
         .routes(routes!(bench::safety))
+        .routes(routes!(bench::servo_memory))
         .routes(routes!(calibrations::list, calibrations::apply))
         .routes(routes!(bench::instruments))
         .routes(routes!(procedures::list))

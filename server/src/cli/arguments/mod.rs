@@ -10,7 +10,7 @@ pub use columns::Columns;
 pub use kept::{Backup, Convert, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
 pub use model::{Model, ModelCommand};
 pub use place::{Place, Reach, ServedTokens};
-pub use steer::{Reset, Steer, Stop};
+pub use steer::{Reset, ServoMemory, Steer, Stop};
 
 use super::log::LogForm;
 use super::own::OwnEffects;
@@ -76,6 +76,9 @@ pub enum Command {
     Resume(Steer),
     /// Release a bench after a software stop or after a run whose safe state is not confirmed
     Reset(Reset),
+    /// Read the memory of a Puma-type servo (DIAGREAD) between runs, without motion
+    #[command(after_help = steer::MEMORY)]
+    ServoMemory(ServoMemory),
     /// List the runs of a daemon or of a folder
     Runs(Runs),
     /// Measure, diagnose and repeat on a running daemon, until no effect is missing
