@@ -21,7 +21,7 @@ pub mod transport;
 
 pub use driver::{
     AdamSettings, AdamThermometer, DmmSettings, DmmTorqueSensor, GcsSettings, GcsStage, LorenzSensor, LorenzSettings,
-    OdriveJoint, OdriveSettings, PumaAxis, PumaSettings, QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
+    OdriveJoint, OdriveSettings, PumaAxis, PumaGains, PumaSettings, QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
 };
 pub use instruments::{Asked, InstrumentSettings, Instruments, JointSettings, TorqueSensorSettings};
 pub use sim::{Joint, MockBench, MockSettings, Replay};

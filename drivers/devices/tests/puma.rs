@@ -1,7 +1,9 @@
 //! The Puma's axis through its driver: what it feels, how it moves, and its bad days.
 
+use jointbench_devices::protocol::puma::memory;
 use jointbench_devices::sim::{MockInstrument, Transport, Trouble};
-use jointbench_devices::{Joint, MockBench, MockSettings};
+
+use jointbench_devices::{Joint, MockBench, MockSettings, PumaGains};
 use jointbench_instrument::units::{Amperes, RadPerSec};
 use jointbench_instrument::{Bench, Fault, FaultKind};
 
@@ -179,6 +181,23 @@ fn positions_from_before_a_power_cycle_are_never_mixed_with_those_after() {
     told(bench.joint.read().unwrap_err());
     bench.joint.arm(RadPerSec(120.0), Amperes(5.0)).unwrap();
     assert!(bench.joint.health().unwrap().armed, "usable again");
+}
+
+#[test]
+fn the_memory_is_read_and_gains_are_in_it_from_arming_on() {
+    let gains = PumaGains { velgan: Some(8), postol: Some(300), ..PumaGains::default() };
+    let mock = MockBench::start(MockSettings { gains, ..MockSettings::new(Joint::Puma, 3) }).unwrap();
+    let mut bench = mock.open_bench("puma").unwrap();
+    let read = |bench: &mut Bench, addresses: &[u8]| -> Vec<u8> {
+        let memory = bench.joint.servo_memory().expect("a Puma's servo");
+        addresses.iter().map(|address| memory.read_byte(*address).unwrap()).collect()
+    };
+    let addresses = [memory::PROPORTIONAL_GAIN, memory::VELOCITY_GAIN, memory::VELOCITY_GAIN_OF_MANUAL, 0x52, 0x53];
+    assert_eq!(read(&mut bench, &addresses), [1, 0, 0, 0, 0], "as at power-up");
+    bench.joint.arm(RadPerSec(120.0), Amperes(5.0)).unwrap();
+    assert_eq!(read(&mut bench, &addresses), [1, 8, 0, 300_u16 as u8, 1]);
+    let fault = bench.joint.servo_memory().unwrap().read_byte(0x80).unwrap_err();
+    assert!(fault.to_string().contains("out of range"), "{fault}");
 }
 
 #[test]

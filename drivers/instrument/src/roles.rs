@@ -84,6 +84,15 @@ pub trait JointController: Instrument {
     fn amperes_per_volt(&self) -> Option<f64> {
         None
     }
+    /// The memory of its processor, where the drive lets it be read.
+    fn servo_memory(&mut self) -> Option<&mut dyn ServoMemory> {
+        None
+    }
+}
+
+/// Reads the memory of a drive's processor. Commands nothing.
+pub trait ServoMemory: Instrument {
+    fn read_byte(&mut self, address: u8) -> Result<u8, Fault>;
 }
 
 /// The smallest steps that a joint controller can report.

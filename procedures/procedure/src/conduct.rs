@@ -52,7 +52,7 @@ pub fn conduct_knowing(
     let plan = procedure.plan(parameters, facts)?;
     let preview = plan.preview(facts);
     if let Some(broken) = preview.checks.iter().find(|check| !check.ok) {
-        return Err(ConductFault::NotAllowed { procedure: procedure.id(), why: broken.detail.clone() });
+        return Err(ConductFault::NotAllowed { procedure: procedure.id(), why: broken.refusal() });
     }
     let mut kept = Kept::default();
     // Kept until the end, because a dropped sender stops a run.

@@ -1,5 +1,6 @@
 //! The dry run: effect of a plan on a bench, before anything moves.
 
+use crate::catalogue::procedure;
 use crate::plan::{BenchFacts, Drive, Plan};
 use jointbench_instrument::limits::Limited;
 use serde::Serialize;
@@ -48,6 +49,12 @@ pub struct Setpoints {
 }
 
 impl Extreme {
+    /// Within its limit, with what friction takes.
+    fn leaves_room(&self) -> bool {
+        let friction = if self.quantity == BEFORE_FRICTION { FOR_FRICTION } else { 0.0 };
+        self.ok && self.limit.is_none_or(|limit| self.value.abs() <= (1.0 - friction) * limit)
+    }
+
     /// To a thousandth: `motor velocity 900 rad/s exceeds the limit of 350 rad/s`.
     fn exceeds(&self) -> String {
         let [value, limit] = [self.value, self.limit.unwrap_or(f64::INFINITY)].map(|v| (1e3 * v).round() / 1e3);
@@ -65,6 +72,22 @@ pub struct Check {
     /// Advice if the condition is not met.
     pub cure: Option<String>,
 }
+
+impl Check {
+    /// What is not met, and what to do.
+    pub fn refusal(&self) -> String {
+        match &self.cure {
+            Some(cure) => format!("{} ({cure})", self.detail),
+            None => self.detail.clone(),
+        }
+    }
+}
+
+/// Parameters that set the largest load, as a share of the brake's rated current.
+const LOADS: [&str; 2] = ["top_load", "top_current"];
+/// Share of the motor current that a proposed load leaves to friction, which a plan does not know. Decides nothing else.
+const FOR_FRICTION: f64 = 0.1;
+const BEFORE_FRICTION: &str = "motor current, friction not included";
 
 impl Plan {
     pub fn preview(&self, facts: &BenchFacts) -> Preview {
@@ -110,7 +133,7 @@ impl Plan {
             limited(Limited::LinkTorque, torque_nm),
             limited(Limited::BrakePower, power_w),
             Extreme {
-                quantity: "motor current, friction not included",
+                quantity: BEFORE_FRICTION,
                 ..limited(Limited::MotorCurrent, motor_nm / constants.torque_constant_nm_per_a)
             },
         ];
@@ -144,7 +167,7 @@ impl Plan {
                 } else {
                     broken.join("; ")
                 },
-                cure: (!broken.is_empty()).then(|| "reduce speed or load, or select another bench".into()),
+                cure: (!broken.is_empty()).then(|| self.within_limits(facts)),
             },
             Check {
                 name: "brake",
@@ -177,6 +200,33 @@ impl Plan {
         ];
         checks.retain(|check| check.name != "brake" || facts.has_brake || needs_brake);
         checks
+    }
+
+    /// What brings the plan within the limits: the largest load that leaves some current to friction, in hundredths, where a
+    /// smaller one is enough.
+    fn within_limits(&self, facts: &BenchFacts) -> String {
+        let loads = LOADS.into_iter().filter_map(|name| Some((name, self.largest_share(name, facts)?)));
+        let shares: Vec<String> = loads.map(|(name, share)| format!("{name} = {share}")).collect();
+        match shares.first() {
+            Some(share) => format!("set {share} or less, or select another bench"),
+            None => "reduce speed or load, or select another bench".into(),
+        }
+    }
+
+    fn largest_share(&self, name: &str, facts: &BenchFacts) -> Option<f64> {
+        let procedure = procedure(self.procedure)?;
+        let given = self.parameters.get(name)?.as_f64()?;
+        let least = procedure.schema().iter().find(|parameter| parameter.name == name)?.min;
+        let hundredths = |share: f64| (100.0 * share).ceil() as u32;
+        let passes = |share: &u32| {
+            let mut choices = self.parameters.clone();
+            choices.insert(name.to_owned(), (f64::from(*share) / 100.0).into());
+            let plan = procedure.plan(&choices, facts);
+            plan.is_ok_and(|plan| plan.extremes(facts).iter().all(Extreme::leaves_room))
+        };
+        let shares: Vec<u32> = (hundredths(least)..hundredths(given)).collect();
+        let passing = shares.partition_point(passes);
+        Some(f64::from(*shares.get(passing.checked_sub(1)?)?) / 100.0)
     }
 
     fn setpoints(&self) -> Setpoints {

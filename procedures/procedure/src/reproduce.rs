@@ -2,7 +2,7 @@
 //!
 //! The caller provides the true values of the bench if they are known; they are only compared at the end.
 
-use crate::catalogue::{brake_model, procedure};
+use crate::catalogue::{Procedure, brake_model, procedure};
 use crate::conduct::{ConductFault, Conducted, conduct_knowing};
 use crate::identification::{Identification, Quantity};
 use crate::plan::BenchFacts;
@@ -233,6 +233,11 @@ fn puma() -> Vec<Part> {
 }
 
 impl Subject {
+    /// The procedures of its campaign, in their order.
+    pub fn procedures(self) -> Vec<&'static dyn Procedure> {
+        self.campaign().into_iter().filter_map(|(id, ..)| procedure(id)).collect()
+    }
+
     fn campaign(self) -> Vec<Part> {
         match self {
             Subject::JointA => joint(

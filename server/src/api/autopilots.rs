@@ -1,7 +1,7 @@
 //! What to measure next, and chains of measuring and diagnosing that run by themselves.
 
 use super::extract::{Answer, Created, Json, Path, created};
-use super::problem::Refusals;
+use super::refusals::Refusals;
 use crate::lab::{Caller, Lab};
 use crate::view::{Autopilot, NewAutopilot, NewExperiment};
 use axum::Extension;

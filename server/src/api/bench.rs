@@ -1,11 +1,14 @@
 //! Benches and their instruments.
 
-use super::extract::{Answer, Json, Path};
-use super::problem::{Problem, Refusals};
+use super::extract::{Answer, Json, Path, Query};
+use super::problem::Problem;
+use super::refusals::Refusals;
 use crate::lab::{Caller, Lab, names};
-use crate::view::{Acknowledgement, Bench, Instrument, SafetyEntry};
+use crate::view::{Acknowledgement, Bench, Instrument, SafetyEntry, ServoMemory};
 use axum::Extension;
 use axum::extract::State;
+use serde::Deserialize;
+use utoipa::IntoParams;
 
 /// All benches of this daemon
 #[utoipa::path(get, path = "/bench", operation_id = "list_benches", tag = "bench",
@@ -78,4 +81,28 @@ pub async fn safety(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer
     responses((status = 200, description = "The instruments", body = Vec<Instrument>), Refusals))]
 pub async fn instruments(State(lab): State<Lab>) -> Answer<Vec<Instrument>> {
     Ok(Json(lab.benches().into_iter().flat_map(|bench| bench.instruments).collect()))
+}
+
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct MemoryQuery {
+    /// Only the variable at this address; all if omitted.
+    #[param(maximum = 127)]
+    pub address: Option<u8>,
+}
+
+/// The memory of the joint's servo (DIAGREAD), for a Puma-type servo; only between runs, and without motion
+#[utoipa::path(get, path = "/bench/{bench}/servo-memory", operation_id = "servo_memory", tag = "bench",
+    params(("bench" = String, Path, description = "Name"), MemoryQuery),
+    responses((status = 200, description = "The variables of the memory", body = ServoMemory),
+        (status = 409, description = "A run is in progress: wait until it ends, or stop it", body = Problem,
+            content_type = "application/problem+json"),
+        Refusals))]
+pub async fn servo_memory(
+    State(lab): State<Lab>,
+    Path(bench): Path<String>,
+    Query(query): Query<MemoryQuery>,
+) -> Answer<ServoMemory> {
+    Ok(Json(lab.servo_memory(&bench, query.address).await?))
 }

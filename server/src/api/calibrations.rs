@@ -1,7 +1,7 @@
 //! Results that the next runs of a bench use.
 
 use super::extract::{Answer, Created, Json, Path, created};
-use super::problem::Refusals;
+use super::refusals::Refusals;
 use crate::lab::{Caller, Lab};
 use crate::view::{Calibration, NewCalibration};
 use axum::Extension;

@@ -1,7 +1,7 @@
 //! Channels that no instrument measures: formulas over the columns of a run.
 
 use super::extract::{Answer, Json, Path, Query};
-use super::problem::Refusals;
+use super::refusals::Refusals;
 use crate::lab::{Lab, Most};
 use crate::view::{Samples, SpectrumView};
 use axum::extract::State;

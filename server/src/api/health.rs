@@ -1,7 +1,8 @@
 //! The daemon about itself.
 
 use super::extract::{Answer, Json};
-use super::problem::{Problem, Refusals};
+use super::problem::Problem;
+use super::refusals::Refusals;
 use crate::lab::{Caller, Lab};
 use crate::store::StoreHealth;
 use crate::view::Access;

@@ -1,7 +1,8 @@
 //! What a procedure makes of its run.
 
 use super::extract::{Answer, Json, Path, Query};
-use super::problem::{Problem, Refusals};
+use super::problem::Problem;
+use super::refusals::Refusals;
 use crate::lab::Lab;
 use crate::view::{Beside, Earlier, Identification, Trends};
 use axum::extract::State;
@@ -11,7 +12,7 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 
 /// Quantities with intervals, figures and a verdict, computed from the samples by the procedure of the run
-#[utoipa::path(get, path = "/runs/{id}/identification", tag = "runs", params(("id" = i64, Path, description = "Run")),
+#[utoipa::path(get, path = "/runs/{id}/identification", operation_id = "get_identification", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Result of the run", body = Identification), Refusals))]
 pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Identification> {
     Ok(Json(lab.identification(id).await?))

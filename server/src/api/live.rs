@@ -1,10 +1,12 @@
 //! The live stream: JSON text frames and binary sample frames on one WebSocket.
 
-use super::problem::Refusals;
+use super::problem::Problem;
+use super::refusals::Refusals;
 use crate::lab::{Caller, Lab};
 use axum::Extension;
 use axum::extract::State;
 use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::ws::rejection::WebSocketUpgradeRejection;
 use axum::response::Response;
 
 /// A client has nothing to say: pings and the end are small [bytes].
@@ -22,14 +24,15 @@ const LARGEST_HEARD: usize = 4096;
 pub async fn stream(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,
-    upgrade: WebSocketUpgrade,
-) -> Response {
+    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
+) -> Result<Response, Problem> {
+    let upgrade = upgrade.map_err(|why| Problem::malformed(format!("{why}: open a WebSocket at this address")))?;
     // A browser hangs up where none of what it offers is taken.
     let upgrade = upgrade.max_message_size(LARGEST_HEARD).max_frame_size(LARGEST_HEARD).protocols(["jointbench"]);
-    upgrade.on_upgrade(async move |socket| {
+    Ok(upgrade.on_upgrade(async move |socket| {
         tokio::select! {
             () = crate::live::serve(socket, lab.clone()) => {}
             () = lab.shut_out(&caller) => {}
         }
-    })
+    }))
 }

@@ -1,7 +1,7 @@
 //! What has happened.
 
 use super::extract::{Answer, Json, Query};
-use super::problem::Refusals;
+use super::refusals::Refusals;
 use crate::lab::{Caller, Lab, OF_TOKENS};
 use crate::view::{Access, LogEntry};
 use axum::Extension;

@@ -19,6 +19,7 @@ mod own_effects;
 mod presence;
 mod problem;
 mod procedures;
+mod refusals;
 mod revisions;
 mod rights;
 mod runs;
@@ -58,6 +59,7 @@ use utoipa_axum::{router::OpenApiRouter, routes};
         description = "Test bench for robot joints: measure, identify a model, find the missing effect.\n\nSI units; the unit is the suffix of a name. Errors are problem documents (RFC 9457).",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
+    servers((url = "/", description = "The daemon that this document comes from")),
     components(schemas(Problem, LiveMessage)),
     modifiers(&Token),
     security((), ("token" = [])),
@@ -122,6 +124,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(bench::retry))
         .routes(routes!(bench::description))
         .routes(routes!(bench::safety))
+        .routes(routes!(bench::servo_memory))
         .routes(routes!(calibrations::list, calibrations::apply))
         .routes(routes!(bench::instruments))
         .routes(routes!(procedures::list))
@@ -187,7 +190,7 @@ fn sized(routes: OpenApiRouter<Lab>, limit: usize) -> OpenApiRouter<Lab> {
 
 /// The OpenAPI 3.1 description of all operations.
 pub fn specification() -> utoipa::openapi::OpenApi {
-    operations().to_openapi()
+    refusals::named(operations().to_openapi())
 }
 
 /// Everything that the daemon serves. `/api` never falls back to the dashboard.

@@ -3,7 +3,8 @@
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::leaving::{DetachQuery, waited_for};
 use super::presence::Presence;
-use super::problem::{Problem, Refusals};
+use super::problem::Problem;
+use super::refusals::Refusals;
 use crate::lab::{Caller, Lab};
 use crate::view::{Access, Diagnosis, Effect, Fit, Model, NewDiagnosis, NewModel, ResidualSet};
 use axum::Extension;
@@ -29,7 +30,7 @@ pub async fn effects(State(lab): State<Lab>, Query(query): Query<EffectQuery>) -
 }
 
 /// Fits a set of effects to a run and stores it as a version
-#[utoipa::path(post, path = "/models", tag = "models", params(DetachQuery), request_body = NewModel,
+#[utoipa::path(post, path = "/models", operation_id = "create_model", tag = "models", params(DetachQuery), request_body = NewModel,
     responses((status = 201, description = "The version", body = Model), Refusals))]
 pub async fn create(
     State(lab): State<Lab>,
@@ -74,7 +75,7 @@ pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Model> {
 }
 
 /// The fit of a model version alone
-#[utoipa::path(get, path = "/fits/{id}", tag = "models", params(("id" = i64, Path, description = "Model version")),
+#[utoipa::path(get, path = "/fits/{id}", operation_id = "get_fit", tag = "models", params(("id" = i64, Path, description = "Model version")),
     responses((status = 200, description = "The fit", body = Fit), Refusals))]
 pub async fn fit(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Fit> {
     Ok(Json(lab.model(id).await?.fit))

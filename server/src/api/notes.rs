@@ -1,7 +1,7 @@
 //! What people say about runs.
 
 use super::extract::{Answer, Created, Json, Path, created};
-use super::problem::Refusals;
+use super::refusals::Refusals;
 use crate::lab::Lab;
 use crate::view::{NewNote, Note, Run, Tags};
 use axum::extract::State;

@@ -3,7 +3,8 @@
 use super::extract::{Answer, Created, Json, Path, created};
 use super::leaving::{DetachQuery, waited_for};
 use super::presence::Presence;
-use super::problem::{Problem, Refusals};
+use super::problem::Problem;
+use super::refusals::Refusals;
 use crate::lab::Lab;
 use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage};
 use axum::extract::State;

@@ -8,9 +8,7 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use utoipa::openapi::{Content, RefOr, ResponseBuilder, schema::Ref};
-use utoipa::{IntoResponses, ToSchema};
+use utoipa::ToSchema;
 
 /// RFC 9457 problem document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -201,18 +199,5 @@ pub async fn name_instance(request: Request, next: Next) -> Response {
     match response.extensions_mut().remove::<Problem>() {
         Some(problem) => Problem { instance: Some(path), ..problem }.into_response(),
         None => response,
-    }
-}
-
-/// The documented form of every refusal.
-pub struct Refusals;
-
-impl IntoResponses for Refusals {
-    fn responses() -> BTreeMap<String, RefOr<utoipa::openapi::Response>> {
-        let response = ResponseBuilder::new()
-            .description("Error: a problem document (RFC 9457) with cause and remedy")
-            .content("application/problem+json", Content::new(Some(Ref::from_schema_name("Problem"))))
-            .build();
-        BTreeMap::from([("default".to_owned(), RefOr::T(response))])
     }
 }

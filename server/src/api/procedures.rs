@@ -1,7 +1,7 @@
 //! What a bench can be asked to do.
 
 use super::extract::{Answer, Json, Path, Query};
-use super::problem::Refusals;
+use super::refusals::Refusals;
 use crate::lab::Lab;
 use crate::view::{Preview, PreviewRequest, Procedure};
 use axum::extract::State;

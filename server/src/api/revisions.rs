@@ -3,7 +3,8 @@
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::leaving::{DetachQuery, waited_for};
 use super::presence::Presence;
-use super::problem::{Problem, Refusals};
+use super::problem::Problem;
+use super::refusals::Refusals;
 use crate::lab::{Caller, Lab};
 use crate::view::{Comparison, Evaluation, ImportedModel, ModelImport, NewEvaluation, Worth};
 use axum::Extension;

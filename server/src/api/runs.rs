@@ -1,7 +1,8 @@
 //! Runs: start, watch, steer.
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
-use super::problem::{Problem, Refusals};
+use super::problem::Problem;
+use super::refusals::Refusals;
 use crate::lab::{Alignment, Caller, Lab, LabError, Order, RunFilter};
 use crate::view::{ChannelStatistics, Figure, NewRun, Preview, Run, RunEvent, RunList, Samples};
 use axum::Extension;
@@ -43,7 +44,7 @@ pub async fn list(State(lab): State<Lab>, Query(query): Query<RunQuery>) -> Answ
 }
 
 /// Plans a procedure, checks it against the limits and starts it
-#[utoipa::path(post, path = "/runs", tag = "runs", request_body = NewRun,
+#[utoipa::path(post, path = "/runs", operation_id = "start_run", tag = "runs", request_body = NewRun,
     responses((status = 201, description = "The run, queued", body = Run), Refusals))]
 pub async fn start(
     State(lab): State<Lab>,

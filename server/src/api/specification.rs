@@ -17,6 +17,26 @@ fn the_kept_specification_is_the_routers() {
     );
 }
 
+/// Words of the languages that clients are generated in: each generator would rename them in its own way.
+const RESERVED: [&str; 16] = [
+    "as", "async", "await", "break", "continue", "default", "delete", "export", "for", "import", "match", "new",
+    "return", "switch", "type", "use",
+];
+
+#[test]
+fn files_are_binary_and_named_by_their_kind() {
+    let document = serde_json::to_value(super::specification()).unwrap();
+    for (path, method, kinds) in [("/api/v1/runs/{id}/export", "get", 3), ("/api/v1/tables", "post", 2)] {
+        let content = document["paths"][path][method]["responses"]["200"]["content"].as_object().unwrap();
+        assert_eq!(content.len(), kinds, "{path}: {content:?}");
+        let file = content.values().all(|one| one["schema"]["$ref"] == "#/components/schemas/File");
+        assert!(file, "{path}: {content:?}");
+    }
+    let file = &document["components"]["schemas"]["File"];
+    assert_eq!((&file["type"], &file["format"]), (&"string".into(), &"binary".into()));
+    assert_eq!(document["servers"][0]["url"], "/");
+}
+
 #[test]
 fn every_response_is_described() {
     let document = serde_json::to_value(super::specification()).unwrap();
@@ -26,11 +46,19 @@ fn every_response_is_described() {
     for (path, item) in document["paths"].as_object().unwrap() {
         for (method, operation) in item.as_object().unwrap().iter().filter(|(_, o)| o.get("responses").is_some()) {
             operations += 1;
+            let changes = method != "get";
+            for (status, expected) in [("404", path.contains('{')), ("409", changes)] {
+                assert!(
+                    !expected || operation["responses"][status].is_object(),
+                    "{method} {path}: {status} is missing"
+                );
+            }
             let name = operation["operationId"].as_str().unwrap();
             assert!(
                 names.insert(name.to_owned()),
                 "{method} {path}: two operations are called {name}; name one with operation_id"
             );
+            assert!(!RESERVED.contains(&name), "{method} {path}: generators cannot call an operation {name}");
             assert!(operation["summary"].is_string() && operation["tags"].is_array(), "{method} {path}");
             for parameter in operation["parameters"].as_array().into_iter().flatten() {
                 assert!(parameter["description"].is_string(), "{method} {path}: {parameter} has no description");

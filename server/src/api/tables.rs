@@ -1,7 +1,8 @@
 //! What a page shows, as a file.
 
 use super::extract::{Json, Query};
-use super::problem::{Problem, Refusals};
+use super::problem::Problem;
+use super::refusals::{File, Refusals};
 use crate::lab::{Lab, TableFormat};
 use crate::view::Table;
 use axum::extract::State;
@@ -26,7 +27,7 @@ pub struct TableQuery {
 /// Converts a table, such as the data of a plot, to a file, without storing it
 #[utoipa::path(post, path = "/tables", operation_id = "write_table", tag = "daemon", params(TableQuery),
     responses(
-        (status = 200, description = "The file", body = Vec<u8>, content_type = "application/octet-stream"),
+        (status = 200, description = "The file", content((File = "text/csv"), (File = "application/vnd.apache.parquet"))),
         Refusals))]
 pub async fn write(
     State(lab): State<Lab>,

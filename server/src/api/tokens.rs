@@ -1,7 +1,8 @@
 //! Tokens: who may come in, and under which name. Only for those who may do everything.
 
 use super::extract::{Created, Json, Path, created};
-use super::problem::{Problem, Refusals};
+use super::problem::Problem;
+use super::refusals::Refusals;
 use crate::lab::{Caller, Lab};
 use crate::view::{MadeToken, NewToken, Token};
 use axum::Extension;

@@ -1,7 +1,8 @@
 //! Run tables in and out, as files.
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
-use super::problem::{Problem, Refusals};
+use super::problem::Problem;
+use super::refusals::{File, Refusals};
 use crate::job::Streamed;
 use crate::lab::{Caller, ExportRequest, FileFormat, ImportRequest, Lab, LabError};
 use crate::store::StoreError;
@@ -37,10 +38,11 @@ pub struct ExportQuery {
 }
 
 /// A run or a part of it as one file in full resolution, which `import` reads unchanged
-#[utoipa::path(get, path = "/runs/{id}/export", tag = "runs",
+#[utoipa::path(get, path = "/runs/{id}/export", operation_id = "export_run", tag = "runs",
     params(("id" = i64, Path, description = "Run"), ExportQuery),
     responses(
-        (status = 200, description = "The file", body = Vec<u8>, content_type = "application/octet-stream"),
+        (status = 200, description = "The file", content(
+            (File = "text/csv"), (File = "application/vnd.apache.parquet"), (File = "application/x-matlab-data"))),
         Refusals))]
 pub async fn export(
     State(lab): State<Lab>,
@@ -113,7 +115,7 @@ pub struct ImportForm {
 }
 
 /// Imports a measured file as a run; a rejected file stores no data
-#[utoipa::path(post, path = "/runs/import", tag = "runs", params(ImportQuery),
+#[utoipa::path(post, path = "/runs/import", operation_id = "import_run", tag = "runs", params(ImportQuery),
     request_body(content = ImportForm, content_type = "multipart/form-data"),
     responses((status = 201, description = "The run", body = Run), Refusals))]
 pub async fn import(

@@ -5,7 +5,7 @@ use super::keeper::{Item, Keeper, NEVER_BEGAN};
 use super::shared::{Shared, blocked, lock};
 use super::status::{Status, Underway};
 use super::supervisor::Supervisor;
-use super::wire::Order;
+use super::wire::{MemoryRead, Order};
 use crate::config::BenchDescription;
 use crate::lab::LabError;
 use crate::live::Hub;
@@ -145,7 +145,22 @@ impl BenchHandle {
             status.instruments.iter().filter(|one| !one.ready).map(|one| one.name.clone()).collect()
         };
         let done = self.shared.order_and_hear(|ticket| Order::Reopen { wanting, ticket }).map_err(|_| self.gone())?;
-        done.await.map_err(|_| self.gone())
+        done.await.map(drop).map_err(|_| self.gone())
+    }
+
+    /// Ranges of the memory of the joint's servo, first address and number of bytes. No run can begin meanwhile.
+    pub async fn read_memory(&self, ranges: Vec<(u8, u8)>) -> Result<Vec<Vec<u8>>, LabError> {
+        let _claim = self.claim()?;
+        let done =
+            self.shared.order_and_hear(|ticket| Order::ReadMemory { ranges, ticket }).map_err(|_| self.gone())?;
+        match done.await.map_err(|_| self.gone())? {
+            Some(MemoryRead::Read(bytes)) => Ok(bytes),
+            Some(MemoryRead::Failed(why)) => Err(LabError::Bench(format!("bench {}: {why}", self.name()))),
+            Some(MemoryRead::None) | None => Err(LabError::Invalid(format!(
+                "the joint of bench {} has no servo whose memory can be read: select a bench with a Puma-type servo",
+                self.name()
+            ))),
+        }
     }
 
     /// Ends a run that is on, secures the bench and ends the worker. Blocks until then.
@@ -222,5 +237,7 @@ impl Claim {
 impl Drop for Claim {
     fn drop(&mut self) {
         self.bench.shared.claimed.store(false, Ordering::Release);
+        // Whoever waits until the bench is free looks again.
+        self.bench.shared.status.send_modify(|_| {});
     }
 }

@@ -3,7 +3,7 @@
 use super::display::Display;
 use super::keeper::Item;
 use super::status::{Status, Underway};
-use super::wire::{self, Order};
+use super::wire::{self, MemoryRead, Order};
 use crate::config::BenchDescription;
 use crate::live::Hub;
 use crate::store::{SafetyRecord, Store};
@@ -39,7 +39,7 @@ pub(super) struct Shared {
     pub disk_is_full: AtomicBool,
     pub disk_changed: Notify,
     orders: Mutex<Option<ChildStdin>>,
-    tickets: Mutex<HashMap<u64, oneshot::Sender<()>>>,
+    tickets: Mutex<HashMap<u64, oneshot::Sender<Option<MemoryRead>>>>,
     last_ticket: AtomicU64,
 }
 
@@ -94,8 +94,11 @@ impl Shared {
         wire::send(orders.as_mut().ok_or(NoWorker)?, order).map_err(|_| NoWorker)
     }
 
-    /// An order whose being done is told.
-    pub fn order_and_hear(&self, order: impl FnOnce(u64) -> Order) -> Result<oneshot::Receiver<()>, NoWorker> {
+    /// An order whose being done is told, with what was read.
+    pub fn order_and_hear(
+        &self,
+        order: impl FnOnce(u64) -> Order,
+    ) -> Result<oneshot::Receiver<Option<MemoryRead>>, NoWorker> {
         let ticket = self.last_ticket.fetch_add(1, Ordering::Relaxed) + 1;
         let (done, wait) = oneshot::channel();
         lock(&self.tickets).insert(ticket, done);
@@ -103,10 +106,10 @@ impl Shared {
         Ok(wait)
     }
 
-    pub fn done(&self, ticket: u64) {
+    pub fn done(&self, ticket: u64, read: Option<MemoryRead>) {
         if let Some(done) = lock(&self.tickets).remove(&ticket) {
             // Whoever asked may have left.
-            let _ = done.send(());
+            let _ = done.send(read);
         }
     }
 

@@ -124,7 +124,8 @@ impl Supervisor {
         match report {
             Report::Opened { instruments, channels, open } => self.opened(instruments, channels, open),
             Report::Secured { safe, notes } => self.secured(safe, &notes),
-            Report::Done { ticket } => shared.done(ticket),
+            Report::Done { ticket } => shared.done(ticket, None),
+            Report::Memory { ticket, read } => shared.done(ticket, Some(read)),
             Report::Entry(entry) => self.entry(entry),
             Report::Live { run, rows, progress, .. } => {
                 if let Some(display) = lock(&shared.display).as_mut() {

@@ -43,6 +43,11 @@ pub enum Order {
         wanting: Vec<String>,
         ticket: u64,
     },
+    /// Reads these ranges of the memory of the joint's servo: first address and number of bytes.
+    ReadMemory {
+        ranges: Vec<(u8, u8)>,
+        ticket: u64,
+    },
     /// Everything up to this number is durable.
     Stored {
         number: u64,
@@ -83,6 +88,11 @@ pub enum Report {
     Done {
         ticket: u64,
     },
+    /// What the memory of the joint's servo holds, asked for with this ticket.
+    Memory {
+        ticket: u64,
+        read: MemoryRead,
+    },
     Entry(Arc<Entry>),
     Live {
         run: RunId,
@@ -102,6 +112,17 @@ pub enum Report {
     DiskFull(bool),
     /// The last one: the bench is secured, and nothing more will come.
     Finished,
+}
+
+/// What came of reading the memory of a joint's servo.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MemoryRead {
+    /// The bytes of each range.
+    Read(Vec<Vec<u8>>),
+    /// The joint's drive has no memory that can be read.
+    None,
+    /// Why it could not be read.
+    Failed(String),
 }
 
 /// What is to be stored, in this order.

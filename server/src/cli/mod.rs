@@ -10,8 +10,10 @@ mod demo;
 mod exit;
 mod files;
 mod identify;
+mod junit;
 mod library;
 mod log;
+mod memory;
 mod model;
 mod offline;
 mod own;
@@ -63,6 +65,7 @@ pub fn main() -> ExitCode {
         Command::Pause(arguments) => steer::pause(&arguments),
         Command::Resume(arguments) => steer::resume(&arguments),
         Command::Reset(arguments) => steer::reset(&arguments),
+        Command::ServoMemory(arguments) => memory::memory(&arguments),
         Command::Runs(arguments) => runs::runs(&arguments),
         Command::Autopilot(arguments) => autopilot::autopilot(&arguments),
         Command::Diagnose(arguments) => offline::diagnose(&arguments),

@@ -14,15 +14,18 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
+const SUBJECTS: [(&str, Joint, Subject); 6] = [
+    ("Joint A", Joint::JointA, Subject::JointA),
+    ("Joint A behind the gear and brake B", Joint::JointA, Subject::GearAndBrakeB),
+    ("Joint B", Joint::JointB, Subject::JointB),
+    ("Encoder bench", Joint::EncoderShaft, Subject::Encoder),
+    ("Encoder bench, filter on", Joint::EncoderShaft, Subject::FilteredEncoder { delay_without_s: 0.0 }),
+    ("Puma", Joint::Puma, Subject::Puma),
+];
+const COLUMNS: &str =
+    "| table | quantity | document | measured | 95 % interval | true value | inside | required | met |";
+
 pub fn reproduce(arguments: &Reproduce) -> Done {
-    let subjects = [
-        ("Joint A", Joint::JointA, Subject::JointA),
-        ("Joint A behind the gear and brake B", Joint::JointA, Subject::GearAndBrakeB),
-        ("Joint B", Joint::JointB, Subject::JointB),
-        ("Encoder bench", Joint::EncoderShaft, Subject::Encoder),
-        ("Encoder bench, filter on", Joint::EncoderShaft, Subject::FilteredEncoder { delay_without_s: 0.0 }),
-        ("Puma", Joint::Puma, Subject::Puma),
-    ];
     // Minutes later would be too late.
     if let Some(page) = &arguments.out {
         let folder = page.with_extension("");
@@ -34,13 +37,9 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
         }
         fs::create_dir_all(&folder).map_err(|fault| unwritable(&folder, &fault))?;
     }
-    let mut page = format!(
-        "# Tables of the source documents, reproduced\n\nWritten by `jointbench reproduce --seed {} --out …`, version {}. The bench is simulated. *True value* is the constant of the simulation, used only for this comparison; *inside* states whether the 95 % interval contains it. *Required* is the maximum width of the interval or the limit of the figure, and *met* states whether it is met. A joint of the mock bench is similar to the joint of the document, not identical: its friction is within 8 % of the document, depending on the seed, and its velocity loop follows a trajectory more closely.\n",
-        arguments.seed,
-        env!("CARGO_PKG_VERSION")
-    );
+    let mut page = preamble(arguments.seed);
     let mut chapters: Vec<(&str, Chapter)> = Vec::new();
-    for (title, joint, mut subject) in subjects {
+    for (title, joint, mut subject) in SUBJECTS {
         println!("{title}");
         page += &format!("\n## {title}\n");
         if let Subject::FilteredEncoder { delay_without_s } = &mut subject {
@@ -87,6 +86,14 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
         return Ok(());
     }
     Err(Exit::failed(format!("deviation from the true value beyond chance: {}", beyond.join(", "))))
+}
+
+/// What a reader has to know before the first table.
+fn preamble(seed: u64) -> String {
+    format!(
+        "# Tables of the source documents, reproduced\n\nWritten by `jointbench reproduce --seed {seed} --out …`, version {}. The bench is simulated. *True value* is the constant of the simulation, used only for this comparison; *inside* states whether the 95 % interval contains it. *Required* is the maximum width of the interval or the limit of the figure, and *met* states whether it is met. A joint of the mock bench is similar to the joint of the document, not identical: depending on the seed, its Coulomb and viscous friction are within 8 % of the document and its breakaway torque within 18 %, and its velocity loop follows a trajectory more closely.\n",
+        env!("CARGO_PKG_VERSION")
+    )
 }
 
 fn measure(joint: Joint, subject: Subject, seed: u64) -> Result<Vec<Chapter>, Exit> {
@@ -187,7 +194,7 @@ fn asked(demand: Demand, unit: &str) -> String {
 fn told(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<String, Exit> {
     let mut text = format!("\n### {}\n\n{}\n", chapter.title, chapter.identification.summary);
     if !chapter.comparisons.is_empty() {
-        text += "\n| table | quantity | document | measured | 95 % interval | true value | inside | required | met |\n|---|---|---|---|---|---|---|---|---|\n";
+        let _ = writeln!(text, "\n{COLUMNS}\n|---|---|---|---|---|---|---|---|---|");
     }
     for one in &chapter.comparisons {
         let (value, interval) = with_interval(one.found.value, one.found.ci95, &one.found.unit);
@@ -223,4 +230,52 @@ fn told(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<String, E
         let _ = writeln!(text, "\n![{}]({folder}/{name})", figure.title);
     }
     Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// Renewed by `jointbench reproduce --seed 1 --out docs/reproduction.md`.
+    const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/reproduction.md");
+
+    /// Without the figures, which take minutes: what a page of this program begins with, and all of its headings.
+    #[test]
+    fn the_kept_page_is_one_of_this_program() {
+        let page = fs::read_to_string(PAGE).unwrap();
+        let renew = "renew it with `jointbench reproduce --seed 1 --out docs/reproduction.md`";
+        assert!(page.starts_with(&preamble(1)), "the page begins otherwise: {renew}");
+        assert!(page.contains(COLUMNS), "the columns of its tables differ: {renew}");
+        let of_subject = |(title, _, subject): (&str, Joint, Subject)| {
+            let procedures = subject.procedures().into_iter().map(|one| format!("### {}", one.title()));
+            std::iter::once(format!("## {title}")).chain(procedures).collect::<Vec<_>>()
+        };
+        let expected: Vec<String> =
+            SUBJECTS.into_iter().flat_map(of_subject).chain(["## Summary".to_owned()]).collect();
+        let kept: Vec<&str> = page.lines().filter(|line| line.starts_with("##")).collect();
+        assert_eq!(kept, expected, "{renew}");
+    }
+
+    /// One subject stands for all: the others take minutes.
+    #[test]
+    fn the_kept_figures_are_those_of_this_program() {
+        let page = fs::read_to_string(PAGE).unwrap();
+        for (title, joint, subject) in SUBJECTS.into_iter().filter(|(.., subject)| *subject == Subject::Puma) {
+            for chapter in measure(joint, subject, 1).unwrap() {
+                let text = told(&chapter, title, None).unwrap();
+                assert!(page.contains(&text), "docs/reproduction.md has other figures than this program:\n{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_kept_page_shows_every_kept_figure() {
+        let page = fs::read_to_string(PAGE).unwrap();
+        let shown = page.split("](reproduction/").skip(1).filter_map(|rest| rest.split(')').next());
+        let shown: BTreeSet<String> = shown.map(str::to_owned).collect();
+        let folder = Path::new(PAGE).with_extension("");
+        let names = fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name().to_string_lossy().into_owned());
+        assert_eq!(shown, names.collect());
+    }
 }

@@ -3,6 +3,7 @@
 use super::arguments::Run as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
+use super::junit::junit;
 use super::progress::RunProgress;
 use super::require::{Kept, Requirement};
 use super::{files, identify};
@@ -14,7 +15,7 @@ use std::time::{Duration, Instant};
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
 
 /// What the run shows, or why that cannot be told.
-type Found = Result<Identification, Exit>;
+pub(super) type Found = Result<Identification, Exit>;
 
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach)?;
@@ -27,7 +28,7 @@ pub fn run(arguments: &Arguments) -> Done {
         None => Vec::new(),
     };
     if let Some(path) = &arguments.junit {
-        files::write(path, junit(&title(arguments), &ended, found.as_ref(), &demands).as_bytes())?;
+        files::write(path, junit(arguments, &ended, found.as_ref(), &demands).as_bytes())?;
     }
     let run = ended?;
     let said = if is_over(run.summary.state) { ending(&run) } else { String::new() };
@@ -64,7 +65,7 @@ fn demand_what_can_be_found(client: &Client, arguments: &Arguments) -> Done {
     })
 }
 
-fn title(arguments: &Arguments) -> String {
+pub(super) fn title(arguments: &Arguments) -> String {
     match (&arguments.procedure, arguments.continues) {
         (Some(procedure), _) => procedure.clone(),
         (None, before) => format!("run {} continued", before.unwrap_or_default()),
@@ -131,14 +132,14 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
         let goes_on = arguments.continues.map(|before| format!(", continues run {before}")).unwrap_or_default();
         println!("run {id}: {procedure} on {bench}{goes_on}  {}", client.page(&format!("/runs/{id}")));
     }
-    match arguments.wait || arguments.junit.is_some() || !arguments.require.is_empty() {
-        // The arguments were good: from here on it is the run that fails.
-        true => {
-            say_that_it_goes_on(id);
-            wait(client, id).map_err(|exit| lost(id, client.is_answered(), &exit.said))
-        }
-        false => Ok(run),
+    let waits =
+        arguments.wait || arguments.junit.is_some() || arguments.timeout.is_some() || !arguments.require.is_empty();
+    if !waits {
+        return Ok(run);
     }
+    say_that_it_goes_on(id);
+    // The arguments were good: from here on it is the run that fails.
+    wait_at_most(client, id, arguments.timeout).map_err(|exit| lost(id, client.is_answered(), &exit.said))
 }
 
 /// A daemon that does not answer is waited for so long.
@@ -207,9 +208,20 @@ pub(super) fn parameters(set: &[String]) -> Result<Map<String, Value>, Exit> {
 }
 
 pub(super) fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
+    wait_at_most(client, id, None)
+}
+
+/// A run that takes longer than `limit` is aborted, and its end is waited for.
+fn wait_at_most(client: &Client, id: i64, limit: Option<Duration>) -> Result<Run, Exit> {
     let mut shown = RunProgress::begin();
-    let mut answered = Instant::now();
+    let began = Instant::now();
+    let (mut answered, mut exceeded) = (began, None);
     loop {
+        if let Some(limit) = limit.filter(|limit| exceeded.is_none() && began.elapsed() > *limit) {
+            exceeded = Some(limit);
+            // One that has ended in the meantime refuses, which the next look shows.
+            drop(client.post::<Run>(&format!("/runs/{id}/abort"), &()));
+        }
         let run: Run = match client.get(&format!("/runs/{id}")) {
             Ok(run) => run,
             // A daemon that is started again knows how the run ended.
@@ -225,7 +237,10 @@ pub(super) fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
         let waits_for_the_disk = run.summary.state == RunState::Completed && run.summary.not_stored.is_some();
         if is_over(run.summary.state) && run.summary.safe.is_some() && !waits_for_the_disk {
             shown.end();
-            return Ok(run);
+            return Ok(match exceeded {
+                Some(limit) if run.summary.state == RunState::Aborted => timed_out(run, limit),
+                _ => run,
+            });
         }
         match &run.progress {
             _ if run.summary.state == RunState::Paused => shown.paused(id),
@@ -234,6 +249,11 @@ pub(super) fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
         }
         std::thread::sleep(LOOK_EVERY);
     }
+}
+
+fn timed_out(mut run: Run, limit: Duration) -> Run {
+    run.summary.reason = Some(format!("it took longer than --timeout {} s", limit.as_secs_f64()));
+    run
 }
 
 pub(super) fn is_over(state: RunState) -> bool {
@@ -263,68 +283,9 @@ pub(super) fn ending(run: &Run) -> String {
     said
 }
 
-/// A test case for the run, a failure where it did not complete or nothing was identified, an error where there is no run to
-/// tell of; then one for each demand.
-fn junit(
-    procedure: &str,
-    ended: &Result<Run, Exit>,
-    found: Option<&Found>,
-    demands: &[(&Requirement, Kept)],
-) -> String {
-    let (suite, case, time_s) = match ended {
-        Ok(Run { summary, .. }) => {
-            (summary.bench.clone(), format!("{procedure} run {}", summary.id), summary.duration_s.unwrap_or(0.0))
-        }
-        Err(_) => ("jointbench".to_owned(), procedure.to_owned(), 0.0),
-    };
-    let outcome = match (ended, found) {
-        (Err(exit), _) | (_, Some(Err(exit))) => Some(("error", exit.said.clone())),
-        (_, Some(Ok(found))) if identify::ending(found).is_ok() => None,
-        (_, Some(Ok(found))) => Some(("failure", identify::verdict(found))),
-        (Ok(run), None) => Some(("failure", ending(run))),
-    };
-    let warnings = found.and_then(|found| found.as_ref().ok()).map(|found| found.result.warnings.join("\n"));
-    let mut cases = vec![(case, time_s, outcome)];
-    cases.extend(demands.iter().map(|(demand, kept)| {
-        let outcome = match kept {
-            Kept::Yes(_) => None,
-            Kept::No(said) | Kept::Unsure(said) => Some(("failure", said.clone())),
-            Kept::Unknown(said) => Some(("error", said.clone())),
-        };
-        (demand.text().to_owned(), 0.0, outcome)
-    }));
-    let count =
-        |kind: &str| cases.iter().filter(|(_, _, outcome)| outcome.as_ref().is_some_and(|o| o.0 == kind)).count();
-    let suite = escape(&suite);
-    let mut report = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"{suite}\" tests=\"{}\" \
-         failures=\"{}\" errors=\"{}\" time=\"{time_s:.3}\">\n",
-        cases.len(),
-        count("failure"),
-        count("error"),
-    );
-    for (name, time_s, outcome) in &cases {
-        let body = match outcome {
-            Some((kind, said)) => format!("\n      <{kind} message=\"{}\"/>\n    ", escape(said)),
-            None => String::new(),
-        };
-        report += &format!(
-            "    <testcase classname=\"{suite}\" name=\"{}\" time=\"{time_s:.3}\">{body}</testcase>\n",
-            escape(name)
-        );
-    }
-    if let Some(warnings) = warnings.filter(|text| !text.is_empty()) {
-        report += &format!("    <system-out>{}</system-out>\n", escape(&warnings));
-    }
-    report + "  </testsuite>\n</testsuites>\n"
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::junit::tests::asked;
     use super::*;
     use crate::view::Identified;
 
@@ -345,12 +306,11 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_never_was_is_an_error_in_the_report() {
-        let report = junit("friction", &Err(Exit::bad_input("repeats = 0 < 1")), None, &[]);
-        assert!(
-            report.contains("errors=\"1\"") && report.contains("<error message=\"repeats = 0 &lt; 1\"/>"),
-            "{report}"
-        );
+    fn a_timeout_is_a_number_of_seconds() {
+        assert_eq!(asked(&["friction", "--timeout", "1.5"]).timeout, Some(Duration::from_millis(1500)));
+        for text in ["0", "-1", "soon", "inf", "NaN"] {
+            assert!(super::super::arguments::seconds(text).unwrap_err().contains("seconds above 0"), "{text}");
+        }
     }
 
     #[test]
@@ -365,10 +325,6 @@ mod tests {
         assert_eq!(code(&[Kept::Yes(said()), Kept::Unsure(said())]), 3);
         assert_eq!(code(&[Kept::Unsure(said()), Kept::No(said()), Kept::Unsure(said())]), 1);
         assert_eq!(code(&[Kept::No(said()), Kept::Unknown(said())]), 2);
-        let demands = [(&demand, Kept::No(said()))];
-        let report = junit("friction", &Err(Exit::bad_input("no run")), None, &demands);
-        assert!(report.contains("tests=\"2\" failures=\"1\" errors=\"1\""), "{report}");
-        assert!(report.contains("name=\"tau_c &lt; 0.03 Nm\""), "{report}");
     }
 
     #[test]
@@ -388,10 +344,5 @@ mod tests {
         assert_eq!(code(shown(Identified::Inconclusive), no), 1);
         assert_eq!(code(shown(Identified::Failed), yes.clone()), 1);
         assert_eq!(code(Err(Exit::failed("the daemon is gone")), yes), 1);
-    }
-
-    #[test]
-    fn markup_in_a_reason_stays_text() {
-        assert_eq!(escape("a < b & \"c\""), "a &lt; b &amp; &quot;c&quot;");
     }
 }

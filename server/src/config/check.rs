@@ -140,6 +140,10 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     if let (Some(given), Some(Joint::EncoderShaft | Joint::Puma)) = (&raw.load, joint) {
         wrong.add(given.span(), "this joint has no load: remove load");
     }
+    if let (Some(given), Some(Joint::JointA | Joint::JointB | Joint::EncoderShaft)) = (&raw.servo, joint) {
+        wrong.add(given.span(), "this joint has no Puma-type servo: remove servo");
+    }
+    let gains = raw.servo.as_ref().map(|given| *given.get_ref()).unwrap_or_default();
     let supplies = [("dp821a", Supply::Dp821a), ("hmp4040", Supply::Hmp4040)];
     let supply =
         raw.supply.as_ref().map_or(Some(Supply::default()), |supply| choice(supply, "supply", &supplies, wrong));
@@ -153,5 +157,5 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     let (filter, supply, troubles) = (raw.filter, supply?, troubles(&raw.troubles, &settings, wrong));
     // A bench that keeps time is one that other programs may listen to; in a time-lapse they could not follow.
     let transport = if pace.is_some() { Transport::Terminal } else { settings.transport };
-    Some(MockSettings { load, effects, pace, filter, supply, troubles, transport, ..settings })
+    Some(MockSettings { load, effects, pace, filter, supply, troubles, transport, gains, ..settings })
 }

@@ -93,6 +93,7 @@ fn check_odrive(
         ("counts_per_turn", raw.counts_per_turn.as_ref().map(Spanned::span)),
         ("amperes_per_volt", raw.amperes_per_volt.as_ref().map(Spanned::span)),
         ("ninter", raw.ninter.as_ref().map(Spanned::span)),
+        ("servo", raw.servo.as_ref().map(Spanned::span)),
     ] {
         misplaced(name, "odrive", place, wrong);
     }
@@ -128,6 +129,7 @@ fn check_puma(
         counts_per_turn: counts?,
         amperes_per_volt: scale?,
         ninter: ninter?,
+        gains: raw.servo.as_ref().map(|given| *given.get_ref()).unwrap_or_default(),
     }))
 }
 

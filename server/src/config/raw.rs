@@ -1,5 +1,6 @@
 //! The bench description as it is written. Values keep their place in the file, for messages.
 
+use jointbench_devices::PumaGains;
 use jointbench_devices::sim::PlannedTrouble;
 use serde::Deserialize;
 use toml::Spanned;
@@ -59,6 +60,8 @@ pub struct RawMock {
     pub thermometer: bool,
     #[serde(default)]
     pub troubles: Vec<Spanned<PlannedTrouble>>,
+    /// Gains and tolerance bands of a Puma-type servo.
+    pub servo: Option<Spanned<PumaGains>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -74,6 +77,7 @@ pub struct RawJoint {
     pub counts_per_turn: Option<Spanned<u32>>,
     pub amperes_per_volt: Option<Spanned<f64>>,
     pub ninter: Option<Spanned<u8>>,
+    pub servo: Option<Spanned<PumaGains>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -163,6 +163,13 @@ ninter = 0
     let mock = "[[bench]]\nname = \"arm\"\n[bench.mock]\njoint = \"puma\"\nload = \"brake_a\"\n";
     let said = parse("bench.toml", mock).unwrap_err().to_string();
     assert!(said.contains("line 5: this joint has no load"), "{said}");
+    let geared = |joint: &str| {
+        let servo = "servo = { velgan = 8, inttol = 300 }";
+        parse("bench.toml", &format!("[[bench]]\nname = \"arm\"\n[bench.mock]\njoint = \"{joint}\"\n{servo}\n"))
+    };
+    assert!(geared("puma").is_ok());
+    let said = geared("a").unwrap_err().to_string();
+    assert!(said.contains("line 5: this joint has no Puma-type servo: remove servo"), "{said}");
 }
 
 #[test]

@@ -61,7 +61,7 @@ impl Lab {
         let (_, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
         let planned_s = plan.duration_s();
         if let Some(failed) = plan.preview(&handle.facts()).checks.into_iter().find(|check| !check.ok) {
-            return Err(LabError::Invalid(format!("the first run was rejected: {}", failed.detail)));
+            return Err(LabError::Invalid(format!("the first run was rejected: {}", failed.refusal())));
         }
         if new.bench_time_s.is_some_and(|budget_s| planned_s > budget_s) {
             return Err(LabError::Invalid(format!(

@@ -232,7 +232,7 @@ fn refusal(procedure: &dyn Procedure, given: &Map<String, Value>, facts: &BenchF
         return (!facts.has_brake).then(|| format!("bench {} has no brake", facts.name));
     }
     match procedure.plan(given, facts) {
-        Ok(plan) => plan.preview(facts).checks.into_iter().find(|check| !check.ok).map(|check| check.detail),
+        Ok(plan) => plan.preview(facts).checks.into_iter().find(|check| !check.ok).map(|check| check.refusal()),
         Err(fault) => Some(fault.to_string()),
     }
 }

@@ -15,6 +15,7 @@ mod experiment;
 mod export;
 mod identifications;
 mod log;
+mod memory;
 mod models;
 pub mod names;
 mod notes;

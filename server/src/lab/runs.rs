@@ -32,10 +32,7 @@ impl Lab {
             .checks
             .iter()
             .filter(|check| !check.ok)
-            .map(|check| match &check.cure {
-                Some(cure) => format!("{}: {} ({cure})", check.name, check.detail),
-                None => format!("{}: {}", check.name, check.detail),
-            })
+            .map(|check| format!("{}: {}", check.name, check.refusal()))
             .collect();
         if !failed.is_empty() {
             return Err(LabError::Invalid(format!("the plan was rejected: {}", failed.join("; "))));
@@ -65,7 +62,7 @@ impl Lab {
     }
 
     /// Returns when a run of this bench that is over, so that anybody may know of it, has given the bench back.
-    async fn let_go(&self, bench: &BenchHandle) {
+    pub(super) async fn let_go(&self, bench: &BenchHandle) {
         let over: Vec<i64> =
             bench.status().runs.iter().filter(|(_, run)| run.state.is_final()).map(|(id, _)| *id).collect();
         let gone = |status: &Status| over.iter().all(|run| !status.runs.contains_key(run));

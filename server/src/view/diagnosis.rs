@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 /// Which model version to diagnose.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[schema(example = json!({"model": 1}))]
 pub struct NewDiagnosis {
     pub model: i64,
 }

@@ -42,6 +42,7 @@ pub struct EffectParameter {
 /// A model to fit: a run and a set of effects.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[schema(example = json!({"run": 1, "effects": ["inertia", "coulomb", "viscous"]}))]
 pub struct NewModel {
     pub run: i64,
     /// Further runs of the same kind and joint for a combined fit, in chronological order.

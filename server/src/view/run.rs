@@ -168,6 +168,7 @@ pub struct Progress {
 /// A run to start. Omitted parameters take the defaults of the procedure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[schema(example = json!({"bench": "joint-a-mock", "procedure": "friction", "parameters": {"repeats": 3}}))]
 pub struct NewRun {
     pub bench: String,
     pub procedure: String,

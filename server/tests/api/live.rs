@@ -54,6 +54,14 @@ fn a_run_is_told_as_it_happens() {
 }
 
 #[test]
+fn a_request_that_opens_no_socket_is_a_problem() {
+    let daemon = TestDaemon::start();
+    let (status, problem) = daemon.get("/api/v1/events");
+    assert_eq!((status, &problem["type"]), (400, &"urn:jointbench:malformed".into()), "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("WebSocket"), "{problem}");
+}
+
+#[test]
 fn a_new_effect_is_told_to_everybody() {
     let daemon = TestDaemon::start();
     let (mut socket, _) = tungstenite::connect(format!("ws://{}/api/v1/events", daemon.address())).unwrap();

@@ -21,6 +21,7 @@ mod readers;
 mod revisions;
 mod runs;
 mod safety;
+mod servo_memory;
 mod spreadsheets;
 mod tables;
 mod tls;

@@ -123,6 +123,23 @@ fn runs_are_listed_and_ended_from_the_command_line() {
 }
 
 #[test]
+fn a_run_that_takes_too_long_is_aborted_and_its_limits_are_skipped() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = bench(folder.path(), "b", 20.0);
+    let daemon = Daemon::serve(&folder.path().join("data"), &config);
+    let junit = folder.path().join("out.xml");
+    let report = junit.to_str().expect("a path");
+    let limits = ["--require", "tau_c < 1 Nm", "--junit", report, "--timeout", "1", "--daemon", &daemon.base];
+    let ended = run(&[&["run", "friction"], &limits[..]].concat());
+    let said = stdout(&ended) + &stderr(&ended);
+    assert_eq!(ended.status.code(), Some(1), "{said}");
+    assert!(said.contains("run 1 aborted") && said.contains("longer than --timeout 1 s"), "{said}");
+    assert_eq!(daemon.get("/runs/1")["safe"], "safe_verified");
+    let report = std::fs::read_to_string(&junit).expect("the report");
+    assert!(report.contains("tests=\"2\" failures=\"1\" errors=\"0\" skipped=\"1\""), "{report}");
+}
+
+#[test]
 fn an_autopilot_that_a_person_ended_says_so_once() {
     let folder = tempfile::tempdir().expect("a folder");
     let config = bench(folder.path(), "b", 20.0);

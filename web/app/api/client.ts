@@ -13,6 +13,8 @@ export const api = {
 	acknowledge: (bench: string, reason: string) =>
 		ask('post', '/api/v1/bench/{bench}/acknowledge', { path: { bench }, body: { reason } }),
 	retry: (bench: string) => ask('post', '/api/v1/bench/{bench}/retry', { path: { bench } }),
+	/** Refused while a run is in progress. */
+	servoMemory: (bench: string, signal?: Signal) => ask('get', '/api/v1/bench/{bench}/servo-memory', { path: { bench } }, signal),
 	calibrations: (bench: string, signal?: Signal) => ask('get', '/api/v1/bench/{bench}/calibrations', { path: { bench } }, signal),
 	/** The next runs of the bench use the result of the run; `null`: of the last complete one. */
 	calibrate: (bench: string, procedure: string, run: number | null) =>

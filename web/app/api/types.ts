@@ -43,6 +43,7 @@ export type RunList = Schemas['RunList'];
 export type RunSummary = Schemas['RunSummary'];
 export type RunState = Schemas['RunState'];
 export type Samples = Schemas['Samples'];
+export type ServoMemory = Schemas['ServoMemory'];
 export type Suggestion = Schemas['Suggestion'];
 export type Table = Schemas['Table'];
 export type TradeOff = Schemas['TradeOff'];

@@ -16,7 +16,7 @@ pub use dmm::{DmmSettings, DmmTorqueSensor};
 pub use gcs::{GcsSettings, GcsStage};
 pub use lorenz::{LorenzSensor, LorenzSettings, Range};
 pub use odrive::{OdriveJoint, OdriveSettings, Thermistor};
-pub use puma::{PumaAxis, PumaSettings};
+pub use puma::{PumaAxis, PumaGains, PumaSettings};
 pub use qsb::{QsbCounter, QsbSettings};
 pub use scpi::{ScpiSettings, ScpiSource};
 

@@ -6,12 +6,14 @@
 
 use super::{Recovers, same};
 use crate::protocol::puma::{
-    ArmPower, Clear, CurrentMode, DiagRead, Fact, Identify, Limit, MOST_COUNTS, Numbered, Order, PositionMode,
-    ReadCurrent, ReadPosition, ReadStatus, Reply, SetInterval, Stop, VOLTS_PER_COUNT, memory,
+    ArmPower, Clear, CurrentMode, DiagRead, DiagWrite, Fact, Identify, Limit, MOST_COUNTS, Numbered, Order,
+    PositionMode, ReadCurrent, ReadPosition, ReadStatus, Reply, SetInterval, Stop, VOLTS_PER_COUNT, memory,
 };
 use crate::transport::{Command, Link, PortSettings};
 use jointbench_instrument::clock::between;
-use jointbench_instrument::roles::{DriveHealth, Identity, Instrument, JointController, JointReading, JointResolution};
+use jointbench_instrument::roles::{
+    DriveHealth, Identity, Instrument, JointController, JointReading, JointResolution, ServoMemory,
+};
 use jointbench_instrument::units::{Amperes, RadPerSec, Radians};
 use jointbench_instrument::{Clock, Fault, FaultKind};
 use serde::{Deserialize, Serialize};
@@ -39,6 +41,38 @@ pub struct PumaSettings {
     pub amperes_per_volt: f64,
     /// Clock ticks of 0.875 ms from one set-point to the next: more than the time between two commands of the bench.
     pub ninter: u8,
+    #[serde(default)]
+    pub gains: PumaGains,
+}
+
+/// What the servo's position loop is set to when it is armed. `None`: as the servo has it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PumaGains {
+    pub propgan: Option<u8>,
+    pub velgan: Option<u8>,
+    pub outscl: Option<u8>,
+    /// Encoder counts.
+    pub postol: Option<u16>,
+    /// Encoder counts.
+    pub inttol: Option<u16>,
+}
+
+impl PumaGains {
+    /// Addresses and bytes.
+    fn written(self) -> impl Iterator<Item = (u8, u8)> {
+        let bytes = [
+            (memory::PROPORTIONAL_GAIN, self.propgan),
+            (memory::VELOCITY_GAIN, self.velgan),
+            (memory::OUTPUT_SCALE, self.outscl),
+        ];
+        let words = [(memory::POSITION_TOLERANCE, self.postol), (memory::INTEGRAL_TOLERANCE, self.inttol)];
+        let of_word = |(address, word): (u8, Option<u16>)| {
+            word.into_iter().flat_map(move |word| (address..).zip(word.to_le_bytes()))
+        };
+        let of_byte = |(address, byte): (u8, Option<u8>)| byte.map(|byte| (address, byte));
+        bytes.into_iter().filter_map(of_byte).chain(words.into_iter().flat_map(of_word))
+    }
 }
 
 /// What the servo was told last.
@@ -152,6 +186,19 @@ impl PumaAxis {
         Ok(seen)
     }
 
+    /// That the servo's memory has what was written there.
+    fn check(&mut self, address: u8, wanted: u8) -> Result<(), Fault> {
+        let held = self.ask(DiagRead(address))?;
+        if held == wanted {
+            return Ok(());
+        }
+        let name = memory::at(address).map_or("memory", |variable| variable.name);
+        let what = format!(
+            "{name} at {address:#04X} = {wanted}, but its memory contains {held}: write a whole number that it accepts"
+        );
+        Err(self.link.fault(FaultKind::Refused { what }))
+    }
+
     /// What amperes are at the converter; the set-point ends where the converter does.
     fn converter_counts(&self, current: Amperes) -> Result<i16, Fault> {
         let counts = (current.0 / self.settings.amperes_per_volt / VOLTS_PER_COUNT).round();
@@ -224,13 +271,10 @@ impl JointController for PumaAxis {
         self.ask(Stop)?;
         self.ask(Clear)?;
         self.ask(SetInterval(ninter))?;
-        let held = self.ask(DiagRead(memory::INTERVAL))?;
-        if held != ninter {
-            let what = format!(
-                "ninter = {ninter}, but its memory contains {held}: write a whole number that it \
-                                accepts"
-            );
-            return Err(self.link.fault(FaultKind::Refused { what }));
+        self.check(memory::INTERVAL, ninter)?;
+        for (address, byte) in self.settings.gains.written() {
+            self.ask(DiagWrite { address, byte })?;
+            self.check(address, byte)?;
         }
         self.ask(Limit(limit))?;
         self.ask(ArmPower)?;
@@ -320,5 +364,15 @@ impl JointController for PumaAxis {
 
     fn amperes_per_volt(&self) -> Option<f64> {
         Some(self.settings.amperes_per_volt)
+    }
+
+    fn servo_memory(&mut self) -> Option<&mut dyn ServoMemory> {
+        Some(self)
+    }
+}
+
+impl ServoMemory for PumaAxis {
+    fn read_byte(&mut self, address: u8) -> Result<u8, Fault> {
+        self.ask(DiagRead(address))
     }
 }

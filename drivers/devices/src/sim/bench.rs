@@ -10,8 +10,8 @@ use super::port::{Line, Port, lock, serve_inside, serve_tcp};
 use super::rig::{MockInstrument, Rig, Supply};
 use super::trouble::{PlannedTrouble, Trouble};
 use crate::driver::{
-    AdamSettings, GcsSettings, LorenzSettings, OdriveSettings, PumaSettings, QsbSettings, Range, ScpiSettings,
-    Thermistor,
+    AdamSettings, GcsSettings, LorenzSettings, OdriveSettings, PumaGains, PumaSettings, QsbSettings, Range,
+    ScpiSettings, Thermistor,
 };
 use crate::instruments::{InstrumentSettings, JointSettings, TorqueSensorSettings};
 use crate::transport::{Address, PortSettings};
@@ -59,6 +59,8 @@ pub struct MockSettings {
     pub troubles: Vec<PlannedTrouble>,
     /// Beyond the joint, and the torque sensor and the brake of a bench with a load.
     pub others: Vec<MockInstrument>,
+    /// Of the Puma's servo.
+    pub gains: PumaGains,
 }
 
 impl MockSettings {
@@ -82,6 +84,7 @@ impl MockSettings {
             deadline_ms: DEADLINE_MS,
             troubles: Vec::new(),
             others,
+            gains: PumaGains::default(),
         }
     }
 
@@ -216,6 +219,7 @@ impl MockBench {
                 counts_per_turn: PUMA_COUNTS,
                 amperes_per_volt: AMPERES_PER_VOLT,
                 ninter: NINTER,
+                gains: self.settings.gains,
             }),
             _ => JointSettings::Odrive(OdriveSettings {
                 name,

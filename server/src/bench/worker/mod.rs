@@ -31,6 +31,7 @@ enum Command {
     Run { run: RunId, plan: Box<Plan>, controls: Receiver<Demand> },
     Secure,
     Reopen { wanting: Vec<String>, ticket: u64 },
+    ReadMemory { ranges: Vec<(u8, u8)>, ticket: u64 },
     Quit,
 }
 
@@ -111,6 +112,7 @@ fn obey(order: Order, desk: &Desk, presses: &PressFiles, commands: &Sender<Comma
         Order::Stored { number } => return desk.outbox.stored(number),
         Order::Storage { fault } => return desk.outbox.set_fault(fault),
         Order::Reopen { wanting, ticket } => Command::Reopen { wanting, ticket },
+        Order::ReadMemory { ranges, ticket } => Command::ReadMemory { ranges, ticket },
         Order::Quit => {
             desk.control(Control::Quit.into());
             Command::Quit

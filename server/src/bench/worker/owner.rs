@@ -5,9 +5,10 @@ use super::desk::Desk;
 use super::recorder::OutboxRecorder;
 use crate::bench::health::expected;
 use crate::bench::instruments::{Opened, open, unreached};
-use crate::bench::wire::Report;
+use crate::bench::wire::{MemoryRead, Report};
 use crate::config::BenchDescription;
 use crate::view;
+use jointbench_instrument::Fault;
 use jointbench_instrument::roles::Instrument;
 use jointbench_procedure::{Demand, Plan, RunId, Safe};
 use std::sync::Arc;
@@ -42,6 +43,10 @@ impl Owner {
                     self.let_time_pass();
                     self.reopen(&wanting);
                     self.desk.outbox.say(Report::Done { ticket });
+                }
+                Ok(Command::ReadMemory { ranges, ticket }) => {
+                    let read = self.read_memory(&ranges);
+                    self.desk.outbox.say(Report::Memory { ticket, read });
                 }
                 Ok(Command::Quit) | Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) if self.desk.outbox.fault().is_some() => self.let_time_pass(),
@@ -101,6 +106,16 @@ impl Owner {
         }
     }
 
+    /// The memory of the joint's servo. Nothing is commanded.
+    fn read_memory(&mut self, ranges: &[(u8, u8)]) -> MemoryRead {
+        let Some(bench) = &mut self.opened.bench else { return MemoryRead::Failed("the bench is not open".into()) };
+        let Some(memory) = bench.joint.servo_memory() else { return MemoryRead::None };
+        let bytes =
+            |(first, bytes): &(u8, u8)| (*first..).take(usize::from(*bytes)).map(|at| memory.read_byte(at)).collect();
+        let read: Result<Vec<Vec<u8>>, Fault> = ranges.iter().map(bytes).collect();
+        read.map_or_else(|fault| MemoryRead::Failed(fault.to_string()), MemoryRead::Read)
+    }
+
     fn run(&mut self, run: RunId, plan: &Plan, controls: &Receiver<Demand>) {
         let Opened { bench: Some(bench), mock, .. } = &mut self.opened else {
             // The lab opens a bench before it starts a run; a bench that went away in between has no instruments to move.
@@ -152,6 +167,9 @@ pub(super) fn serve_nothing(description: &BenchDescription, desk: &Desk, command
             Command::Reopen { ticket, .. } => {
                 say();
                 desk.outbox.say(Report::Done { ticket });
+            }
+            Command::ReadMemory { ticket, .. } => {
+                desk.outbox.say(Report::Memory { ticket, read: MemoryRead::Failed(why.to_owned()) });
             }
             Command::Run { run, .. } => not_begun(desk, run),
             Command::Secure => say(),

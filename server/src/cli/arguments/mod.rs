@@ -10,7 +10,7 @@ pub use columns::Columns;
 pub use kept::{Backup, Convert, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
 pub use model::{Model, ModelCommand};
 pub use place::{Place, Reach, ServedTokens};
-pub use steer::{Reset, Steer, Stop};
+pub use steer::{Reset, ServoMemory, Steer, Stop};
 
 use super::log::LogForm;
 use super::own::OwnEffects;
@@ -19,6 +19,7 @@ use super::require::Requirement;
 use clap::{Args, Parser, Subcommand};
 use jointbench_instrument::Kind;
 use std::path::PathBuf;
+use std::time::Duration;
 
 const EXAMPLES: &str = "\
 Getting started:
@@ -76,6 +77,9 @@ pub enum Command {
     Resume(Steer),
     /// Release a bench after a software stop or after a run whose safe state is not confirmed
     Reset(Reset),
+    /// Read the memory of a Puma-type servo (DIAGREAD) between runs, without motion
+    #[command(after_help = steer::MEMORY)]
+    ServoMemory(ServoMemory),
     /// List the runs of a daemon or of a folder
     Runs(Runs),
     /// Measure, diagnose and repeat on a running daemon, until no effect is missing
@@ -189,8 +193,18 @@ pub struct Run {
     /// Write a JUnit report with one test case per limit; waits for the end
     #[arg(long, value_name = "REPORT.XML")]
     pub junit: Option<PathBuf>,
+    /// Maximum time to wait for the end [s], by the clock; waits for the end. A run that takes longer is aborted, the bench
+    /// is secured, and the exit code is 1
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub timeout: Option<Duration>,
     #[command(flatten)]
     pub reach: Reach,
+}
+
+pub(super) fn seconds(text: &str) -> Result<Duration, String> {
+    let wrong = || "expected a number of seconds above 0, such as 600".to_owned();
+    let seconds = text.parse::<f64>().ok().filter(|seconds| *seconds > 0.0).ok_or_else(wrong)?;
+    Duration::try_from_secs_f64(seconds).map_err(|_| wrong())
 }
 
 const DECIDED: &str = "\

@@ -30,6 +30,35 @@ pub struct Steer {
     pub reach: Reach,
 }
 
+pub(super) const MEMORY: &str = "\
+  jointbench servo-memory                        all variables of table 2.7
+  jointbench servo-memory 0x04 --bench puma      only the velocity gain
+
+Exit codes: 0 done, 1 a run is in progress or the servo does not answer, 2 bad arguments, or the bench has no such servo.";
+
+#[derive(Debug, Args)]
+pub struct ServoMemory {
+    /// Address from 0x00 to 0x7F [default: all variables]
+    #[arg(value_parser = address)]
+    pub address: Option<u8>,
+    /// Bench of the servo; optional if the daemon has only one
+    #[arg(long, value_name = "NAME")]
+    pub bench: Option<String>,
+    /// Print the variables as JSON
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub reach: Reach,
+}
+
+fn address(text: &str) -> Result<u8, String> {
+    let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) => u8::from_str_radix(digits, 16),
+        None => text.parse(),
+    };
+    number.ok().filter(|address| *address <= 0x7F).ok_or_else(|| "expected an address from 0x00 to 0x7F".to_owned())
+}
+
 #[derive(Debug, Args)]
 pub struct Reset {
     /// Bench to release; optional if the daemon has only one

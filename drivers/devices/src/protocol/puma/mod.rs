@@ -21,13 +21,14 @@
 //! from a power-up that nobody has acknowledged (`CLEAR`).
 
 mod frame;
+pub mod memory;
 mod orders;
 mod status;
 
 pub use frame::{Numbered, Order, Reply};
 pub use orders::{
-    ArmPower, Clear, CurrentMode, DiagRead, Fact, Identify, Limit, PositionMode, ReadCurrent, ReadPosition, ReadStatus,
-    SetInterval, Stop,
+    ArmPower, Clear, CurrentMode, DiagRead, DiagWrite, Fact, Identify, Limit, PositionMode, ReadCurrent, ReadPosition,
+    ReadStatus, SetInterval, Stop,
 };
 pub use status::Status;
 
@@ -35,11 +36,3 @@ pub use status::Status;
 pub const VOLTS_PER_COUNT: f64 = 10.0 / 2048.0;
 /// The largest word of a converter.
 pub const MOST_COUNTS: i16 = 2047;
-
-/// Addresses of table 2.7.
-pub mod memory {
-    pub const PROPORTIONAL_GAIN: u8 = 0x03;
-    pub const VELOCITY_GAIN: u8 = 0x04;
-    /// Clock ticks between set-points.
-    pub const INTERVAL: u8 = 0x06;
-}

@@ -204,6 +204,28 @@ impl Order for DiagRead {
     }
 }
 
+/// Writes one byte of the memory: a gain, a tolerance band, or where no variable is.
+#[derive(Debug, Clone, Copy)]
+pub struct DiagWrite {
+    pub address: u8,
+    pub byte: u8,
+}
+
+impl Order for DiagWrite {
+    type Reply = ();
+
+    const CODE: u8 = 0x0C;
+    const NAME: &'static str = "DIAGWRITE";
+
+    fn word(&self) -> u16 {
+        u16::from_be_bytes([self.address, self.byte])
+    }
+
+    fn reply(&self, word: u16) -> Result<(), FaultKind> {
+        taken(self.word(), word)
+    }
+}
+
 /// What a servo tells of itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fact {

@@ -5,6 +5,7 @@ use std::fmt;
 const POSITION: u16 = 1 << 0;
 const CURRENT: u16 = 1 << 1;
 const ARM_POWER: u16 = 1 << 2;
+const IN_POSITION: u16 = 1 << 3;
 /// The document tells of the first three as not implemented: another revision of the program may set them.
 const ERRORS: [(u16, &str); 5] = [
     (1 << 8, "RAM error"),
@@ -22,6 +23,17 @@ impl Status {
     /// The motor may hold torque.
     pub fn is_armed(self) -> bool {
         self.0 & ARM_POWER != 0 && self.0 & (POSITION | CURRENT) != 0
+    }
+
+    /// What the servo does. In position: the set-point is reached, within the tolerance band `postol`.
+    pub fn states(self) -> Vec<&'static str> {
+        let states = [
+            (POSITION, "position mode"),
+            (CURRENT, "current mode"),
+            (ARM_POWER, "arm power"),
+            (IN_POSITION, "in position"),
+        ];
+        states.into_iter().filter(|(bit, _)| self.0 & bit != 0).map(|(_, state)| state).collect()
     }
 
     pub fn errors(self) -> Vec<String> {
@@ -46,6 +58,7 @@ mod tests {
         assert!(Status(0x00C5).is_armed() && Status(0x00C5).errors().is_empty());
         assert!(!Status(0x00C1).is_armed(), "no arm power");
         assert!(!Status(0x0004).is_armed(), "no servo");
+        assert_eq!(Status(0x000D).states(), ["position mode", "arm power", "in position"]);
         assert_eq!(Status(0x0500).errors(), ["RAM error", "lost synchronization with the encoder"]);
         assert_eq!(Status(0x8000).errors(), ["error bits 0x8000"]);
     }

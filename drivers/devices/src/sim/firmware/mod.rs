@@ -14,6 +14,8 @@ mod odrive;
 mod odrive_lines;
 mod odrive_properties;
 mod puma;
+mod puma_loop;
+mod puma_memory;
 mod puma_orders;
 mod qsb;
 mod qsb_registers;

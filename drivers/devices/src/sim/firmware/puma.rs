@@ -5,6 +5,8 @@
 //! tachometer, and the current loop in it.
 
 use super::Firmware;
+use super::puma_loop::Loop;
+use super::puma_memory::Ram;
 use crate::sim::plant::{Plant, STEP_S};
 use crate::sim::trouble::Trouble;
 use std::f64::consts::TAU;
@@ -19,8 +21,7 @@ pub const VOLTS_PER_COUNT: f64 = 10.0 / 2048.0;
 pub const MOST_COUNTS: i16 = 2047;
 /// Initial value in table 2.7.
 const INITIAL_NINTER: u8 = 0x20;
-/// Of the position loop [1/s] and of the amplifier [A·s/rad] (assumed: a velocity loop of 150 rad/s).
-const POSITION_GAIN_PER_S: f64 = 20.0;
+/// Of the amplifier [A·s/rad] (assumed: a velocity loop of 150 rad/s).
 const VELOCITY_GAIN_A_S: f64 = 0.35;
 /// The holding brake lets go, and the processor starts, after so long (assumed).
 pub const RELEASE_S: f64 = 0.2;
@@ -32,6 +33,8 @@ const OVERLOAD_S: f64 = 0.5;
 pub const POSITION: u16 = 1 << 0;
 pub const CURRENT: u16 = 1 << 1;
 const ARM_POWER: u16 = 1 << 2;
+/// Ours: within `postol` of the set-point.
+const IN_POSITION: u16 = 1 << 3;
 const NO_HOST: u16 = 1 << 11;
 const OVERLOADED: u16 = 1 << 12;
 
@@ -54,11 +57,8 @@ pub struct Puma {
     /// Where the encoder's counter stood at power-up, and the counter.
     pub zero_counts: i64,
     pub counts: i64,
-    /// The set-point on its way: target, where it is, what it moves by each tick, and ticks that are left.
-    pub target: f64,
-    pub interpolated: f64,
-    pub increment: f64,
-    pub count: u8,
+    pub axis: Loop,
+    pub ram: Ram,
     pub current_word: i16,
     pub shunt_a: f64,
     pub steps: u32,
@@ -80,10 +80,8 @@ impl Puma {
             memory_pointer: 0,
             zero_counts: 0,
             counts: 0,
-            target: 0.0,
-            interpolated: 0.0,
-            increment: 0.0,
-            count: 0,
+            axis: Loop::new(f64::from(STEPS_PER_TICK) * STEP_S),
+            ram: Ram::new(),
             current_word: 0,
             shunt_a: 0.0,
             steps: 0,
@@ -98,36 +96,24 @@ impl Puma {
         let power = if self.power == Power::On { ARM_POWER } else { 0 };
         // Bits 6 and 7 are the encoder routines' own: the quadrature state.
         let encoder = (self.counts.rem_euclid(4) as u16) << 6;
-        self.mode | power | encoder | self.errors
+        let arrived = if self.mode == POSITION && self.axis.is_in_position() { IN_POSITION } else { 0 };
+        self.mode | power | arrived | encoder | self.errors
     }
 
     pub fn hold_here(&mut self) {
-        (self.target, self.interpolated) = (self.counts as f64, self.counts as f64);
-        (self.increment, self.count) = (0.0, 0);
+        self.axis.hold(self.counts);
     }
 
     pub fn stop(&mut self) {
         (self.power, self.mode, self.current_word) = (Power::Off, 0, 0);
-    }
-
-    fn tick(&mut self) {
-        if self.count > 0 {
-            self.count -= 1;
-            self.interpolated += self.increment;
-            if self.count == 0 {
-                (self.interpolated, self.increment) = (self.target, 0.0);
-            }
-        }
+        self.axis.rest();
     }
 
     /// Motor current that the amplifier is to give.
     fn control(&self, plant: &Plant) -> f64 {
         let wanted_a = match self.mode {
             POSITION => {
-                let rad = TAU / f64::from(ENCODER_COUNTS);
-                let tick_s = f64::from(STEPS_PER_TICK) * STEP_S;
-                let behind = self.interpolated - self.counts as f64;
-                let demand_rad_s = (self.increment / tick_s + POSITION_GAIN_PER_S * behind) * rad;
+                let demand_rad_s = self.axis.force / self.axis.tick_s * TAU / f64::from(ENCODER_COUNTS);
                 VELOCITY_GAIN_A_S * (demand_rad_s - plant.motor_velocity_rad_s())
             }
             CURRENT => f64::from(self.current_word) * VOLTS_PER_COUNT * AMPERES_PER_VOLT,
@@ -163,7 +149,7 @@ impl Firmware for Puma {
         self.counts = (turns * f64::from(ENCODER_COUNTS)).floor() as i64 - self.zero_counts;
         self.steps += 1;
         if self.steps.is_multiple_of(STEPS_PER_TICK) {
-            self.tick();
+            self.axis.tick(self.counts, self.mode == POSITION);
         }
         if let Power::ReleasingUntil(until_s) = self.power
             && now_s >= until_s

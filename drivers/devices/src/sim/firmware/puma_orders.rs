@@ -2,13 +2,11 @@
 
 use super::adam::crc;
 use super::puma::{AMPERES_PER_VOLT, CURRENT, MOST_COUNTS, POSITION, Power, Puma, RELEASE_S, VOLTS_PER_COUNT};
+use super::puma_memory as memory;
 use crate::sim::plant::{Plant, Signal};
 use crate::sim::trouble::Trouble;
 
 const SHUNT_NOISE_V: f64 = 0.02;
-/// Initial values in table 2.7.
-const EINTSCL: u8 = 0x03;
-const DIVISOR: u8 = 0x6F;
 
 const UNKNOWN: u16 = 1;
 const NO_ARM_POWER: u16 = 2;
@@ -27,6 +25,8 @@ pub fn receive(servo: &mut Puma, input: &mut Vec<u8>, plant: &Plant, output: &mu
         }
         input.drain(..7);
         servo.heard_s = plant.now_s();
+        servo.ram.keep(command, u16::from_be_bytes([high, low]));
+        servo.ram.pending = u8::try_from(input.len() / 7).unwrap_or(u8::MAX);
         let (mark, word) = match execute(servo, command, u16::from_be_bytes([high, low]), plant) {
             Ok(word) => (0, word),
             Err(reason) => (0x80, reason),
@@ -60,10 +60,9 @@ fn execute(servo: &mut Puma, command: u8, word: u16, plant: &Plant) -> Result<u1
             }
             servo.mode = POSITION;
             // The word wraps where the counter goes on.
-            let here = servo.interpolated.round() as i64;
-            servo.target = (here + i64::from(signed.wrapping_sub(here as i16))) as f64;
-            servo.count = servo.ninter;
-            servo.increment = (servo.target - servo.interpolated) / f64::from(servo.ninter);
+            let here = servo.axis.interpolated.round() as i64;
+            let target = here + i64::from(signed.wrapping_sub(here as i16));
+            servo.axis.go(target as f64, servo.ninter);
         }
         0x04 if signed.unsigned_abs() > servo.limit.unsigned_abs() => return Err(OUT_OF_RANGE),
         0x04 => (servo.mode, servo.current_word) = (CURRENT, signed),
@@ -79,10 +78,16 @@ fn execute(servo: &mut Puma, command: u8, word: u16, plant: &Plant) -> Result<u1
         0x08 if !(1..=MOST_COUNTS).contains(&signed) => return Err(OUT_OF_RANGE),
         0x08 => servo.limit = signed,
         0x09 => (servo.errors, servo.fresh) = (0, false),
-        0x0A if word > 0x7F => return Err(OUT_OF_RANGE),
+        0x0A if usize::from(word) >= memory::BYTES => return Err(OUT_OF_RANGE),
         0x0A => {
             servo.memory_pointer = word as u8;
-            return Ok(word << 8 | u16::from(memory(servo, word as u8)));
+            return Ok(word << 8 | u16::from(memory::read(servo, word as u8)));
+        }
+        0x0C => {
+            let [address, byte] = word.to_be_bytes();
+            if !memory::write(servo, address, byte) {
+                return Err(OUT_OF_RANGE);
+            }
         }
         0x0B => return fact(servo, word),
         _ => return Err(UNKNOWN),
@@ -98,26 +103,5 @@ fn fact(servo: &Puma, word: u16) -> Result<u16, u16> {
         2 => Ok(1023),
         3 => Ok(12),
         _ => Err(OUT_OF_RANGE),
-    }
-}
-
-/// Table 2.7, as far as this board has it; the lowest byte of a number first, as a 6503 has it.
-fn memory(servo: &Puma, address: u8) -> u8 {
-    // 16 bits of counts behind 8 of fractions.
-    let fixed = |value: f64, byte: u8| ((value * 256.0).round() as i64 >> (8 * byte)) as u8;
-    match address {
-        0x00 => servo.status() as u8,
-        0x01 => (servo.status() >> 8) as u8,
-        0x02 => servo.memory_pointer,
-        // Proportional gain; velocity gain and output scale are 0.
-        0x03 => 0x01,
-        0x06 => servo.ninter,
-        0x07 => EINTSCL,
-        0x08 => DIVISOR,
-        0x0A..=0x0C => fixed(servo.increment, address - 0x0A),
-        0x0D..=0x0F => fixed(servo.interpolated, address - 0x0D),
-        0x50 => servo.count,
-        0x56..=0x58 => fixed(servo.counts as f64, address - 0x56),
-        _ => 0,
     }
 }

@@ -9,4 +9,5 @@ mod hmp;
 mod lorenz;
 mod odrive;
 mod puma;
+mod puma_memory;
 mod qsb;

@@ -5,25 +5,25 @@ use super::super::{Firmware, Puma};
 use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant};
 
-struct Bench {
+pub(super) struct Bench {
     servo: Puma,
     plant: Plant,
 }
 
 impl Bench {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let hidden = Hidden::draw(Joint::Puma, 1, &[]).unwrap();
         Self { servo: Puma::new(), plant: Plant::new(Joint::Puma, Load::None, 1, hidden) }
     }
 
-    fn say(&mut self, bytes: &[u8]) -> Vec<u8> {
+    pub(super) fn say(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut output = Vec::new();
         self.servo.receive(&mut bytes.to_vec(), &mut self.plant, &mut output);
         output
     }
 
     /// Command and word of the reply.
-    fn ask(&mut self, command: u8, word: i16) -> (u8, i16) {
+    pub(super) fn ask(&mut self, command: u8, word: i16) -> (u8, i16) {
         let [high, low] = word.to_be_bytes();
         let [crc_low, crc_high] = crc(&[9, command, high, low]).to_le_bytes();
         let reply = self.say(&[0xA5, 9, command, high, low, crc_low, crc_high]);
@@ -33,7 +33,7 @@ impl Bench {
     }
 
     /// Time passes, and somebody looks now and then.
-    fn wait(&mut self, seconds: f64) {
+    pub(super) fn wait(&mut self, seconds: f64) {
         let until_s = self.plant.now_s() + seconds;
         while self.plant.now_s() < until_s - 1e-9 {
             if (self.plant.now_s() / 0.1).fract() < 1e-3 {

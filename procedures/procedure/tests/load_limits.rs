@@ -1,0 +1,69 @@
+//! The second brake loads a joint beyond its limits: a refused plan names the load that does not.
+
+use jointbench_devices::sim::Load;
+use jointbench_devices::{Joint, MockBench, MockSettings};
+use jointbench_instrument::Bench;
+use jointbench_procedure::conduct::conduct;
+use jointbench_procedure::{BenchFacts, Plan, procedure};
+use serde_json::json;
+
+fn behind_the_gear() -> (MockBench, Bench) {
+    let settings = MockSettings { load: Load::GearAndBrakeB, ..MockSettings::new(Joint::JointA, 1) };
+    let mock = MockBench::start(settings).expect("a mock bench");
+    let bench = mock.open_bench("mock").expect("its instruments answer");
+    (mock, bench)
+}
+
+/// What stands in the way of a plan.
+fn refusal(plan: &Plan, bench: &BenchFacts) -> Option<String> {
+    plan.preview(bench).checks.into_iter().find(|check| !check.ok).map(|check| check.refusal())
+}
+
+/// The load that the refusal of a plan with its defaults names.
+fn named(id: &str, name: &str, bench: &BenchFacts) -> f64 {
+    let plan = procedure(id).expect("a procedure").plan(&Default::default(), bench).expect("a plan");
+    let said = refusal(&plan, bench).unwrap_or_else(|| panic!("{id} is allowed with its defaults"));
+    let share = said.split(&format!("set {name} = ")).nth(1).and_then(|rest| rest.split(' ').next());
+    share.and_then(|share| share.parse().ok()).unwrap_or_else(|| panic!("{id}: {said}"))
+}
+
+#[test]
+fn a_refused_load_comes_with_one_that_leaves_room_for_friction() {
+    let (_mock, bench) = behind_the_gear();
+    let facts = BenchFacts::of(&bench);
+    for (id, name) in [
+        ("stiffness", "top_load"),
+        ("friction", "top_load"),
+        ("brake_speed_independence", "top_current"),
+        ("brake_hysteresis", "top_current"),
+    ] {
+        let share = named(id, name, &facts);
+        let current = |share: f64| {
+            let choices = json!({ name: share });
+            let plan = procedure(id).unwrap().plan(choices.as_object().unwrap(), &facts).expect("a plan");
+            assert!(share > named(id, name, &facts) || refusal(&plan, &facts).is_none(), "{id} at {share}");
+            let extremes = plan.extremes(&facts);
+            let current = extremes.iter().find(|one| one.quantity.starts_with("motor current")).expect("a current");
+            current.value / current.limit.expect("a limit")
+        };
+        assert!(current(share) <= 0.9 && current(share + 0.01) > 0.9, "{id}: {share}");
+    }
+}
+
+#[test]
+fn a_run_with_the_named_load_keeps_the_limits() {
+    let (_mock, mut bench) = behind_the_gear();
+    let share = named("brake_speed_independence", "top_current", &BenchFacts::of(&bench));
+    let choices = json!({ "top_current": share });
+    let run = conduct(&mut bench, procedure("brake_speed_independence").unwrap(), choices.as_object().unwrap());
+    assert!(run.is_ok(), "{:?}", run.err());
+}
+
+#[test]
+fn where_no_load_is_within_the_limits_none_is_named() {
+    let (_mock, bench) = behind_the_gear();
+    let (facts, fast) = (BenchFacts::of(&bench), json!({"speed_rad_s": 19.0}));
+    let plan = procedure("stiffness").unwrap().plan(fast.as_object().unwrap(), &facts).expect("a plan");
+    let said = refusal(&plan, &facts).expect("too fast");
+    assert!(said.contains("reduce speed or load"), "{said}");
+}
