@@ -95,7 +95,7 @@ impl<'p> Search<'_, 'p> {
             for e in in_turn(&passing) {
                 let effects = now.effects.iter().cloned().chain([e.id().to_owned()]).collect();
                 let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
-                if follows(now, &solution, &after) && impossible(&after.main) <= impossible(&now.main) {
+                if follows(now, &solution, &after) {
                     named = Some((e, after));
                     break;
                 }
@@ -122,13 +122,13 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// In the place of the added effect it predicts held-out blocks as well, with coefficients that are as possible.
+    /// Whether it predicts left-out blocks as well in the place of the added effect.
     fn fits_alike(&self, rival: &str, after: &TwoStageModel<'p>) -> Result<bool, ModelError> {
         let effects = self.path.end().effects.iter().cloned().chain([rival.to_owned()]).collect();
         let other = TwoStageModel::decided(self.prepared, self.spec, effects)?;
         let losses = |model: &LinearModel| Solution::of(model).map(|solution| solution.validation_losses(model));
         Ok(match (losses(&after.main), losses(&other.main)) {
-            (Some(best), Some(losses)) => is_tie(&best, &losses) && impossible(&other.main) <= impossible(&after.main),
+            (Some(best), Some(losses)) => is_tie(&best, &losses),
             _ => true,
         })
     }
@@ -207,16 +207,20 @@ fn candidates<'l, 'p>(
         Some(form_error) => form_error.turn_s.iter().map(|turn_s| *turn_s < form_error.near_s).collect(),
         None => Vec::new(),
     };
+    // Without its form error in the base a candidate explains that error too.
+    let at_reversals = |found: Evidence<'l, 'p>| Evidence { shows_outside: false, ..found };
     let regime = |regime: Regime| move |c: &Regressor| c.effect.regime() == regime;
     let (mut all, mut hidden) = evidence(&solution.ridge, &of(&regime(Regime::SteadyState)), &near, forms);
     // A candidate is judged without the form-error columns that represent the same effect.
     let delays = of(&|c| c.id() == DELAY);
     if !delays.is_empty() && is_delayed(now, solution) {
-        all.extend(evidence(&without(&now.main, solution, Lives::Jerk), &delays, &near, forms).0);
+        let (found, _) = evidence(&without(&now.main, solution, Lives::Jerk), &delays, &near, forms);
+        all.extend(found.into_iter().map(at_reversals));
     }
     let presliding_candidates = of(&regime(Regime::Hysteresis));
     if !presliding_candidates.is_empty() {
-        all.extend(evidence(&without(&now.main, solution, Lives::Bristle), &presliding_candidates, &near, forms).0);
+        let (found, _) = evidence(&without(&now.main, solution, Lives::Bristle), &presliding_candidates, &near, forms);
+        all.extend(found.into_iter().map(at_reversals));
     }
     let inertia = of(&|c| c.effect.regime() == Regime::Transient && c.id() != DELAY);
     let (visible, imitated) = evidence(&solution.ridge, &inertia, &near, forms);
@@ -243,15 +247,6 @@ fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> b
     std::ptr::eq(now.main.problem, after.main.problem)
         || Solution::weighted(&after.main, form_error, solution.weight.clone(), None).ridge.loss()
             < FLOOR_RATIO.powi(2) * solution.ridge.loss()
-}
-
-/// Number of coefficients that are significantly beyond their physical bounds.
-fn impossible(model: &LinearModel) -> usize {
-    let Some(solution) = Solution::of(model) else { return 0 };
-    let least =
-        |term: &Term| term.form.linear.iter().map(|name| term.effect.info().bounds(name).0).collect::<Vec<f64>>();
-    let coefficients = model.terms.iter().flat_map(least).zip(&solution.coefficients);
-    coefficients.filter(|(least, coefficient)| **coefficient < *least).count()
 }
 
 /// Candidates by decreasing error reduction; those that tie with the first one by increasing p-value.

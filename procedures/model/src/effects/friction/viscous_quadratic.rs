@@ -11,12 +11,13 @@ static INFO: EffectInfo = EffectInfo {
     id: "viscous_quadratic",
     kind: Kind::Friction,
     title: "Quadratic drag",
-    sentence: "Drag grows with the square of speed, as in churning oil or windage.",
+    sentence: "Drag has a part with the square of speed. A positive coefficient is typical of churning oil and windage; a \
+               negative one means that drag grows less than in proportion to speed.",
     formula: "c_2·ω·|ω|, or c_2a·ω² if it differs between the directions",
     source: "Armstrong-Hélouvry, Dupont, Canudas de Wit 1994",
     looks: "a curve over speed, sign changes with the direction, steepest at top speed",
     parameters: &[
-        parameter("c_2", "Nm·s²/rad²", 0.0, f64::INFINITY),
+        parameter("c_2", "Nm·s²/rad²", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c_2a", "Nm·s²/rad²", f64::NEG_INFINITY, f64::INFINITY),
     ],
     needs: &[],
