@@ -4,6 +4,9 @@ import { chromium } from 'playwright-core';
 
 const KNOWN = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 
+/** How long the walk waits for what has to come: a page, an answer, a commit of the daemon on a busy machine. */
+export const PATIENCE_MS = 60_000;
+
 export class Failed extends Error {}
 
 export function expect(truth, message) {

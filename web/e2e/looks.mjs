@@ -1,11 +1,9 @@
 // What the pages say and show apart from the walk's own path.
 import { readFileSync } from 'node:fs';
 import { audit } from './audit.mjs';
-import { expect } from './browser.mjs';
+import { expect, PATIENCE_MS } from './browser.mjs';
 import { dropFiles } from './files.mjs';
 import { jumpsOf, makeRun, readVersion } from './steps.mjs';
-
-const PATIENCE_MS = 60_000;
 
 /** Whether what a press has made is on the screen, and has the focus. */
 export async function inView(locator, what) {
@@ -14,7 +12,7 @@ export async function inView(locator, what) {
 		const { top } = node.getBoundingClientRect();
 		return { onScreen: top >= 0 && top < innerHeight * 0.7, focused: document.activeElement === node };
 	});
-	const until = Date.now() + 5000;
+	const until = Date.now() + PATIENCE_MS;
 	let found = await seen();
 	while (!(found.onScreen && found.focused) && Date.now() < until) {
 		await new Promise((ok) => setTimeout(ok, 100));
@@ -38,41 +36,42 @@ export async function zoomWhileFollowing(page, base) {
 	await audit(page, 'the run that is on');
 	await plot.hover();
 	await page.mouse.wheel(0, -300);
-	await page.waitForURL(/view=follow:[\d.]+/, { timeout: 10_000 }).catch(() => expect(false, `a zoom ends the following: ${page.url()}`));
+	await page.waitForURL(/view=follow:[\d.]+/, { timeout: PATIENCE_MS }).catch(() => expect(false, `a zoom ends the following: ${page.url()}`));
 	expect(Number(/view=follow:([\d.]+)/.exec(page.url())[1]) < 10, `the wheel does not shorten the stretch: ${page.url()}`);
 	const picture = () => page.locator('main figure canvas').first().evaluate((canvas) => canvas.toDataURL());
 	const before = await picture();
-	const until = Date.now() + 5000;
+	const until = Date.now() + PATIENCE_MS;
 	while ((await picture()) === before && Date.now() < until) await page.waitForTimeout(100);
 	expect((await picture()) !== before, 'the plot stands still after a zoom, although the run goes on');
 	await page.keyboard.press('Space');
-	await page.waitForURL(/view=-?[\d.]+:[\d.]+/, { timeout: 5000 }).catch(() => expect(false, `Space does not freeze the plots: ${page.url()}`));
+	await page.waitForURL(/view=-?[\d.]+:[\d.]+/, { timeout: PATIENCE_MS }).catch(() => expect(false, `Space does not freeze the plots: ${page.url()}`));
 	await page.keyboard.press('Space');
-	await page.waitForURL(/view=follow:/, { timeout: 5000 }).catch(() => expect(false, `Space does not go on: ${page.url()}`));
+	await page.waitForURL(/view=follow:/, { timeout: PATIENCE_MS }).catch(() => expect(false, `Space does not go on: ${page.url()}`));
 	const focused = await page.evaluateHandle(() => document.activeElement);
 	await page.keyboard.press('n');
 	await page.keyboard.type('walked by');
 	await page.keyboard.press('Enter');
-	await page.locator('li', { hasText: 'walked by' }).waitFor({ timeout: 5000 }).catch(() => expect(false, 'Enter does not keep a note'));
+	// The note is shown when it is durable; that takes as long as the disk does.
+	await page.locator('li', { hasText: 'walked by' }).waitFor({ timeout: PATIENCE_MS }).catch(async () => expect(false, `Enter does not keep a note: ${await page.getByRole('form', { name: 'Note' }).locator('xpath=../..').innerText()}`));
 	// Back where it came from, or at the notes where it came from nowhere.
 	const returned = (from) => document.activeElement === (from === document.body ? document.querySelector('ol[aria-label=Notes]') : from);
-	await page.waitForFunction(returned, focused, { timeout: 5000 }).catch(() => expect(false, 'Enter in a note loses the focus'));
+	await page.waitForFunction(returned, focused, { timeout: PATIENCE_MS }).catch(() => expect(false, 'Enter in a note loses the focus'));
 	const box = await plot.boundingBox();
 	const followed = page.url();
 	await page.mouse.move(box.x + box.width * 0.3, box.y + 50);
 	await page.mouse.down();
 	await page.mouse.move(box.x + box.width * 0.7, box.y + 50, { steps: 4 });
 	await page.mouse.up();
-	await page.waitForURL(/view=-?[\d.]+:/, { timeout: 5000 }).catch(() => expect(false, 'a drag chooses no stretch'));
+	await page.waitForURL(/view=-?[\d.]+:/, { timeout: PATIENCE_MS }).catch(() => expect(false, 'a drag chooses no stretch'));
 	await plot.dblclick();
-	await page.waitForURL(followed, { timeout: 5000 }).catch(() => expect(false, `one double click does not go back to what was followed: ${page.url()}`));
+	await page.waitForURL(followed, { timeout: PATIENCE_MS }).catch(() => expect(false, `one double click does not go back to what was followed: ${page.url()}`));
 	await page.keyboard.press('0');
-	await page.waitForURL(/view=all/, { timeout: 5000 });
+	await page.waitForURL(/view=all/, { timeout: PATIENCE_MS });
 	const all = await picture();
-	await page.waitForFunction((before) => document.querySelector('main figure canvas').toDataURL() !== before, all, { timeout: 5000 }).catch(() => expect(false, 'all of a run that is on does not grow'));
+	await page.waitForFunction((before) => document.querySelector('main figure canvas').toDataURL() !== before, all, { timeout: PATIENCE_MS }).catch(() => expect(false, 'all of a run that is on does not grow'));
 	await page.goto(`${base}/?bench=${bench}`);
 	const health = page.locator('section', { has: page.getByRole('heading', { name: 'Channel health' }) });
-	await health.locator('tbody tr', { hasText: 'motor velocity' }).waitFor({ timeout: 10_000 }).catch(() => expect(false, 'the channels of a run that is on are not told'));
+	await health.locator('tbody tr', { hasText: 'motor velocity' }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the channels of a run that is on are not told'));
 	await page.goto(`${base}/runs/${id}`);
 	for (const name of [/^Abort/, 'Yes, abort']) await page.getByRole('button', { name }).press('Enter');
 	await page.locator('h1:focus').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the end of a run that is aborted loses the focus'));
@@ -83,16 +82,16 @@ export async function byKeyboard(page) {
 	const plot = page.locator('section', { has: page.getByRole('heading', { name: 'Measured against model' }) }).locator('.uplot').first();
 	await plot.focus();
 	await page.keyboard.press('+');
-	await page.waitForURL(/zoom=/, { timeout: 5000 }).catch(() => expect(false, 'a plot cannot be zoomed by keyboard'));
+	await page.waitForURL(/zoom=/, { timeout: PATIENCE_MS }).catch(() => expect(false, 'a plot cannot be zoomed by keyboard'));
 	await page.keyboard.press('ArrowRight');
 	await page.keyboard.press('Home');
-	await page.waitForURL((url) => !url.searchParams.has('zoom'), { timeout: 5000 }).catch(() => expect(false, 'Home does not show all'));
+	await page.waitForURL((url) => !url.searchParams.has('zoom'), { timeout: PATIENCE_MS }).catch(() => expect(false, 'Home does not show all'));
 	const map = page.getByRole('application');
 	await map.focus();
 	for (const key of ['ArrowRight', 'ArrowRight', 'ArrowUp', 'Shift+ArrowUp']) await page.keyboard.press(key);
 	const said = await page.locator('output', { hasText: 'n = ' }).or(page.locator('output', { hasText: 'never visited' })).first().innerText();
 	await page.keyboard.press('Enter');
-	await page.waitForURL((url) => url.searchParams.get('region')?.split(',').length === 2, { timeout: 5000 }).catch(() => expect(false, 'no cell can be chosen by keyboard'));
+	await page.waitForURL((url) => url.searchParams.get('region')?.split(',').length === 2, { timeout: PATIENCE_MS }).catch(() => expect(false, 'no cell can be chosen by keyboard'));
 	await page.keyboard.press('c');
 	return said;
 }
@@ -131,7 +130,7 @@ export async function showEarlier(page, base) {
 	const first = page.getByRole('cell', { name: '#1', exact: true }).first();
 	expect(!(await first.isVisible()), 'the log begins with more than the newest runs');
 	for (let pages = 0; pages < 40 && !(await first.isVisible()); pages++) {
-		await page.getByRole('button', { name: 'Show earlier' }).click({ timeout: 5000 });
+		await page.getByRole('button', { name: 'Show earlier' }).click({ timeout: PATIENCE_MS });
 		await first.waitFor({ timeout: 1000 }).catch(() => {});
 	}
 	expect(await first.isVisible(), 'the log does not go back to the first run');
@@ -218,7 +217,7 @@ export async function keepView(page, base, run) {
 	await page.goto(`${base}/runs?base=none`);
 	await page.getByLabel('Export, views and columns').click();
 	await page.getByRole('button', { name: `Show state:done · by error, largest first · against #${run}` }).click();
-	await page.waitForURL((url) => url.searchParams.get('sort') === '-error' && url.searchParams.get('base') === String(run) && url.searchParams.get('search') === 'state:done', { timeout: 5000 }).catch(() => expect(false, `a kept view is not the view that was kept: ${page.url()}`));
+	await page.waitForURL((url) => url.searchParams.get('sort') === '-error' && url.searchParams.get('base') === String(run) && url.searchParams.get('search') === 'state:done', { timeout: PATIENCE_MS }).catch(() => expect(false, `a kept view is not the view that was kept: ${page.url()}`));
 	await page.getByRole('button', { name: 'Forget this view' }).click();
 	await page.getByRole('button', { name: `Base: hold the others against run ${run}` }).click();
 	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ state: 'detached', timeout: PATIENCE_MS });
@@ -229,7 +228,7 @@ export async function keepView(page, base, run) {
 		await page.keyboard.press('Enter');
 	}
 	await page.setViewportSize({ width: 1440, height: 900 });
-	for (const said of [page.getByRole('link', { name: 'golden' }), page.getByText('walked on it')]) await said.first().waitFor({ timeout: 5000 }).catch(() => expect(false, 'a tag or a note that is written in the list is not kept'));
+	for (const said of [page.getByRole('link', { name: 'golden' }), page.getByText('walked on it')]) await said.first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'a tag or a note that is written in the list is not kept'));
 }
 
 /** Results in the form that their people expect, each from a run that is short: what is shown of each. */
@@ -245,7 +244,7 @@ export async function readResults(page, base, asked) {
 		expect(figures.some((figure) => title.test(figure)), `${procedure} shows ${figures.join(', ')}, and not ${title}`);
 		await audit(page, `the result of ${procedure}`);
 		await page.setViewportSize({ width: 420, height: 900 });
-		await page.waitForFunction(() => document.documentElement.scrollWidth <= innerWidth, null, { timeout: 5000 }).catch(() => expect(false, `the result of ${procedure} is too wide for a page of 420 px`));
+		await page.waitForFunction(() => document.documentElement.scrollWidth <= innerWidth, null, { timeout: PATIENCE_MS }).catch(() => expect(false, `the result of ${procedure} is too wide for a page of 420 px`));
 		await page.setViewportSize({ width: 1440, height: 900 });
 		shown.push(procedure);
 		runs.push({ procedure, run });

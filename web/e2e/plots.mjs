@@ -1,8 +1,7 @@
 // What can be done with plots: hide a channel, go to a step, compute, draw one channel over another, follow a figure over runs.
 import { audit } from './audit.mjs';
-import { expect } from './browser.mjs';
+import { expect, PATIENCE_MS } from './browser.mjs';
 
-const PATIENCE_MS = 60_000;
 const pictureOf = (plot) => plot.locator('canvas').first().evaluate((canvas) => canvas.toDataURL());
 
 /** Hides a channel by its entry in the legend, and shows it again; the address keeps it. */
@@ -13,15 +12,15 @@ export async function hideChannel(page) {
 	const before = await pictureOf(plot);
 	const entry = plot.getByRole('button', { name: /set ?point/ }).first();
 	await entry.click();
-	await page.waitForURL(/off=/, { timeout: 5000 }).catch(() => expect(false, 'the address does not keep what is hidden'));
+	await page.waitForURL(/off=/, { timeout: PATIENCE_MS }).catch(() => expect(false, 'the address does not keep what is hidden'));
 	expect((await entry.getAttribute('aria-pressed')) === 'false' && (await pictureOf(plot)) !== before, 'the legend does not hide a line');
 	await entry.press('Enter');
-	await page.waitForURL((url) => !url.searchParams.has('off'), { timeout: 5000 }).catch(() => expect(false, 'the legend does not show a line again by key'));
+	await page.waitForURL((url) => !url.searchParams.has('off'), { timeout: PATIENCE_MS }).catch(() => expect(false, 'the legend does not show a line again by key'));
 	const figure = page.locator('[data-figure]', { has: page.getByRole('button', { pressed: true }) }).first();
 	const drawn = () => figure.locator('svg path').count();
 	const paths = await drawn();
 	await figure.getByRole('button', { pressed: true }).first().click();
-	await figure.getByRole('button', { pressed: false }).waitFor({ timeout: 5000 });
+	await figure.getByRole('button', { pressed: false }).waitFor({ timeout: PATIENCE_MS });
 	expect((await drawn()) < paths, 'the legend of a result figure hides nothing');
 	await figure.getByRole('button', { pressed: false }).first().press('Enter');
 }
@@ -31,12 +30,12 @@ export async function goToTimes(page) {
 	const viewOf = () => new URL(page.url()).searchParams.get('view');
 	const step = page.getByRole('list', { name: 'Steps of the run' }).getByRole('button').nth(1);
 	await step.click({ timeout: PATIENCE_MS });
-	await page.waitForURL(/view=-?[\d.]+:/, { timeout: 5000 }).catch(() => expect(false, 'a step does not lead to its time'));
+	await page.waitForURL(/view=-?[\d.]+:/, { timeout: PATIENCE_MS }).catch(() => expect(false, 'a step does not lead to its time'));
 	const atStep = viewOf();
 	await page.getByRole('list', { name: 'Journal' }).getByRole('button').first().click();
-	await page.waitForURL((url) => url.searchParams.get('view') !== atStep, { timeout: 5000 }).catch(() => expect(false, 'an entry of the journal does not lead to its time'));
+	await page.waitForURL((url) => url.searchParams.get('view') !== atStep, { timeout: PATIENCE_MS }).catch(() => expect(false, 'an entry of the journal does not lead to its time'));
 	await page.keyboard.press('0');
-	await page.waitForURL((url) => !url.searchParams.has('view'), { timeout: 5000 });
+	await page.waitForURL((url) => !url.searchParams.has('view'), { timeout: PATIENCE_MS });
 }
 
 /** Computes a channel by a formula (once with a mistake), draws one channel over another, and a spectrum; a fresh page finds all of it behind the address. */
@@ -70,7 +69,7 @@ export async function analyse(page) {
 export async function compareChannels(page) {
 	const channels = page.getByRole('list', { name: 'Channels' });
 	await channels.getByLabel('motor velocity').check({ timeout: PATIENCE_MS });
-	await page.waitForURL(/channel=[^&]*,motor_velocity_rad_s/, { timeout: 5000 }).catch(() => expect(false, `the address does not keep both channels: ${page.url()}`));
+	await page.waitForURL(/channel=[^&]*,motor_velocity_rad_s/, { timeout: PATIENCE_MS }).catch(() => expect(false, `the address does not keep both channels: ${page.url()}`));
 	await page.locator('#compare .uplot').nth(1).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the second channel is not drawn'));
 	await channels.getByLabel('motor velocity').uncheck();
 }
@@ -98,7 +97,7 @@ export async function shadeMap(page) {
 	const before = await fills();
 	await section.getByLabel(/^colour/).selectOption('value');
 	await section.getByLabel(/^scale/).selectOption('linear');
-	await page.waitForURL(/shade=value-linear/, { timeout: 5000 }).catch(() => expect(false, 'the address does not keep the colours of the map'));
+	await page.waitForURL(/shade=value-linear/, { timeout: PATIENCE_MS }).catch(() => expect(false, 'the address does not keep the colours of the map'));
 	expect((await fills()) !== before, 'the colours of the map do not change with their scale');
 	await section.getByLabel(/^colour/).selectOption('errors');
 	await section.getByLabel(/^scale/).selectOption('log');

@@ -1,8 +1,6 @@
 // What a person sets: who may come in, and whose result the next runs use.
 import { audit } from './audit.mjs';
-import { expect } from './browser.mjs';
-
-const PATIENCE_MS = 30_000;
+import { expect, PATIENCE_MS } from './browser.mjs';
 
 /** Makes a token for a screen that only looks; a page that comes in with it starts nothing, and is cut off when it is revoked. */
 export async function makeAndRevoke(page, another, base) {

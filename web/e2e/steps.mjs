@@ -1,5 +1,5 @@
 // What a person does on the pages, for the walk and for the pictures.
-import { expect } from './browser.mjs';
+import { expect, PATIENCE_MS } from './browser.mjs';
 import { dropFiles, FOREIGN } from './files.mjs';
 import { inView } from './looks.mjs';
 import { lineTo } from './line.mjs';
@@ -75,10 +75,10 @@ export async function zoomAlone(page) {
 	await page.waitForURL(/own=/);
 	await plot.locator('.u-over').hover();
 	await page.mouse.wheel(0, -300);
-	await page.waitForURL(/own=[^&]*:[\d.]+:[\d.]+/, { timeout: 10_000 }).catch(() => expect(false, `the wheel does not zoom the plot: ${page.url()}`));
+	await page.waitForURL(/own=[^&]*:[\d.]+:[\d.]+/, { timeout: PATIENCE_MS }).catch(() => expect(false, `the wheel does not zoom the plot: ${page.url()}`));
 	expect(!/view=/.test(page.url()), `the other plots are zoomed with it: ${page.url()}`);
 	await plot.locator('.u-over').dblclick();
-	await page.waitForURL(/own=[^&]*:all/, { timeout: 10_000 }).catch(() => expect(false, `a double click does not step back: ${page.url()}`));
+	await page.waitForURL(/own=[^&]*:all/, { timeout: PATIENCE_MS }).catch(() => expect(false, `a double click does not step back: ${page.url()}`));
 }
 
 /** Reads the result on a run's page, by keyboard alone: its first figure as a table, and back. Says the verdict and how many numbers the table has. */

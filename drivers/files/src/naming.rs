@@ -110,6 +110,12 @@ pub fn is_time(quantity: &str) -> bool {
     TIMES.contains(&quantity)
 }
 
+/// Whether a column with this name holds the time.
+pub fn names_time(name: &str) -> bool {
+    let quantity = snake(parted(name).0);
+    is_time(&quantity) || quantity == "time_s"
+}
+
 /// The columns that the models of a kind know.
 pub fn known(kind: Kind) -> impl Iterator<Item = &'static str> {
     kind.required_columns().iter().chain(kind.optional_columns()).copied()

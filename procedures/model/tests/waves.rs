@@ -42,6 +42,8 @@ fn small_waves_are_found_next_to_a_large_eccentricity() {
     effects.sort();
     assert_eq!(effects, ["delay", "direction_hysteresis", "harmonic_1", "offset", "pole_period"]);
     assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+    let pole_pairs = found.fit.parameters.iter().find(|p| p.name == "pole_pairs").map(|p| p.value);
+    assert_eq!(pole_pairs, Some(64.0), "one wave is the fundamental, not the second harmonic of 32");
     // Every detection limit states its search range.
     let sought = |effect: &str| found.silent.iter().find(|s| s.effect == effect).unwrap().sought.clone();
     assert_eq!((sought("harmonic_n").as_deref(), sought("harmonic_2")), (Some("3 to 15 waves a turn"), None));

@@ -73,8 +73,8 @@ async fn show(lab: &Lab, hidden: &Hidden) -> Result<i64, Exit> {
     println!("   {}", ending(&run));
 
     println!();
-    println!("2  Fit the baseline, diagnose it, add missing effects");
-    let improved = improve(lab, &run).await?;
+    println!("2  Fit the initial model, diagnose it, add missing effects");
+    let improved = improve(lab, &run, hidden.setup.known).await?;
 
     println!();
     println!("3  Validation error");
@@ -110,10 +110,13 @@ async fn measure(lab: &Lab, &Setup { bench, procedure, .. }: &Setup) -> Result<R
     }
 }
 
-/// Baseline, diagnosis, best effect, again: through the same calls as the dashboard.
-async fn improve(lab: &Lab, run: &Run) -> Result<Improved, Exit> {
+/// Initial model (the baseline and the `known` effects), diagnosis, best effect, again: through the same calls as the
+/// dashboard.
+async fn improve(lab: &Lab, run: &Run, known: &[&str]) -> Result<Improved, Exit> {
     let meta: jointbench_instrument::Meta = reread(&run.meta)?;
-    let mut versions = vec![lab.create_model(&[run.summary.id], &meta.baseline, None, None, false, LOCAL).await?];
+    let initial: Vec<String> = meta.baseline.into_iter().chain(known.iter().map(|id| (*id).to_owned())).collect();
+    let mut versions = vec![lab.create_model(&[run.summary.id], &initial, None, None, false, LOCAL).await?];
+    let mut confounded = Vec::new();
     loop {
         let model = &versions[versions.len() - 1];
         let diagnosis = lab.diagnose(model.id).await?.finding;
@@ -127,8 +130,9 @@ async fn improve(lab: &Lab, run: &Run) -> Result<Improved, Exit> {
         let best = diagnosis.suggestions.iter().find(worth).filter(|_| versions.len() <= MOST_EFFECTS);
         let Some(best) = best else {
             let without_weight = diagnosis.suggestions.into_iter().map(|suggestion| suggestion.effect).collect();
-            return Ok(Improved { versions, without_weight });
+            return Ok(Improved { versions, without_weight, confounded });
         };
+        confounded.extend(best.confounded_with.iter().map(|with| (best.effect.clone(), with.clone())));
         println!();
         println!("   → add {} and refit", best.effect);
         let effects: Vec<String> = model.effects.iter().cloned().chain([best.effect.clone()]).collect();
@@ -141,13 +145,15 @@ struct Improved {
     versions: Vec<Model>,
     /// Seen, but where the error on settled motion does not look.
     without_weight: Vec<String>,
+    /// Added effects, each with one that the run cannot distinguish from it.
+    confounded: Vec<(String, String)>,
 }
 
 fn report(versions: &[Model]) {
     let steps: Vec<(String, f64)> = versions
         .iter()
         .map(|model| match model.parent {
-            None => ("baseline".to_owned(), model.validation_rms),
+            None => ("initial model".to_owned(), model.validation_rms),
             Some(_) => (format!("+ {}", model.added.join(", ")), model.validation_rms),
         })
         .collect();
@@ -164,6 +170,9 @@ fn conclude(improved: &Improved, hidden: &Hidden) {
         added => format!("Missing effect found: {}", added.join(", ")),
     };
     println!("{found}. Hidden effect: {}.", hidden.effect);
+    if let Some((added, hidden)) = improved.confounded.iter().find(|(_, with)| with == hidden.effect) {
+        println!("This run cannot distinguish {added} from {hidden}.");
+    }
     if !improved.without_weight.is_empty() {
         let seen = improved.without_weight.join(", ");
         println!("Also detected: {seen}, without influence on the steady-state error.");

@@ -71,6 +71,14 @@ pub struct Has {
 }
 
 impl BenchDescription {
+    /// Whether its clock is that of the wall: instruments, or a simulation that keeps their pace.
+    pub fn is_real_time(&self) -> bool {
+        match &self.source {
+            Source::Mock(settings) => settings.pace.is_some_and(|pace| pace <= 1.0),
+            Source::Hardware(_) => true,
+        }
+    }
+
     /// A mock bench with the constants and limits of its joint's data sheet.
     pub fn mock(name: &str, settings: MockSettings) -> Self {
         let (joint, load): (Joint, Load) = (settings.joint, settings.load);

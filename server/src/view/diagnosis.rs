@@ -136,6 +136,9 @@ pub struct Suggestion {
     pub effect: String,
     /// With the effect added.
     pub validation_rms: f64,
+    /// RMS error of the effects alone on the fitted data; absent for a fit without nuisance terms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effects_rms: Option<f64>,
     /// Relative reduction of the validation error by this effect alone.
     pub error_reduction: f64,
     /// From the scatter over the validation data; absent for an effect that acts outside the data of the RMS.

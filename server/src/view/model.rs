@@ -136,6 +136,10 @@ pub struct Fit {
     pub rms: f64,
     /// Validation error (cross-validated RMS).
     pub validation_rms: f64,
+    /// RMS error of the effects alone on the fitted data, as an exported model predicts; absent for a fit without
+    /// nuisance terms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effects_rms: Option<f64>,
     pub unit: String,
     pub residual: ResidualKind,
     /// ‖residual‖ / ‖measured‖.

@@ -150,6 +150,9 @@ pub struct NewEvaluation {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Evaluation {
     pub rms: f64,
+    /// RMS error of the effects alone; absent for a fit without nuisance terms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effects_rms: Option<f64>,
     pub unit: String,
     pub residual: ResidualKind,
     /// ‖residual‖ / ‖measured‖.

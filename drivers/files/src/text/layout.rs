@@ -7,7 +7,9 @@
 use super::cell::{self, Decimal};
 use super::line::{Holds, Line, SEPARATORS, Separator, cells, holds, is_comment, lines, uncommented};
 use super::stamp::{self, Stamp};
+use crate::naming::names_time;
 use crate::unit::{Unit, is_unit_word};
+use std::collections::HashSet;
 
 /// Lines that are looked at; a logger's preface has fewer.
 const LOOKED_AT: usize = 400;
@@ -99,6 +101,8 @@ struct Survey {
     held: Vec<Vec<Holds>>,
     /// Cells of most lines that hold numbers.
     width: usize,
+    /// The first column holds the labels of a block of lines and is empty beside the rows.
+    has_empty_side: bool,
     score: f64,
 }
 
@@ -125,7 +129,8 @@ impl Survey {
             let width = rows.first().map_or(0, Vec::len);
             (width, if width > 1 { 1e-3 * width as f64 } else { 0.0 })
         });
-        Survey { separator, rows, held, width, score }
+        let has_empty_side = has_empty_side(&held, width);
+        Survey { separator, rows, held, width, has_empty_side, score }
     }
 
     fn layout(&self, lines: &[Line<'_>], end: usize, decimal: Option<Decimal>, stated: usize) -> Layout {
@@ -167,16 +172,10 @@ impl Survey {
         (0..self.width).map(|i| 2 * rows.iter().filter(|held| tells(&held[i])).count() > rows.len()).collect()
     }
 
-    /// Nothing stands in the first column of most lines that hold numbers.
-    fn has_empty_side(&self) -> bool {
-        let rows = || self.held.iter().filter(|held| held.len() == self.width && held.contains(&Holds::Number));
-        2 * rows().filter(|held| held[0] == Holds::Nothing).count() > rows().count()
-    }
-
     /// The first of the lines with which the rows begin; behind the last line where there are none.
     fn begin(&self) -> usize {
         let usual = self.usual();
-        let is_labelled = |held: &Vec<Holds>| self.has_empty_side() && held[0] == Holds::Words;
+        let is_labelled = |held: &Vec<Holds>| self.has_empty_side && held[0] == Holds::Words;
         let is_row = |held: &Vec<Holds>| {
             held.len() == self.width
                 && !is_labelled(held)
@@ -188,6 +187,12 @@ impl Survey {
         let from = (most > 0).then(|| are_rows.windows(most).position(|few| few.iter().all(|one| *one))).flatten();
         from.or_else(|| are_rows.iter().position(|is_row| *is_row)).unwrap_or(are_rows.len())
     }
+}
+
+fn has_empty_side(held: &[Vec<Holds>], width: usize) -> bool {
+    let rows = || held.iter().filter(|held| held.len() == width && held.contains(&Holds::Number));
+    let is_side = |held: &Vec<Holds>| matches!(held[0], Holds::Nothing | Holds::Words);
+    rows().all(is_side) && 2 * rows().filter(|held| held[0] == Holds::Nothing).count() > rows().count()
 }
 
 /// The line of names.
@@ -231,7 +236,8 @@ impl Survey {
             let last = found.next()?;
             // What stands below the names says the same word of several columns.
             let is_of_names = |cells: &[Vec<u8>]| !self.repeats(cells) || self.are_units(cells);
-            let above = found.find(|(_, c)| !is_of_names(&last.1) && c.len() == last.1.len() && is_of_names(c));
+            let is_named = |cells: &[Vec<u8>]| cells.len() == last.1.len() && self.are_distinct(cells);
+            let above = found.find(|(_, c)| !is_of_names(&last.1) && is_named(c));
             Some(above.map_or((last.0, last.1, false), |(at, cells)| (at, cells, true)))
         };
         let wide = |at: usize| plain(at).filter(|cells| cells.len() > 1);
@@ -261,12 +267,13 @@ impl Survey {
         };
         let at = find(&NAMES)?;
         let units = find(&UNITS).filter(|units| *units > at);
-        if units.is_none() && !self.has_empty_side() {
+        if units.is_none() && !self.has_empty_side {
             return None;
         }
         let mut cells = self.words(&self.rows[at]);
-        // Below the label stands what the others are recorded over.
-        if !self.has_empty_side() && !cells[1..].contains(&cells[0]) {
+        // The numbers below the label are the time of the other columns, unless one of these is the time.
+        let is_named = self.has_empty_side || !self.usual()[0];
+        if !is_named && !cells[1..].contains(&cells[0]) && !cells[1..].iter().any(|name| names_time(name)) {
             "time".clone_into(&mut cells[0]);
         }
         let units = units.map(|at| (at, self.words(&self.rows[at])));
@@ -280,10 +287,17 @@ impl Survey {
         most > 2 || (most == 2 && words.len() == 2)
     }
 
-    /// The cells of a line above the rows; the label at its side is none of them, and *unit* is no unit.
+    /// Every column but one has a name of its own.
+    fn are_distinct(&self, cells: &[Vec<u8>]) -> bool {
+        let words = self.words(cells);
+        let distinct: HashSet<&String> = words.iter().filter(|word| !word.is_empty()).collect();
+        distinct.len() + 1 >= words.len()
+    }
+
+    /// The cells of a line above the rows. The label of a line is no name, and *unit* is no unit.
     fn words(&self, cells: &[Vec<u8>]) -> Vec<String> {
-        let is_side = |i: usize| i == 0 && self.has_empty_side();
-        let is_none = |i: usize, cell: &[u8]| is_side(i) || is_label(cell, &UNITS);
+        let is_side = |i: usize, cell: &[u8]| i == 0 && self.has_empty_side && is_label(cell, &NAMES);
+        let is_none = |i: usize, cell: &[u8]| is_side(i, cell) || is_label(cell, &UNITS);
         let text = |(i, cell): (usize, &Vec<u8>)| if is_none(i, cell) { String::new() } else { name_of(cell) };
         cells.iter().enumerate().map(text).collect()
     }

@@ -85,6 +85,23 @@ fn a_block_of_lines_says_what_each_of_them_holds() {
 }
 
 #[test]
+fn lines_of_groups_and_sparse_columns_leave_the_names_alone() {
+    for (text, expected) in [
+        // A line of groups above names that come again.
+        ("A,,B,,C,\nt,v,t,v,t,v\n0,1,0,2,0,3\n5,1,5,2,5,3\n9,1,9,2,9,3\n", &["t", "v", "t", "v", "t", "v"][..]),
+        ("motor,motor,motor,link\nt,v,v,v\n0,1,2,3\n5,1,2,4\n9,1,2,5\n", &["t", "v", "v", "v"]),
+        // A sensor that is read now and then, and a column of remarks.
+        ("temp,t,x\n20.5,0,1\n,1,2\n,2,3\n,3,4\n21,4,5\n", &["temp", "t", "x"]),
+        ("event,t,x\n,0,1\n,1,2\nstart,2,3\n,3,4\n", &["event", "t", "x"]),
+        // A column of names of samples, and numbers beside a time.
+        ("Name,t,x\nunit,s,rad\nfirst,0,1\nsecond,1,2\nthird,2,3\n", &["Name", "t", "x"]),
+        ("Channel,time,x\nunit,s,rad\n1,0,1\n2,1,2\n1,2,3\n", &["Channel", "time", "x"]),
+    ] {
+        assert_eq!(names(&of(text)), expected, "{text}");
+    }
+}
+
+#[test]
 fn columns_say_what_they_hold() {
     let layout = of("t,on,remark,clock\n0,True,x,10:00:00.5\n1,False,y,10:00:01\n");
     let contents: Vec<Content> = layout.columns.iter().map(|column| column.content).collect();

@@ -40,8 +40,8 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
     let is_apart = is_transient && first.validation_rms > (1.0 - SMALL_REDUCTION) * fit.validation_rms;
     let gain = if let (true, Some(without), Some(alone)) = (is_apart, fit.effects_rms, first.effects_rms) {
         format!(
-            "It acts {place}: adding it reduces the error of the effects alone from {} to {}. With the nuisance terms of the fit \
-             the validation error is {with} with it and {error} without it; {floor}.",
+            "It acts {place}: adding it reduces the error of the effects alone from {} to {}. The nuisance terms of the fit \
+             hide this: with them, the validation error is {with} with {effect} and {error} without it; {floor}.",
             unit.figure(without),
             unit.figure(alone)
         )

@@ -3,6 +3,7 @@
 //! The formulas use the language of user effects, with the nonlinear parameters of the form as their parameters, so
 //! that both share one printer. A test compares every formula with its effect.
 
+use crate::effects::encoder::pole_period::FUNDAMENTAL;
 use crate::report::fit::Term;
 use jointbench_instrument::Kind;
 
@@ -97,6 +98,7 @@ pub fn written(kind: Kind, term: &Term) -> Result<Vec<Column>, &'static str> {
             ("signal_delay", _) => formula("jerk"),
             _ => Err(UNKNOWN),
         },
+        (Kind::Encoder, "pole_period", FUNDAMENTAL) => Ok(waves("position", "", &["pole_pairs".to_owned()])),
         (Kind::Encoder, id, _) => match id {
             "offset" => formula("1"),
             "delay" => formula("-velocity"),

@@ -28,8 +28,9 @@ pub struct Evidence<'l, 'p> {
     pub p_value: f64,
     /// Squared validation error of each block with the effect.
     pub losses: Vec<f64>,
-    /// It takes the practical share of the error outside reversals too.
-    pub shows_outside: bool,
+    /// Form error of the model could explain the same: it is left out of the base for this candidate, or the candidate
+    /// shows only at reversals, where form error lives.
+    pub form_error_imitates: bool,
 }
 
 impl Evidence<'_, '_> {
@@ -37,10 +38,10 @@ impl Evidence<'_, '_> {
         self.best.id()
     }
 
-    /// The minimum error reduction. Form error concentrates at reversals: a candidate that shows only there has to explain most of
-    /// the residual.
+    /// The minimum error reduction. Every model has form error: a candidate that it imitates has to explain most of the
+    /// residual.
     pub fn least_share(&self) -> f64 {
-        if self.shows_outside { DECISION_SHARE } else { UNMISTAKABLE_SHARE }
+        if self.form_error_imitates { UNMISTAKABLE_SHARE } else { DECISION_SHARE }
     }
 
     /// Whether the reduction exceeds the minimum share, is significant, and exceeds its standard error.
@@ -69,8 +70,9 @@ struct Trial<'l, 'p> {
 /// The evidence for each candidate effect, by decreasing error reduction, and the forms that are collinear with the
 /// base model. `forms` is the number of tested forms.
 ///
-/// A candidate shows outside reversals and rests if it reaches the practical share on the rows that are not `near` one, with the
-/// model fitted to these rows alone. A steady-state effect has to; a form that differs from the model only at reversals does not.
+/// A candidate shows outside reversals and rests if it reaches the practical share on the rows that are not `near` one,
+/// with the model fitted to these rows alone. A steady-state effect has to; a form that differs from the model only at
+/// reversals does not.
 pub fn evidence<'l, 'p>(
     ridge: &BlockedRidge,
     candidates: &[&'l Regressor<'p>],
@@ -136,7 +138,7 @@ fn of_effect<'l, 'p>(ridge: &BlockedRidge, trials: &[Trial<'l, 'p>], forms: usiz
         errors: errors(&gains),
         p_value: (best.chance * forms as f64).min(1.0),
         losses: ridge.losses.iter().zip(&gains).map(|(loss, gain)| loss - gain).collect(),
-        shows_outside: best.shows_outside,
+        form_error_imitates: !best.shows_outside,
     })
 }
 

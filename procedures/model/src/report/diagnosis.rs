@@ -128,7 +128,7 @@ pub struct Suggestion {
     pub effect: String,
     /// Validation error of the model with this effect.
     pub validation_rms: f64,
-    /// RMS error of the effects alone on the fitted data. `None` of a fit without nuisance terms.
+    /// RMS error of the effects alone on the fitted data. `None` for a fit without nuisance terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects_rms: Option<f64>,
     /// 1 − validation_rms / validation_rms of the present model.

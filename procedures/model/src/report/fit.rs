@@ -26,7 +26,8 @@ pub struct Fit {
     pub rms: f64,
     /// Validation error: RMS on data left out of the fit; the other conditions predict every condition.
     pub validation_rms: f64,
-    /// RMS error of the effects alone on the fitted data, as an exported model predicts. `None` of a fit without nuisance terms.
+    /// RMS error of the effects alone on the fitted data, as an exported model predicts. `None` for a fit without
+    /// nuisance terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects_rms: Option<f64>,
     pub unit: String,
@@ -243,7 +244,7 @@ pub struct SignalRange {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     pub rms: f64,
-    /// The same of the effects alone. `None` of a fit without nuisance terms.
+    /// RMS error of the effects alone. `None` for a fit without nuisance terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects_rms: Option<f64>,
     pub unit: String,

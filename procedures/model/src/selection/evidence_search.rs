@@ -1,8 +1,8 @@
 //! Adds effects by one decision rule. An effect is added if it reduces the validation error by a minimum share, is
 //! significant, and exceeds its own standard error.
 //!
-//! The error reduction ranks the candidates; significance is only a condition. Form error concentrates at reversals. A candidate
-//! that shows only there has to explain most of the residual.
+//! The error reduction ranks the candidates; significance is only a condition. A candidate that form error imitates has to
+//! explain most of the residual.
 
 use crate::effect::Regime;
 use crate::linear::blocked_ridge::BlockedRidge;
@@ -207,28 +207,26 @@ fn candidates<'l, 'p>(
         Some(form_error) => form_error.turn_s.iter().map(|turn_s| *turn_s < form_error.near_s).collect(),
         None => Vec::new(),
     };
-    // Without its form error in the base a candidate explains that error too.
-    let at_reversals = |found: Evidence<'l, 'p>| Evidence { shows_outside: false, ..found };
-    let regime = |regime: Regime| move |c: &Regressor| c.effect.regime() == regime;
-    let (mut all, mut hidden) = evidence(&solution.ridge, &of(&regime(Regime::SteadyState)), &near, forms);
-    // A candidate is judged without the form-error columns that represent the same effect.
-    let delays = of(&|c| c.id() == DELAY);
-    if !delays.is_empty() && is_delayed(now, solution) {
-        let (found, _) = evidence(&without(&now.main, solution, Lives::Jerk), &delays, &near, forms);
-        all.extend(found.into_iter().map(at_reversals));
+    let is_beside = |c: &Regressor| match c.effect.regime() {
+        Regime::SteadyState => true,
+        Regime::Transient => c.id() != DELAY,
+        Regime::Hysteresis => false,
+    };
+    let (mut all, hidden) = evidence(&solution.ridge, &of(&is_beside), &near, forms);
+    // Other candidates are judged without the form error that represents the same effect, and explain that error too.
+    let mut judge_without = |lives: Lives, of: &[&'l Regressor<'p>]| {
+        if !of.is_empty() {
+            let (found, _) = evidence(&without(&now.main, solution, lives), of, &near, forms);
+            all.extend(found.into_iter().map(|found| Evidence { form_error_imitates: true, ..found }));
+        }
+    };
+    if is_delayed(now, solution) {
+        judge_without(Lives::Jerk, &of(&|c| c.id() == DELAY));
     }
-    let presliding_candidates = of(&regime(Regime::Hysteresis));
-    if !presliding_candidates.is_empty() {
-        let (found, _) = evidence(&without(&now.main, solution, Lives::Bristle), &presliding_candidates, &near, forms);
-        all.extend(found.into_iter().map(at_reversals));
-    }
-    let inertia = of(&|c| c.effect.regime() == Regime::Transient && c.id() != DELAY);
-    let (visible, imitated) = evidence(&solution.ridge, &inertia, &near, forms);
-    all.extend(visible);
-    hidden.extend(imitated);
+    judge_without(Lives::Bristle, &of(&|c| c.effect.regime() == Regime::Hysteresis));
     // On one sine the snap is the acceleration with the opposite sign, and the jerk is the velocity.
     for lives in free_error(now, solution) {
-        all.extend(evidence(&without(&now.main, solution, lives), &hidden, &near, forms).0);
+        judge_without(lives, &hidden);
     }
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     all

@@ -45,7 +45,7 @@ impl<'p> Refused<'p> {
             }
             () if self.errors <= ONE_ERROR => format!("{reduces}, but only in a few blocks"),
             () if self.gain <= self.least => format!(
-                "{reduces}, but only near reversals, where every model has form error; there at least {} is required",
+                "{reduces}, but form error of the model could explain the same; at least {} is required",
                 percent(self.least)
             ),
             () => format!("{reduces}, but the largest number of added effects is reached"),

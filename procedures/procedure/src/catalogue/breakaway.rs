@@ -122,6 +122,17 @@ pub(super) fn onsets(run: &RunTable, setpoint_a: &[f64], increases: usize, top_a
     (onsets, held)
 }
 
+/// The step of the torque between two rows of a ramp.
+pub(super) fn ramp_step_nm(values: &Values) -> f64 {
+    values.number("ramp_nm_s") / values.number("sample_rate_hz")
+}
+
+/// A mean breakaway with the resolution of its ramp: equal readings differ by up to one step.
+pub(super) fn with_resolution(mean: Mean, step: f64) -> Mean {
+    let [low, high] = mean.ci95;
+    Mean { ci95: [low - step, high + step], ..mean }
+}
+
 /// Number of row-to-row steps in the direction of the current. A fast breakaway ends before all increases occurred.
 fn onward(position_rad: &[f64], current_a: f64) -> usize {
     position_rad.windows(2).filter(|pair| (pair[1] - pair[0]) * current_a > 0.0).count()
@@ -152,10 +163,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let (Some(mean), Some(forward), Some(backward)) = (Mean::of(&all), Mean::of(&of(1.0)), Mean::of(&of(-1.0))) else {
         return Err(Unusable::TooLittle("Too few breakaway events.", "Increase top_torque_nm."));
     };
-    // The torque rises by one step between rows, which limits the resolution of equal readings.
-    let step_nm = values.number("ramp_nm_s") / values.number("sample_rate_hz");
-    let [mean, forward, backward] = [mean, forward, backward]
-        .map(|Mean { value, ci95: [low, high] }| Mean { value, ci95: [low - step_nm, high + step_nm] });
+    let [mean, forward, backward] = [mean, forward, backward].map(|mean| with_resolution(mean, ramp_step_nm(values)));
     let deviation = (all.iter().map(|t| (t - mean.value).powi(2)).sum::<f64>() / (all.len() - 1) as f64).sqrt();
     let differ = forward.ci95[0] > backward.ci95[1] || backward.ci95[0] > forward.ci95[1];
     let words = |name, symbol, title| [name, symbol, title, "Nm"];

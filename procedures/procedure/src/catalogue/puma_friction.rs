@@ -9,7 +9,7 @@
 //! The document's stiction is the current of the first increase. The joint creeps before its encoder shows it, while
 //! the current still rises. The figure therefore exceeds the friction at rest. On the mock bench the excess is 1.0 to
 //! 3.1 % at the default ramp (30 arms), and 2.1 to 5.7 % at three times the ramp (20 arms). Its interval is the
-//! scatter between tries.
+//! scatter between tries and one step of the ramp.
 
 use super::legs::{ACCELERATION, Legs, friction_meta, stroke};
 use super::{Findable, Procedure, findable};

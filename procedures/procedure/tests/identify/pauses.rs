@@ -128,15 +128,13 @@ fn one_of_each_kind(plan: &Plan) -> Due {
     kinds.into_values().collect()
 }
 
-/// Both contain noise: the value may be outside the uninterrupted run's interval by half the width of either interval.
+/// Both contain noise: the value may be outside the uninterrupted run's interval by half its width.
 fn same(what: &str, found: &Identification, unbroken: &Identification) {
     assert_eq!(found.verdict, unbroken.verdict, "{what}: {}", found.summary);
     for whole in &unbroken.quantities {
         let Some([low, high]) = whole.ci95 else { continue };
-        let broken = found.quantity(&whole.name).unwrap_or_else(|| panic!("{what}: no {}", whole.name));
-        let value = broken.value;
-        let width = |ci95: [f64; 2]| ci95[1] - ci95[0];
-        let margin = 0.5 * (high - low).max(broken.ci95.map_or(0.0, width));
+        let value = found.quantity(&whole.name).unwrap_or_else(|| panic!("{what}: no {}", whole.name)).value;
+        let margin = 0.5 * (high - low);
         let holds = (low - margin..=high + margin).contains(&value);
         assert!(holds, "{what}, {}: {value:e} beyond {low:e} … {high:e}", whole.name);
     }

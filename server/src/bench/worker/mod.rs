@@ -46,7 +46,7 @@ pub fn serve() -> io::Result<()> {
     };
     let Setup { description, data, block } = *setup;
     let name = description.name.clone();
-    seat::raise_priority();
+    seat::raise_priority(description.is_real_time());
     let (outbox, reports) = Outbox::start(io::stdout())?;
     let desk = Arc::new(Desk::new(outbox, block));
     let (commands, to_do) = mpsc::channel();

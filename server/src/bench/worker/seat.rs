@@ -54,11 +54,22 @@ pub fn file_name(bench: &str) -> String {
     percent_encoding::utf8_percent_encode(bench, percent_encoding::NON_ALPHANUMERIC).to_string()
 }
 
-/// Control goes before fits and requests, where the system allows it.
-pub(super) fn raise_priority() {
+/// Control goes before fits and requests, where the system allows it: in real time by the real-time policy, which threads
+/// started later inherit. A simulation that runs as fast as it can would take a core with it, and is only preferred.
+pub(super) fn raise_priority(is_real_time: bool) {
     #[cfg(unix)]
-    if let Err(fault) = rustix::process::setpriority_process(None, -10) {
-        tracing::debug!(%fault, "the worker keeps the priority that it was started with");
+    {
+        use thread_priority::unix::{
+            RealtimeThreadSchedulePolicy, ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id,
+        };
+        let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::RoundRobin);
+        let least = thread_priority::ThreadPriority::Min;
+        if is_real_time && set_thread_priority_and_policy(thread_native_id(), least, policy).is_ok() {
+            return;
+        }
+        if let Err(fault) = rustix::process::setpriority_process(None, -10) {
+            tracing::debug!(%fault, "the worker keeps the priority that it was started with");
+        }
     }
 }
 

@@ -16,6 +16,8 @@ pub struct Setup {
     pub title: &'static str,
     /// What every such bench shows, hidden or not.
     pub ordinary: &'static str,
+    /// Its effects that the baseline of the procedure lacks. The initial model contains them.
+    pub known: &'static [&'static str],
     /// The effect that is hidden where none is asked for.
     usual: &'static str,
 }
@@ -29,6 +31,7 @@ impl Setup {
                 procedure: "friction",
                 title: "joint (strain-wave gear 177.8:1)",
                 ordinary: "Coulomb and viscous friction",
+                known: &[],
                 usual: "load_linear",
             },
             Kind::Encoder => Self {
@@ -37,6 +40,7 @@ impl Setup {
                 procedure: "encoder_linearity",
                 title: "encoder bench (optical reference, magnetic ring under test)",
                 ordinary: "the eccentricity, tilt, pole period error and hysteresis of the data sheet",
+                known: &["harmonic_1", "harmonic_2", "pole_period", "direction_hysteresis"],
                 usual: "harmonic_n",
             },
             Kind::Stiffness => Self {
@@ -45,6 +49,7 @@ impl Setup {
                 procedure: "stiffness",
                 title: "joint (strain-wave gear 177.8:1)",
                 ordinary: "the stiffness and directional offset of the data sheet",
+                known: &[],
                 usual: "hardening",
             },
             Kind::Brake => Self {
@@ -53,6 +58,7 @@ impl Setup {
                 procedure: "brake_hysteresis",
                 title: "hysteresis brake behind a joint (strain-wave gear 177.8:1)",
                 ordinary: "the saturation and hysteresis of the data sheet",
+                known: &["saturation", "hysteresis"],
                 usual: "velocity_dependence",
             },
         }

@@ -7,6 +7,9 @@ use jointbench_instrument::Kind;
 
 pub struct PolePeriod;
 
+/// Name of the form without the second harmonic.
+pub(crate) const FUNDAMENTAL: &str = "fundamental";
+
 static INFO: EffectInfo = EffectInfo {
     id: "pole_period",
     kind: Kind::Encoder,
@@ -32,18 +35,22 @@ impl Effect for PolePeriod {
     }
 
     /// All orders of known pole pairs are included, even beyond the sampling limit: an omitted wave would alias to a
-    /// lower order that does not exist.
+    /// lower order that does not exist. A single wave of unknown pole pairs is their fundamental: it could also be the
+    /// second harmonic of half as many, whose own fundamental would be absent.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let orders = match view.constants.pole_pairs {
-            Some(p) => p..=p,
-            None => 16..=128,
-        };
-        crate::effects::whole_orders(orders, f64::INFINITY, "pole_pairs", &["a", "b", "c", "d"])
+        let both = |orders| crate::effects::whole_orders(orders, f64::INFINITY, "pole_pairs", &["a", "b", "c", "d"]);
+        if let Some(p) = view.constants.pole_pairs {
+            return both(p..=p);
+        }
+        let one = crate::effects::whole_orders(16..=128, f64::INFINITY, "pole_pairs", &["a", "b"]);
+        one.into_iter().map(|form| Form { name: FUNDAMENTAL, ..form }).chain(both(16..=128)).collect()
     }
 
-    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        let [a, b] = view.harmonic(Signal::Position, shape[0]);
-        let [c, d] = view.harmonic(Signal::Position, 2.0 * shape[0]);
-        vec![a, b, c, d]
+    fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
+        let mut columns: Columns = view.harmonic(Signal::Position, shape[0]).into();
+        if form != FUNDAMENTAL {
+            columns.extend(view.harmonic(Signal::Position, 2.0 * shape[0]));
+        }
+        columns
     }
 }

@@ -11,8 +11,8 @@ static INFO: EffectInfo = EffectInfo {
     id: "viscous_quadratic",
     kind: Kind::Friction,
     title: "Quadratic drag",
-    sentence: "Drag has a part with the square of speed. A positive coefficient is typical of churning oil and windage; a \
-               negative one means that drag grows less than in proportion to speed.",
+    sentence: "Drag has a part proportional to the square of speed, as in churning oil or windage. With a negative \
+               coefficient, drag grows less than in proportion to speed.",
     formula: "c_2·ω·|ω|, or c_2a·ω² if it differs between the directions",
     source: "Armstrong-Hélouvry, Dupont, Canudas de Wit 1994",
     looks: "a curve over speed, sign changes with the direction, steepest at top speed",

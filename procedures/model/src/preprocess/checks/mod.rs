@@ -6,3 +6,4 @@ pub(crate) mod metadata;
 pub(crate) mod sensor_faults;
 pub(crate) mod torque_sign;
 pub(crate) mod unit_mismatch;
+pub(crate) mod unsigned_current;

@@ -78,6 +78,7 @@ pub fn clashes(run: &RunTable) -> DataErrors {
         void: said(void)
             .chain(torques)
             .chain(driven(run, &blocks))
+            .chain(crate::preprocess::checks::unsigned_current::unsigned(run, &blocks))
             .chain(noise(run, &blocks))
             .chain(too_fast(run))
             .collect(),

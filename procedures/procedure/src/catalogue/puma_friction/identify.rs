@@ -1,7 +1,7 @@
 //! Lines of voltage over speed for each direction, and stiction, in the units of document 000: volts, and degrees in
 //! a second at the link. The same results are also given in newton metres at the motor.
 
-use super::super::breakaway::{Onset, onsets};
+use super::super::breakaway::{Onset, onsets, ramp_step_nm, with_resolution};
 use crate::findings::{Hold, Line, Mean, Unusable, combined, curve, holds, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::Values;
@@ -62,7 +62,8 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
     // Gravity acts outside the upright pose and is corrected.
     let stiction = |sign: f64| -> Option<Mean> {
         let volts = |onset: &Onset| onset.current_a / scale - weight.value * figures.link_rad[onset.row].sin();
-        Mean::of(&broke.iter().filter(|o| o.current_a * sign > 0.0).map(volts).collect::<Vec<_>>())
+        let of_side = broke.iter().filter(|o| o.current_a * sign > 0.0).map(volts).collect::<Vec<_>>();
+        Mean::of(&of_side).map(|mean| with_resolution(mean, ramp_step_nm(values) / km / scale))
     };
     let (out, back) = (stiction(1.0), stiction(-1.0));
 
