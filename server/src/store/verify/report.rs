@@ -1,4 +1,4 @@
-//! What a check has found.
+//! Results of a check.
 
 use super::super::Loss;
 use super::super::seal::Sealed;
@@ -51,7 +51,7 @@ impl VerifyReport {
         self.damaged.push(DamagedRecord { run, table: table.to_owned(), what });
     }
 
-    /// So many records of a table were read, and so many could not be.
+    /// Adds the numbers of readable and damaged records of a table.
     pub(super) fn count(&mut self, run: Option<i64>, sealed: &Sealed, whole: u64, damaged: u64) {
         self.records += whole + damaged;
         if damaged > 0 {
