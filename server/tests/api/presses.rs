@@ -9,7 +9,7 @@ use std::time::Duration;
 
 const PRESSES: usize = 60;
 
-/// Sends a request and disconnects, on request abruptly (RST).
+/// Sends a request and disconnects, with RST if `abruptly`.
 fn send_and_leave(daemon: &TestDaemon, path: &str, body: &str, abruptly: bool) {
     let host = daemon.address();
     let mut wire = TcpStream::connect(&host).unwrap();
