@@ -6,8 +6,8 @@
 //! transaction.
 //!
 //! ```text
-//! stdin      one line, a request as JSON; then open for as long as somebody waits
-//! stdout     one line, whether it is answered or refused; then the answer, as its job makes it
+//! stdin      one line, a request as JSON; then open while a client waits
+//! stdout     one line, answer or refusal; then the answer of the job
 //! ```
 
 mod inside;

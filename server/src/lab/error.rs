@@ -1,7 +1,7 @@
 //! Errors of the lab and their use.
 //!
 //! * [`LabError::NotFound`]: the named object does not exist.
-//! * [`LabError::Invalid`]: the request is valid, but its values are not possible here; the message says what to do.
+//! * [`LabError::Invalid`]: the request is valid, but its values are not possible here; the message has the remedy.
 //! * [`LabError::File`]: a measurement file or description was refused; contains file, line and column if known.
 //! * [`LabError::Formula`]: an error in a user's effect, with its position.
 //! * [`LabError::Conflict`]: a valid request at the wrong time (bench busy, bench blocked).

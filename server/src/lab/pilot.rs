@@ -170,7 +170,7 @@ impl Pilot {
         self.lab.run(id).await
     }
 
-    /// Makes a run and waits for its end.
+    /// Starts a run and waits for its end.
     async fn measure(&mut self, experiment: &Experiment) -> Answer<Through<Run>> {
         if let Some(end) = self.is_stopped() {
             return Ok(Through::Cut(end));

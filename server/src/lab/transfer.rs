@@ -27,7 +27,7 @@ pub const UNDERSTOOD: &str = "understood";
 /// Exported metadata of a simulated run, so that an import does not show it as a hardware run.
 pub(super) const SIMULATED: &str = "simulated";
 
-/// A measured file with what is needed to read it.
+/// A measured file and the data needed to read it.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct ImportRequest {
     /// Name of the run; default: name of the file.

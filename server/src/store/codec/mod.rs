@@ -6,7 +6,7 @@
 //! constant   the value's bits, u64
 //! counts     scale kind u8, corrected u8, width u8, factor f64, first i64, exceptions u32 × (row u32, bits u64), planes
 //! bits       width u8, first u64, planes
-//! planes     zstd of `width` planes of one byte for each row, lowest first; one plane of corrections where corrected
+//! planes     zstd of `width` planes of one byte for each row, lowest first; then one plane of corrections if corrected
 //! ```
 //! All values are little endian. A difference is stored as zigzag: 0, −1, 1, −2 … as 0, 1, 2, 3 …
 

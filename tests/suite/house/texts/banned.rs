@@ -1,6 +1,6 @@
 //! Words and phrases that the glossary replaces by standard terms.
 
-/// As lower-case words. A phrase matches these words in a row.
+/// In lower case. A phrase matches consecutive words.
 const BANNED: [&str; 82] = [
     "any more",
     "asked for",
