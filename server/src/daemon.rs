@@ -1,4 +1,4 @@
-//! The daemon: a lab behind a port.
+//! The daemon: a lab with a network interface.
 
 use crate::api::{self, Surroundings};
 use crate::config::BenchDescription;
@@ -14,31 +14,31 @@ use tokio::task::JoinHandle;
 pub struct DaemonSettings {
     pub listen: SocketAddr,
     pub data: PathBuf,
-    /// Needed where `listen` is not a loopback address.
+    /// Required if `listen` is not a loopback address.
     pub token: Option<String>,
-    /// Lets its holder look and stop, and nothing else.
+    /// Allows its owner to read and to stop, nothing else.
     pub read_token: Option<String>,
     pub network: Network,
     pub benches: Vec<BenchDescription>,
-    /// The file of `jointbench`, for those parts of the daemon that are processes of their own.
+    /// Path of the `jointbench` executable, for parts of the daemon in separate processes.
     pub program: PathBuf,
-    /// What one computation on whole runs may take.
+    /// Limits of one computation on whole runs.
     pub analysis: job::Limits,
 }
 
-/// How the daemon is reached.
+/// Network settings of the daemon.
 #[derive(Debug, Clone, Default)]
 pub struct Network {
-    /// Needed where `listen` is not a loopback address, unless a proxy is in front.
+    /// Required if `listen` is not a loopback address, unless a proxy is in front.
     pub tls: Option<TlsFiles>,
-    /// A reverse proxy with TLS is in front of the daemon, and nothing else reaches it.
+    /// Only a reverse proxy with TLS can reach the daemon.
     pub behind_proxy: bool,
     pub limits: Limits,
 }
 
 pub struct Daemon {
     pub lab: Lab,
-    /// Where it listens; the port is chosen by the system where 0 was asked for.
+    /// Address of the listener; for port 0 it contains the assigned port.
     pub address: SocketAddr,
     /// `http` or `https`.
     pub scheme: &'static str,
@@ -46,7 +46,8 @@ pub struct Daemon {
 }
 
 impl Daemon {
-    /// Takes the port, opens the store, secures the benches, then answers. [`LabError::Setup`] says what is in the way.
+    /// Opens the port and the store, secures the benches, then accepts requests. [`LabError::Setup`] contains the
+    /// obstacle.
     pub async fn start(settings: DaemonSettings) -> Result<Daemon, LabError> {
         let tokens = tokens(&settings)?;
         let Network { tls, behind_proxy, limits } = settings.network.clone();
@@ -64,14 +65,14 @@ impl Daemon {
 
     /// Ends all runs, secures all benches, closes the store.
     pub async fn stop(self) {
-        // Requests are answered while the benches are being secured: a page shows how it goes.
+        // Requests are still answered while the benches are secured, so that a page shows the progress.
         self.lab.shut_down().await;
         self.server.abort();
         tracing::info!("stopped");
     }
 }
 
-/// Ctrl-C, the request of a service manager to end, or the end of the terminal.
+/// Returns on Ctrl-C, a termination request of a service manager, or the end of the terminal.
 #[cfg(unix)]
 pub async fn asked_to_end() {
     use tokio::signal::unix::SignalKind;
@@ -93,7 +94,7 @@ async fn signalled(kind: tokio::signal::unix::SignalKind) {
     }
 }
 
-/// Whether the daemon was started to outlive its terminal, as by `nohup`: signal 1 is among those that are ignored.
+/// Whether the daemon shall outlive its terminal, as with `nohup`: signal 1 is ignored.
 #[cfg(unix)]
 fn ignores_hangup() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -101,7 +102,7 @@ fn ignores_hangup() -> bool {
     ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask & 1 == 1)
 }
 
-/// Ctrl-C.
+/// Returns on Ctrl-C.
 #[cfg(not(unix))]
 pub async fn asked_to_end() {
     drop(tokio::signal::ctrl_c().await);
@@ -132,7 +133,7 @@ fn tokens(settings: &DaemonSettings) -> Result<Tokens, LabError> {
 
 const GIVE: &str = "give a token with --token-file or JOINTBENCH_TOKEN";
 
-/// A token that crosses a network in the clear is everybody's.
+/// An unencrypted token can be read by others in the network.
 fn refuse_plain(settings: &DaemonSettings) -> Result<(), LabError> {
     let Network { tls, behind_proxy, .. } = &settings.network;
     if settings.listen.ip().is_loopback() || *behind_proxy || tls.is_some() {

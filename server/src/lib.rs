@@ -1,6 +1,6 @@
-//! The roof: configuration, one thread for each bench, store, API, live stream, command line.
+//! The top layer: configuration, one thread for each bench, store, API, live stream, command line.
 //!
-//! tokio, axum and sqlx live here and nowhere below.
+//! Only this crate uses tokio, axum and sqlx.
 
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 

@@ -1,4 +1,4 @@
-//! Requests as clients send them, also clients that leave.
+//! Requests of clients, including clients that disconnect.
 
 use serde_json::{Value, json};
 use socket2::SockRef;
@@ -6,10 +6,10 @@ use std::io::Write;
 use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
 
-/// Longer than anything here takes: also a worker that secures its bench behind a lost server.
+/// Longer than any operation here, including a worker that secures its bench after the loss of the server.
 const PATIENCE: Duration = Duration::from_secs(90);
 
-/// What is asked of the daemon.
+/// A request to the daemon.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     pub method: &'static str,
@@ -23,7 +23,7 @@ impl Request {
         Self { method: "GET", path: path.into(), content_type: String::new(), body: String::new() }
     }
 
-    /// Without a body: one that is broken off after its head may be carried out all the same.
+    /// A request without a body. Such a request may be executed even if it is cut off after its head.
     pub fn bare(method: &'static str, path: impl Into<String>) -> Self {
         Self { method, ..Self::get(path) }
     }
@@ -36,7 +36,7 @@ impl Request {
         Self::json("POST", path, body)
     }
 
-    /// A table of `rows` samples of a friction run, kept under this name.
+    /// Imports a table of `rows` samples of a friction run with this name.
     pub fn import(name: &str, rows: usize) -> Self {
         const EDGE: &str = "jointbench-fault-suite";
         let mut table = String::from("time_s,motor_position_rad,motor_velocity_rad_s,motor_current_a\n");
@@ -60,14 +60,14 @@ pub enum Outcome {
         status: u16,
         body: Value,
     },
-    /// Whether it was carried out is not known.
+    /// The request may have been executed.
     Unknown,
-    /// Nobody listens.
+    /// The server does not listen.
     NotSent,
 }
 
 impl Outcome {
-    /// The answer to an operation that was acknowledged.
+    /// The answer of an acknowledged operation.
     pub fn acknowledged(&self) -> Option<&Value> {
         match self {
             Outcome::Answered { status, body } if (200..300).contains(status) => Some(body),
@@ -75,7 +75,7 @@ impl Outcome {
         }
     }
 
-    /// It was refused, and has changed nothing.
+    /// Whether the request was refused without effect.
     pub fn refused(&self) -> bool {
         matches!(self, Outcome::Answered { status: 400..500, .. } | Outcome::NotSent)
     }
@@ -90,7 +90,7 @@ pub struct Client {
 
 impl Client {
     pub fn send(&self, request: &Request) -> Outcome {
-        // A connection of its own: one that was kept may lead to a server that is no more.
+        // Uses a new connection: a kept one may lead to a server that has ended.
         let config = ureq::Agent::config_builder()
             .http_status_as_error(false)
             .timeout_global(Some(PATIENCE))
@@ -121,7 +121,7 @@ impl Client {
         }
     }
 
-    /// What has to be answered well.
+    /// A GET request that must succeed.
     pub fn get(&self, path: &str) -> Value {
         match self.send(&Request::get(path)) {
             Outcome::Answered { status: 200, body } => body,
@@ -133,14 +133,14 @@ impl Client {
         self.send(&Request::post(path, body))
     }
 
-    /// Sends `share` of the request, waits, and resets the connection without reading. Whether the whole was sent.
+    /// Sends `share` of the request, waits, and resets the connection. Returns whether all of it was sent.
     pub fn hang_up(&self, request: &Request, share: f64, after: Duration) -> bool {
         let Ok(mut stream) = TcpStream::connect(self.address) else { return false };
         let bytes = self.bytes(request);
         let count = ((bytes.len() as f64 * share).ceil() as usize).min(bytes.len());
         let sent = stream.write_all(&bytes[..count]).is_ok();
         std::thread::sleep(after);
-        // An error says that the server was quicker.
+        // An error means that the server was faster.
         let _ = SockRef::from(&stream).set_linger(Some(Duration::ZERO));
         sent && count == bytes.len()
     }

@@ -1,4 +1,4 @@
-//! The server, the worker, or both die in mid-run.
+//! Kills of server, worker, or both during a run.
 
 use crate::lab::Lab;
 use crate::outcome::Outcome;
@@ -7,14 +7,14 @@ use crate::wire::{Wire, now_s};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
-/// A worker whose server is gone ends its run as on request: the joint comes to rest first.
+/// A worker without a server ends its run as on request: the joint first stops.
 const SECURES: Duration = Duration::from_secs(10);
-/// Rows are committed so often at the latest.
+/// Maximum interval between two commits of rows.
 const COMMIT_EVERY_S: f64 = 2.0;
-/// SIGTERM with a database that another program holds.
+/// Time limit after SIGTERM while another program locks the database.
 const ENDS: Duration = Duration::from_secs(20);
 
-/// What a run had when it was last asked, before somebody died.
+/// State of a run at the last request before the kill.
 struct Before {
     id: i64,
     rows: i64,
@@ -29,7 +29,7 @@ fn measure(lab: &Lab, wire: &mut Wire) -> Before {
     Before { id, rows: rows(id), moved_s }
 }
 
-/// `kill -9` of the server in mid-run: the worker secures the bench, and nothing acknowledged is lost.
+/// `kill -9` of the server during a run: the worker secures the bench, and no acknowledged data is lost.
 pub fn server_dies(lab: &mut Lab, outcome: &mut Outcome) {
     let mut wire = lab.wire();
     let before = measure(lab, &mut wire);
@@ -46,7 +46,7 @@ pub fn server_dies(lab: &mut Lab, outcome: &mut Outcome) {
     lab.reset();
 }
 
-/// `kill -9` of the worker in mid-run: shown at once, and another one secures the bench.
+/// `kill -9` of the worker during a run: it is shown immediately, and another worker secures the bench.
 pub fn worker_dies(lab: &mut Lab, outcome: &mut Outcome) {
     let mut wire = lab.wire();
     let before = measure(lab, &mut wire);
@@ -62,10 +62,10 @@ pub fn worker_dies(lab: &mut Lab, outcome: &mut Outcome) {
     lab.reset();
 }
 
-/// "At once", on a machine that has other things to do.
+/// Limit for "immediately" on a busy machine.
 const SHOWN: Duration = Duration::from_secs(2);
 
-/// Nobody is left: the next start secures.
+/// Both processes end: the next start secures the bench.
 pub fn both_die(lab: &mut Lab, outcome: &mut Outcome) {
     let mut wire = lab.wire();
     let before = measure(lab, &mut wire);
@@ -76,7 +76,7 @@ pub fn both_die(lab: &mut Lab, outcome: &mut Outcome) {
     lab.reset();
 }
 
-/// One worker after the other is killed as soon as it is there: the bench comes back all the same.
+/// Each new worker is killed immediately; the bench still recovers afterwards.
 pub fn workers_die_in_a_row(lab: &mut Lab, times: usize, outcome: &mut Outcome) {
     for _ in 0..times {
         lab.wait(Duration::from_secs(30), "another worker", || lab.worker().is_some());
@@ -91,7 +91,7 @@ pub fn workers_die_in_a_row(lab: &mut Lab, times: usize, outcome: &mut Outcome) 
     lab.reset();
 }
 
-/// SIGTERM in mid-run while another program holds the database: the end comes in time, and nothing acknowledged is lost.
+/// SIGTERM during a run with a locked database: the daemon ends in time, and no acknowledged data is lost.
 pub fn terminated_while_held(lab: &mut Lab, outcome: &mut Outcome) {
     let mut wire = lab.wire();
     let before = measure(lab, &mut wire);
@@ -120,7 +120,7 @@ fn disarmed(wire: &mut Wire, after_s: f64) -> Option<Duration> {
     None
 }
 
-/// The run is over, the bench safe, and what was acknowledged is there once.
+/// The run has ended, the bench is safe, and acknowledged data exists once.
 fn check_interrupted(lab: &Lab, before: &Before, outcome: &mut Outcome) {
     let id = before.id;
     let ran_s = before.moved_s.elapsed().as_secs_f64();
@@ -148,7 +148,7 @@ fn check_interrupted(lab: &Lab, before: &Before, outcome: &mut Outcome) {
     }
 }
 
-/// The rows of a run, each once and in order, as many as it says; its journal without a gap.
+/// The rows of a run, each once and in order, with the reported number; its events without a gap.
 pub fn check_rows(lab: &Lab, run: &Value, outcome: &mut Outcome) -> Vec<f64> {
     let (id, rows) = (&run["id"], run["rows"].as_u64().unwrap_or_default() as usize);
     if rows == 0 {
@@ -173,7 +173,7 @@ pub fn check_rows(lab: &Lab, run: &Value, outcome: &mut Outcome) -> Vec<f64> {
     times
 }
 
-/// All of them, `rounds` times.
+/// All kinds of death, `rounds` times.
 pub fn deaths(rounds: usize, say: &dyn Fn(&str)) -> Vec<Outcome> {
     let mut lab = Lab::new(None);
     lab.start();
@@ -196,7 +196,7 @@ pub fn deaths(rounds: usize, say: &dyn Fn(&str)) -> Vec<Outcome> {
     all.map(make).into()
 }
 
-/// What a list of runs must not hold: one that nobody makes and that never ends.
+/// Open runs without a worker, which a list of runs must not contain.
 pub fn ghosts(lab: &Lab) -> Vec<Value> {
     let runs = lab.client().get("/runs?limit=500");
     let over = [json!("completed"), json!("stopped"), json!("aborted"), json!("failed"), json!("interrupted")];

@@ -1,4 +1,4 @@
-//! A daemon with one mock bench that runs in real time, whose parts can be killed and started again.
+//! A daemon with one mock bench in real time; its processes can be killed and restarted.
 
 use crate::client::{Client, Request};
 use crate::program::jointbench;
@@ -14,31 +14,31 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 pub const BENCH: &str = "mock";
-/// Of the operator, with which the daemon is started.
+/// Token of the operator from the start of the daemon.
 pub const TOKEN: &str = "the fault suite's own token";
-/// A start waits for an earlier worker to secure its bench.
+/// A start waits until an earlier worker has secured its bench.
 const STARTS: Duration = Duration::from_secs(60);
 
 pub struct Lab {
     folder: TempDir,
-    /// In memory where that can be: the record of the traffic must not wait for the disk that is being troubled.
+    /// In memory if possible: recording the traffic must not wait for a disk under test.
     record: TempDir,
     pub data: PathBuf,
     pub address: SocketAddr,
-    /// Bench seconds for each second on the wall; `None`: as fast as it goes.
+    /// Bench seconds per real second; `None`: as fast as possible.
     pub pace: Option<f64>,
-    /// Set in front of the daemon's calls of the system.
+    /// Library that intercepts system calls of the daemon.
     pub preload: Option<PathBuf>,
     server: Option<Child>,
     last_worker: Option<Pid>,
 }
 
 impl Lab {
-    /// Nothing runs yet. `data`: elsewhere than in a folder of its own.
+    /// Starts no process. `data`: the data folder, if not a temporary one.
     pub fn new(data: Option<PathBuf>) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let record = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).expect("a folder");
-        // Free now, and ours again whenever the daemon is started anew.
+        // The port is free now, and every restart of the daemon uses it again.
         let address = TcpListener::bind("127.0.0.1:0").and_then(|free| free.local_addr()).expect("a free port");
         let data = data.unwrap_or_else(|| folder.path().join("data"));
         Self { folder, record, data, address, pace: Some(1.0), preload: None, server: None, last_worker: None }
@@ -60,7 +60,7 @@ impl Lab {
     pub fn start(&mut self) {
         let config = self.folder().join("bench.toml");
         let pace = self.pace.map(|pace| format!("pace = {pace:.1}\n")).unwrap_or_default();
-        // Joint B turns without end stops: each run of a long series turns the link further the same way.
+        // Joint B has no end stops: each run of a long series can turn the link further in the same direction.
         let text =
             format!("[[bench]]\nname = \"{BENCH}\"\n[bench.mock]\njoint = \"b\"\nseed = 4\neffects = []\n{pace}");
         fs::write(&config, text).expect("the bench description is written");
@@ -86,7 +86,7 @@ impl Lab {
         self.folder().join("server.log")
     }
 
-    /// What the daemon said last.
+    /// The last log messages of the daemon.
     pub fn tail(&self) -> String {
         let log = fs::read_to_string(self.log()).unwrap_or_default();
         let lines: Vec<&str> = log.lines().collect();
@@ -112,20 +112,20 @@ impl Lab {
         server.wait().expect("the server ends");
     }
 
-    /// Whether there was one.
+    /// Returns whether there was one.
     pub fn kill_worker(&self) -> bool {
         self.worker().is_some_and(|worker| kill_process(worker, Signal::KILL).is_ok())
     }
 
-    /// `kill -9` of both, the worker first: nothing is left of either.
+    /// `kill -9` of both, the worker first.
     pub fn kill_both(&mut self) {
-        // The server would start another worker meanwhile.
+        // Stop the server first: it would start another worker.
         self.signal_server(Signal::STOP);
         self.kill_worker();
         self.kill_server();
     }
 
-    /// SIGTERM. How long it took to end; it is killed where that is longer than `patience`.
+    /// Sends SIGTERM and returns the time until the end. After `patience` the daemon is killed.
     pub fn terminate(&mut self, patience: Duration) -> Option<Duration> {
         self.signal_server(Signal::TERM);
         let begun = Instant::now();
@@ -141,7 +141,7 @@ impl Lab {
         None
     }
 
-    /// Of the newest worker.
+    /// The traffic of the newest worker.
     pub fn wire(&self) -> Wire {
         let folder = self.record.path().join(BENCH);
         Wire::newest(&folder).expect("a worker has recorded its traffic")
@@ -155,7 +155,7 @@ impl Lab {
         self.client().get(&format!("/runs/{id}"))
     }
 
-    /// Starts a run and waits until the drive is armed and controlled.
+    /// Starts a run and returns when the store has it.
     pub fn start_run(&self, procedure: &str) -> i64 {
         let body = json!({ "bench": BENCH, "procedure": procedure, "parameters": {} });
         let told = self.client().post("/runs", &body);
@@ -163,7 +163,7 @@ impl Lab {
         id.unwrap_or_else(|| panic!("the run does not start: {told:?}\n{}", self.tail()))
     }
 
-    /// Starts a run, and returns when the drive is controlled.
+    /// Starts a run and returns when the drive is armed and controlled.
     pub fn start_moving(&self, procedure: &str, wire: &mut Wire) -> i64 {
         wire.look();
         wire.commands.clear();
@@ -177,7 +177,7 @@ impl Lab {
         id
     }
 
-    /// Lifts the block and waits until the next run may start.
+    /// Releases the block and waits until the next run can start.
     pub fn reset(&self) {
         self.wait(Duration::from_secs(60), "the bench to be free", || {
             let bench = self.bench();
@@ -203,7 +203,7 @@ impl Drop for Lab {
     fn drop(&mut self) {
         let worker = self.worker();
         if let Some(server) = &mut self.server {
-            // An error says that it has ended already.
+            // An error means that it has already ended.
             let _ = server.kill();
             let _ = server.wait();
         }
@@ -213,7 +213,7 @@ impl Drop for Lab {
     }
 }
 
-/// The process that holds the instruments.
+/// The process that owns the instruments.
 fn worker_of(server: Pid) -> Option<Pid> {
     let parent = format!("PPid:\t{}", server.as_raw_nonzero());
     let processes =

@@ -1,5 +1,5 @@
-//! What the tests and the fault suite share: the program as a user starts it, a bench whose server, worker, disk and clients
-//! fail on purpose, and what must hold afterwards.
+//! Shared by the tests and the fault suite: the real program, a bench with faults of its server, worker, disk and
+//! clients, and the checks afterwards.
 
 pub mod client;
 pub mod deaths;
@@ -15,7 +15,7 @@ pub mod wire;
 
 use std::path::PathBuf;
 
-/// The workspace.
+/// Root folder of the workspace.
 pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the workspace root")
 }

@@ -1,11 +1,11 @@
-//! How busy the machine itself is: without that, nobody can tell a late tick of ours from a machine that gave us no time.
+//! Load of the machine: distinguishes a delay of the program from missing processor time.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// A thread that only sleeps, and measures how much longer it slept than it asked for.
+/// A thread that sleeps and measures how much longer than requested it slept.
 pub struct Watch {
     over: Arc<AtomicBool>,
     longest_us: Arc<AtomicU64>,
@@ -29,7 +29,7 @@ impl Watch {
         Self { over, longest_us, thread: Some(thread) }
     }
 
-    /// The longest stall since the last question.
+    /// The longest stall since the last call.
     pub fn longest(&self) -> Duration {
         Duration::from_micros(self.longest_us.swap(0, Ordering::AcqRel))
     }

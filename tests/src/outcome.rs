@@ -1,26 +1,26 @@
-//! What came of it, as a table.
+//! Results as a table.
 
 use std::fmt::Write;
 use std::time::Duration;
 
-/// What was tried and what held, added up over scenarios.
+/// Attempts and results, summed over scenarios.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
     pub name: String,
     pub faults: usize,
     pub acknowledged: usize,
-    /// Acknowledged, and not there.
+    /// Acknowledged and missing.
     pub lost: usize,
-    /// There more than once.
+    /// More than one occurrence.
     pub doubled: usize,
-    /// Neither whole nor absent.
+    /// Neither complete nor absent.
     pub half_done: usize,
     pub slowest_stop: Option<Duration>,
     /// In control ticks.
     pub longest_silence: Option<f64>,
-    /// How long the machine let an idle thread stand: what it did to that, it did to ours.
+    /// Longest stall of an idle thread: the machine stalls the daemon's threads in the same way.
     pub machine_stall: Option<Duration>,
-    /// What broke a promise, each in a sentence.
+    /// Broken guarantees, as sentences.
     pub broken: Vec<String>,
 }
 
@@ -56,13 +56,13 @@ impl Outcome {
         self.machine_stall = Some(self.machine_stall.unwrap_or_default().max(stall));
     }
 
-    /// Whether every promise was kept.
+    /// Whether all guarantees were kept.
     pub fn holds(&self) -> bool {
         self.broken.is_empty()
     }
 }
 
-/// As Markdown, and below it what broke a promise.
+/// As Markdown, followed by the broken guarantees.
 pub fn table(outcomes: &[Outcome]) -> String {
     let mut text = String::from(
         "| scenario | faults tried | acknowledged | lost | doubled | half done | slowest stop | longest control silence |\n\
@@ -74,7 +74,7 @@ pub fn table(outcomes: &[Outcome]) -> String {
         let (stop, stall) = (ms(one.slowest_stop), ms(one.machine_stall));
         let silence = one.longest_silence.map_or_else(String::new, |ticks| format!("{ticks:.1} ticks"));
         let Outcome { name, faults, acknowledged, lost, doubled, half_done, .. } = one;
-        // Nothing is wrong with a text that takes what is written.
+        // Writing to a string cannot fail.
         let _ = writeln!(
             text,
             "| {name} | {faults} | {acknowledged} | {lost} | {doubled} | {half_done} | {stop} | {silence} | {stall} |"

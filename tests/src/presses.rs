@@ -1,4 +1,4 @@
-//! Clients that press the software stop and close the connection at once.
+//! Clients that press the software stop and disconnect immediately.
 
 use crate::client::{Outcome as Answer, Request};
 use crate::lab::{BENCH, Lab};
@@ -8,8 +8,8 @@ use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 use std::time::Duration;
 
-/// One after the other, `count` clients press and leave with a reset within 1 ms. Whatever was sent whole has to be in the
-/// safety record, with the name of its sender, and the bench has to be stopped.
+/// In sequence, `count` clients press the stop and reset their connection within 1 ms. Each complete request must be in
+/// the safety record with the name of its sender, and the bench must be stopped.
 pub fn hang_ups(count: usize, random: &mut ChaCha8Rng) -> Outcome {
     let mut outcome = Outcome::new("press, and hang up within 1 ms");
     let mut lab = Lab::new(None);
@@ -33,7 +33,7 @@ pub fn hang_ups(count: usize, random: &mut ChaCha8Rng) -> Outcome {
     outcome
 }
 
-/// A press holds at once; that it is stored takes a write.
+/// A stop is active immediately; storing it needs a write.
 const SETTLES: Duration = Duration::from_millis(300);
 
 fn check(lab: &Lab, name: &str, outcome: &mut Outcome) {

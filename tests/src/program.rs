@@ -1,4 +1,4 @@
-//! The program `jointbench` as a user starts it.
+//! The real program `jointbench`.
 
 use crate::root;
 use std::io::{BufRead, BufReader, Read};
@@ -7,7 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-/// Built once for each test run, with the profile of the tests; or the one that `JOINTBENCH_PROGRAM` names.
+/// Built once for each test run, with the profile of the tests, unless `JOINTBENCH_PROGRAM` names an executable.
 static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
     if let Some(given) = std::env::var_os("JOINTBENCH_PROGRAM") {
         return given.into();
@@ -47,19 +47,19 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// A daemon in a process of its own, on a free port. Killed when it goes out of sight.
+/// A daemon in a separate process, on a free port. Killed on drop.
 pub struct Daemon {
     child: Child,
     pub base: String,
 }
 
 impl Daemon {
-    /// Returns when the daemon has named its address.
+    /// Returns when the daemon has printed its address.
     pub fn serve(data: &Path, config: &Path) -> Self {
         Self::start(jointbench(), data, config)
     }
 
-    /// The same in an address space of so many KiB, which its processes have too.
+    /// The same with a limit of the address space in KiB, which also applies to its child processes.
     #[cfg(unix)]
     pub fn serve_within(address_space_kib: u64, data: &Path, config: &Path) -> Self {
         let mut shell = Command::new("sh");
@@ -90,20 +90,20 @@ impl Daemon {
             child.stderr.take().expect("piped").read_to_string(&mut complaint).ok();
             panic!("the daemon did not name its address: {line:?} {complaint}");
         };
-        // Nobody must block on a full pipe: what is said from here on is read and forgotten.
+        // Reads and discards the output, so that the daemon does not block on a full pipe.
         let mut errors = child.stderr.take().expect("piped");
         std::thread::spawn(move || std::io::copy(&mut said, &mut std::io::sink()));
         std::thread::spawn(move || std::io::copy(&mut errors, &mut std::io::sink()));
         Self { child, base }
     }
 
-    /// `kill -9`: no destructor, no last word.
+    /// `kill -9`: the daemon runs no cleanup.
     pub fn kill(mut self) {
         self.child.kill().expect("the daemon runs");
         self.child.wait().expect("the daemon ends");
     }
 
-    /// Asks it to end, as a service manager does, and waits until it has.
+    /// Sends SIGTERM, as a service manager does, and waits for the end.
     #[cfg(unix)]
     pub fn terminate(mut self) -> Duration {
         let asked = Instant::now();
@@ -128,14 +128,14 @@ impl Daemon {
         answer.body_mut().with_config().limit(1 << 30).read_to_string().expect("text")
     }
 
-    /// Status and body, whatever the status is.
+    /// Status and body, for any status.
     pub fn post(&self, path: &str, body: &serde_json::Value) -> (u16, serde_json::Value) {
         let agent = ureq::Agent::new_with_config(ureq::Agent::config_builder().http_status_as_error(false).build());
         let mut answer = agent.post(format!("{}/api/v1{path}", self.base)).send_json(body).expect("the daemon answers");
         (answer.status().as_u16(), answer.body_mut().read_json().unwrap_or_default())
     }
 
-    /// Asks again until the answer is what is waited for.
+    /// Repeats the request until the answer meets the condition.
     pub fn wait_for(
         &self,
         path: &str,

@@ -1,4 +1,4 @@
-//! How long from the press of the software stop to the first safe byte on the drive's wire.
+//! Time from a software stop to the first safe command to the drive.
 
 use crate::client::Outcome as Answer;
 use crate::lab::{BENCH, Lab};
@@ -11,26 +11,26 @@ use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
-/// The mock bench's friction runs are controlled so often.
+/// Control period of the mock bench's friction runs.
 const TICK: Duration = Duration::from_millis(4);
-/// Nobody waits longer for a safe byte.
+/// Time limit for the safe command.
 const GIVES_UP: Duration = Duration::from_secs(30);
-/// How long trouble lasts before the press: the database's own patience of 5 s lies within.
+/// Duration of the fault before the stop; the range includes the database's lock timeout of 5 s.
 const TROUBLED_S: std::ops::Range<f64> = 0.3..8.0;
-/// A full disk ends a run within two seconds: a press has to come before that to find one.
+/// A full disk ends a run within two seconds: the stop must come earlier.
 const FULL_S: std::ops::Range<f64> = 0.0..1.5;
-/// In a long series the database is held so long before the first press.
+/// Lock time of the database before the first stop of a long series.
 const LONGEST_HELD_S: f64 = 58.0;
 const LONG_SERIES: usize = 50;
 
-/// One press.
+/// Measurement of one stop.
 #[derive(Debug, Clone, Copy)]
 pub struct Stop {
     pub latency: Duration,
     pub control: Control,
 }
 
-/// `count` presses in mid-run, each at a random moment of the trouble. `None` where the trouble cannot be made here.
+/// `count` stops during runs, each at a random time of the fault. `None` if the fault is not possible here.
 pub fn stops(trouble: Trouble, count: usize, random: &mut ChaCha8Rng, say: &dyn Fn(&str)) -> Option<Outcome> {
     let (lab, _disk) = trouble.lab()?;
     let mut outcome = Outcome::new(format!("stop, {}", trouble.name()));
@@ -60,7 +60,7 @@ pub fn stops(trouble: Trouble, count: usize, random: &mut ChaCha8Rng, say: &dyn 
     Some(outcome)
 }
 
-/// In mid-run, after so long in trouble.
+/// Presses the stop during a run, a given time after the start of the fault.
 fn press(lab: &Lab, trouble: Trouble, after: Duration, wire: &mut Wire, outcome: &mut Outcome) -> Option<Stop> {
     lab.reset();
     let run = lab.start_moving("friction", wire);
@@ -98,7 +98,7 @@ fn first_safe_byte(wire: &mut Wire, pressed_s: f64) -> Option<f64> {
     None
 }
 
-/// The press is in the safety record once, and the run has ended.
+/// The stop is in the safety record once, and the run has ended.
 fn check_kept(lab: &Lab, run: i64, pressed_s: f64, outcome: &mut Outcome) {
     lab.wait(Duration::from_secs(60), "the stop to be stored", || {
         let bench = lab.bench();

@@ -1,4 +1,4 @@
-//! What can go wrong around a bench, begun and ended on purpose.
+//! Simulated faults around a bench.
 
 use crate::client::{Client, Request};
 use crate::lab::Lab;
@@ -48,12 +48,12 @@ impl Trouble {
         }
     }
 
-    /// The longest that a stop may take, in the long run on a quiet machine.
+    /// The longest permitted stop time in the long suite on an idle machine.
     pub fn bound(self) -> Duration {
         Duration::from_millis(if self == Trouble::Quiet { 50 } else { 100 })
     }
 
-    /// A lab in which this trouble can be made, started; `None`, with a message, where this machine does not let us.
+    /// Starts a lab in which this fault is possible; `None`, with a message, if this machine does not permit it.
     pub fn lab(self) -> Option<(Lab, Option<SmallDisk>)> {
         let disk = match self {
             Trouble::FullDisk => Some(SmallDisk::mount()?),
@@ -67,7 +67,7 @@ impl Trouble {
         Some((lab, disk))
     }
 
-    /// Until it is dropped.
+    /// The fault lasts until the result is dropped.
     pub fn begin(self, lab: &Lab) -> Box<dyn Ongoing> {
         match self {
             Trouble::Quiet => Box::new(Nothing),
@@ -80,7 +80,7 @@ impl Trouble {
     }
 }
 
-/// Trouble that is over when this is dropped.
+/// A fault that ends on drop.
 pub trait Ongoing {}
 
 impl Ongoing for Nothing {}
@@ -92,14 +92,14 @@ impl Ongoing for Stalled {}
 
 struct Nothing;
 
-/// Another program that writes to the database, and takes its time.
+/// Another program that locks the database for writing.
 pub struct Held {
     release: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Held {
-    /// Returns when the database is held.
+    /// Returns when the database is locked.
     pub fn hold(database: &Path) -> Self {
         let (release, released) = mpsc::channel();
         let (ready, is_ready) = mpsc::channel();
@@ -110,7 +110,7 @@ impl Held {
                 let mut visitor = options.connect().await.expect("the database can be opened");
                 sqlx::raw_sql("BEGIN IMMEDIATE").execute(&mut visitor).await.expect("the database can be held");
                 ready.send(()).expect("somebody waits");
-                // An error says that the trouble is over, too.
+                // An error means that the fault has ended, too.
                 let _ = released.recv();
                 sqlx::raw_sql("ROLLBACK").execute(&mut visitor).await.expect("nothing was written");
                 visitor.close().await.expect("the database is let go");
@@ -125,7 +125,7 @@ impl Drop for Held {
     fn drop(&mut self) {
         self.release.take();
         if let Some(thread) = self.thread.take() {
-            // A panic over there has been printed.
+            // Its panic is already printed.
             let _ = thread.join();
         }
     }
@@ -133,7 +133,7 @@ impl Drop for Held {
 
 const SWITCH: &str = "slow";
 
-/// A library in front of the daemon's calls to `fsync`. Needs a C compiler.
+/// A library that delays the `fsync` calls of the daemon. Needs a C compiler.
 fn slow_sync(folder: &Path) -> Option<PathBuf> {
     let library = folder.join("slow_sync.so");
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/slow_sync.c");
@@ -145,7 +145,7 @@ fn slow_sync(folder: &Path) -> Option<PathBuf> {
     Some(library)
 }
 
-/// What the library wants to know.
+/// Environment variables of the library.
 pub fn slow_sync_settings(folder: &Path) -> [(&'static str, PathBuf); 2] {
     [("FAULT_SYNC_WHILE", folder.join(SWITCH)), ("FAULT_SYNC_S", PathBuf::from("3"))]
 }
@@ -165,13 +165,13 @@ impl Drop for Switch {
     }
 }
 
-/// A file system in memory, small enough to be filled.
+/// A small file system in memory.
 pub struct SmallDisk {
     pub folder: TempDir,
 }
 
 impl SmallDisk {
-    /// Only for root.
+    /// Requires root.
     fn mount() -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
         let mount = ["-t", "tmpfs", "-o", "size=24m", "tmpfs"];
@@ -186,7 +186,7 @@ impl SmallDisk {
 
 impl Drop for SmallDisk {
     fn drop(&mut self) {
-        // Lazily: the daemon may not have let it go yet.
+        // Lazy unmount: the daemon may still use it.
         let unmounted = Command::new("umount").arg("-l").arg(self.folder.path()).status();
         if !unmounted.is_ok_and(|status| status.success()) {
             eprintln!("{} stays mounted", self.folder.path().display());
@@ -200,7 +200,7 @@ impl Filler {
     fn fill(folder: &Path) -> Self {
         let path = folder.join("filler");
         let mut file = File::create(&path).expect("there is room for a name");
-        // The last error says that the disk is full, which is what is wanted.
+        // The loop ends with the error of a full disk.
         for size in [1 << 20, 1 << 12, 1] {
             while file.write_all(&vec![0; size]).is_ok() {}
         }
@@ -214,15 +214,15 @@ impl Drop for Filler {
     }
 }
 
-/// Clients that let a model be fitted and diagnosed, one after the other.
+/// Clients that request fits and diagnoses in sequence.
 struct Fits {
     over: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
 }
 
-/// More than there are cores.
+/// More than the number of cores.
 const FITTERS: usize = 4;
-/// Large enough that one diagnosis takes seconds.
+/// Large enough for a diagnosis of some seconds.
 const IMPORTED_ROWS: usize = 40_000;
 const IMPORTED: &str = "big";
 
@@ -248,13 +248,13 @@ impl Drop for Fits {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Release);
         for thread in self.threads.drain(..) {
-            // A panic over there has been printed.
+            // Its panic is already printed.
             let _ = thread.join();
         }
     }
 }
 
-/// Once for each store.
+/// Imported once for each store.
 fn imported(client: &Client) -> i64 {
     let all = client.get("/runs?search=procedure:import");
     let there = all["runs"].as_array().and_then(|runs| runs.iter().find(|run| run["bench"] == IMPORTED));
@@ -267,7 +267,7 @@ fn imported(client: &Client) -> i64 {
 
 const CONNECTIONS: usize = 200;
 
-/// Half a request each, and then nothing.
+/// Connections that send half a request and then nothing.
 struct Stalled(#[allow(dead_code, reason = "held open until it is dropped")] Vec<TcpStream>);
 
 impl Stalled {

@@ -1,15 +1,15 @@
-//! What went over the wire to the drive, from the traffic that the daemon records.
+//! Commands to the drive, from the traffic that the daemon records.
 
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// Takes the torque of the drive away.
+/// Removes the torque of the drive.
 const DISARM: &str = "w axis0.requested_state 1*";
-/// Closes the velocity loop: from here on the drive holds torque.
+/// Closes the velocity loop: the drive has torque from now on.
 const ARM: &str = "w axis0.requested_state 8*";
-/// Asks for position and velocity: once in each control tick.
+/// Requests position and velocity, once in each control tick.
 const READ: &str = "f 0*";
 
 pub fn now_s() -> f64 {
@@ -42,7 +42,7 @@ impl Command {
     }
 }
 
-/// The record of one worker's wire to the drive, read as it grows.
+/// The growing traffic record of one worker's drive.
 pub struct Wire {
     file: File,
     opened_s: Option<f64>,
@@ -51,7 +51,7 @@ pub struct Wire {
 }
 
 impl Wire {
-    /// The newest record below `folder`, one folder for each worker.
+    /// The newest record below `folder`, which has one folder for each worker.
     pub fn newest(folder: &Path) -> Option<Self> {
         let mut workers: Vec<PathBuf> =
             fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -60,7 +60,7 @@ impl Wire {
         Some(Self { file, opened_s: None, rest: String::new(), commands: Vec::new() })
     }
 
-    /// Takes in what was written since the last look.
+    /// Reads the data since the last call.
     pub fn look(&mut self) {
         let mut new = String::new();
         self.file.read_to_string(&mut new).expect("the record is text");
@@ -84,18 +84,18 @@ impl Wire {
         self.commands.push(Command { at_s: at_s + self.opened_s.expect("the record says when it began"), text });
     }
 
-    /// The first command at or after this moment that takes the torque away.
+    /// Time of the first command at or after `at_s` that removes the torque.
     pub fn disarmed_after(&self, at_s: f64) -> Option<f64> {
         self.commands.iter().find(|command| command.at_s >= at_s && command.disarms()).map(|command| command.at_s)
     }
 
-    /// Since when the drive holds torque, where it does.
+    /// Time since which the drive has torque.
     pub fn armed_since(&self) -> Option<f64> {
         let last = self.commands.iter().rev().find(|command| command.arms() || command.disarms())?;
         last.arms().then_some(last.at_s)
     }
 
-    /// The control of the stretch that was armed last.
+    /// Control statistics of the last armed period.
     pub fn control(&self) -> Control {
         let from = self.commands.iter().rposition(Command::arms).unwrap_or_default();
         let armed = &self.commands[from..];
@@ -113,10 +113,10 @@ impl Wire {
     }
 }
 
-/// How a run was controlled while the drive held torque.
+/// Control of a run while the drive had torque.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Control {
     pub ticks: usize,
-    /// Between two commands on the drive's wire.
+    /// Longest time between two commands to the drive.
     pub longest_silence: Duration,
 }

@@ -1,4 +1,4 @@
-//! The main path in a real browser. Skipped loudly where there is none, unless `JOINTBENCH_REQUIRE_BROWSER=1`.
+//! The main workflow in a real browser. Skipped with a message if there is none, unless `JOINTBENCH_REQUIRE_BROWSER=1`.
 
 use crate::house::root;
 use crate::program::Daemon;

@@ -1,4 +1,4 @@
-//! `jointbench demo`: the main job without a further word.
+//! `jointbench demo`: the main workflow without further arguments.
 
 use crate::program::{run, stderr, stdout};
 

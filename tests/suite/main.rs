@@ -1,4 +1,4 @@
-//! One integration binary: each folder is one subject, as a user or a reader of the code meets it.
+//! One integration binary: each folder is one subject, from the view of a user or of a reader of the code.
 
 mod browser;
 mod daemon;

@@ -1,9 +1,9 @@
-//! Measurements by others and practice cases, which lie beside the project and are not part of it.
+//! Measurements of others and practice cases, which are stored outside of the project.
 
 use crate::house::root;
 use std::path::PathBuf;
 
-/// A place below `../shared`, or `None` with a message where it is missing: such a test is skipped.
+/// A path below `../shared`. `None`, with a message, if it is missing: the test is skipped.
 pub fn shared(place: &str) -> Option<PathBuf> {
     let path = root().join("../shared").join(place);
     if path.exists() {

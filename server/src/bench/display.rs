@@ -1,4 +1,4 @@
-//! Shows what a run brings, as it comes: what is shown here may not be durable yet, and the bench says so.
+//! Shows the live data of a run. This data may not be durable yet; the status of the bench reports that.
 
 use super::health::Health;
 use super::shared::Shared;
@@ -11,15 +11,15 @@ use jointbench_model::export::Alongside;
 use jointbench_procedure::{self as procedure, RunId};
 use std::time::{Duration, Instant};
 
-/// A mock bench outruns the clock on the wall; eyes do not.
+/// Limits the update rate of the display, because a mock bench may run faster than real time.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
-/// The pace of a mock bench weighs as much as this time of the run [s].
+/// Weight of the mock bench's nominal pace in the estimate, as run time [s].
 const PACE_HOLDS_S: f64 = 2.0;
-/// Limits and channels of a bench.
+/// Update interval of limits and channels.
 const BENCH_EVERY: Duration = Duration::from_millis(500);
 
 pub(super) struct Display {
-    /// The last model of the bench, beside what is measured. `None` from where it cannot tell.
+    /// The last model of the bench, evaluated with the live data. `None` after the first failure.
     model: Option<Alongside>,
     health: Health,
     told_progress: Option<Instant>,
@@ -55,8 +55,8 @@ impl Display {
         }
     }
 
-    /// The time of a mock bench may run faster than that of the person who waits, but never faster than its pace. It begins with
-    /// that pace: the first moments of a run hold its start as well.
+    /// Converts the remaining time of a mock bench to wall-clock time, limited by its pace. The nominal pace is the
+    /// initial estimate, because the first moments of a run include its start.
     fn on_the_wall(&self, pace: Option<f64>, progress: &procedure::Progress) -> Progress {
         let elapsed_s = self.began.elapsed().as_secs_f64();
         let wall = match pace {
@@ -74,7 +74,7 @@ impl Display {
         }
     }
 
-    /// The rows with the torque of the motor, as measured and as the model has it.
+    /// Adds the measured and the predicted motor torque to the rows.
     fn beside_model(&mut self, rows: Trace) -> Trace {
         let Some([measured, predicted]) = self.model.as_mut().and_then(|model| model.tell(&rows)) else {
             self.model = None;

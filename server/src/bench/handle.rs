@@ -1,4 +1,4 @@
-//! The way to a bench for everybody. Cheap to clone.
+//! Handle of a bench for all clients. Cheap to clone.
 
 use super::display::Display;
 use super::keeper::{Item, Keeper, NEVER_BEGAN};
@@ -20,9 +20,9 @@ use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
 
-/// A worker that does not answer for so long is busy with an instrument that does not answer.
+/// A worker that does not answer within this time waits for an instrument.
 const ANSWERS: Duration = Duration::from_secs(1);
-/// Whoever presses the stop hears within this time whether it is stored.
+/// Maximum time for the answer to a software stop, stored or not.
 const STORES: Duration = Duration::from_millis(500);
 const STOPPED: &str = "software stop pressed";
 
@@ -32,18 +32,18 @@ pub struct BenchHandle {
     thread: Arc<Mutex<Option<JoinHandle<()>>>>,
 }
 
-/// What a bench begins with.
+/// Initial state of a bench.
 pub struct Beginning {
     pub description: BenchDescription,
-    /// Why the bench must not move already.
+    /// An existing block of the bench.
     pub block: Option<SafetyRecord>,
     /// The runs that another daemon left open on this bench.
     pub interrupted: Vec<RunId>,
 }
 
 impl BenchHandle {
-    /// Starts the worker, which opens the instruments and secures them. `program`: the file of `jointbench`. Within the
-    /// runtime.
+    /// Starts the worker, which opens and secures the instruments. Requires a runtime. `program`: path of the
+    /// `jointbench` executable.
     pub fn start(beginning: Beginning, store: Store, hub: Hub, data: &Path, program: &Path) -> std::io::Result<Self> {
         let Beginning { description, block, interrupted } = beginning;
         let (to_keep, items) = mpsc::unbounded_channel();
@@ -69,17 +69,16 @@ impl BenchHandle {
         self.shared.status.borrow().clone()
     }
 
-    /// To wait for a change.
     pub fn watch(&self) -> watch::Receiver<Status> {
         self.shared.status.subscribe()
     }
 
-    /// What a procedure may know before anything moves, instruments open or not.
+    /// Data for planning, independent of whether the instruments are open.
     pub fn facts(&self) -> BenchFacts {
         facts(&self.shared.description)
     }
 
-    /// Reserves the bench for one run. [`LabError::Conflict`] where another is on, or not yet stored.
+    /// Reserves the bench for one run. [`LabError::Conflict`] if another run is active or not yet stored.
     pub fn claim(&self) -> Result<Claim, LabError> {
         let name = self.name();
         let taken = self.shared.claimed.compare_exchange(false, true, Ordering::AcqRel, Ordering::Acquire).is_err();
@@ -100,24 +99,24 @@ impl BenchHandle {
         Ok(Claim { bench: self.clone() })
     }
 
-    /// A run is on, about to be, or not yet stored.
+    /// Whether a run is active, starting, or not yet stored.
     pub fn is_busy(&self) -> bool {
         self.shared.is_busy(&self.shared.status.borrow())
     }
 
-    /// Returns when no run is on, about to be, or not yet stored; also when the daemon ends.
+    /// Waits until no run is active, starting, or not yet stored; also returns when the daemon ends.
     pub async fn until_free(&self) {
         drop(self.watch().wait_for(|status| !self.shared.is_busy(status)).await);
     }
 
-    /// Whether this run was there to hear it.
+    /// `false` if the run was not active.
     pub fn control(&self, run: RunId, demand: Demand) -> bool {
         let is_on = self.shared.status.borrow().runs.get(&run).is_some_and(|run| !run.ended && !run.state.is_final());
         is_on && self.shared.order(&Order::Control(demand)).is_ok()
     }
 
-    /// The software stop: nothing starts any more, what is on ends, the bench is secured. Returns when the worker knows of
-    /// it, and when it is stored, where that does not take long.
+    /// Software stop: blocks new runs, ends the active run and secures the bench. Returns when the worker has received
+    /// it and, if that is fast, when it is stored.
     pub async fn stop(&self, by: &str) {
         let run = self.shared.status.borrow().run;
         let block = self.shared.new_block(true, STOPPED, run, Some(by));
@@ -129,16 +128,16 @@ impl BenchHandle {
             Err(_) => tracing::warn!(bench = self.name(), "the bench worker is away: the next one begins stopped"),
         }
         let stored = |status: &Status| status.blocked.as_ref().is_none_or(|block| block.stored || block.since != at);
-        // Where that takes longer, the bench says that the stop is not yet stored.
+        // If storing takes longer, the bench reports that the stop is not yet stored.
         drop(timeout(STORES, self.watch().wait_for(stored)).await);
     }
 
-    /// The block that began at this moment was lifted in the store.
+    /// Releases the block that began at `since`; the store already contains the release.
     pub fn lift(&self, since: &str) -> bool {
         self.shared.lift(since)
     }
 
-    /// Tries the instruments again that did not answer, and secures the bench.
+    /// Reconnects the instruments that did not answer, and secures the bench.
     pub async fn reopen(&self) -> Result<(), LabError> {
         let wanting: Vec<String> = {
             let status = self.shared.status.borrow();
@@ -148,7 +147,7 @@ impl BenchHandle {
         done.await.map(drop).map_err(|_| self.gone())
     }
 
-    /// Ranges of the memory of the joint's servo, first address and number of bytes. No run can begin meanwhile.
+    /// Reads ranges (first address, number of bytes) of the servo's memory. No run can start meanwhile.
     pub async fn read_memory(&self, ranges: Vec<(u8, u8)>) -> Result<Vec<Vec<u8>>, LabError> {
         let _claim = self.claim()?;
         let done =
@@ -163,7 +162,7 @@ impl BenchHandle {
         }
     }
 
-    /// Ends a run that is on, secures the bench and ends the worker. Blocks until then.
+    /// Ends an active run, secures the bench and ends the worker. Blocks until then.
     pub fn shut_down(&self) {
         self.shared.ending.store(true, Ordering::Release);
         if self.shared.order(&Order::Quit).is_err() {
@@ -176,7 +175,7 @@ impl BenchHandle {
         }
     }
 
-    /// The last model that the bench has of such a run, where it can tell row by row.
+    /// The last model of the bench for such a run, if it supports row-by-row evaluation.
     async fn alongside(&self, run: RunId, plan: &Plan) -> Option<Alongside> {
         let last = self.shared.store.last_model(self.name(), &plan.kind.to_string(), run).await;
         let model = last.inspect_err(|fault| tracing::error!(run.id = run, %fault, "the last model cannot be read"));
@@ -193,7 +192,7 @@ impl BenchHandle {
     }
 }
 
-/// What a procedure may know of a described bench before anything moves.
+/// Data of a described bench for planning.
 pub fn facts(description: &BenchDescription) -> BenchFacts {
     let has = description.has();
     BenchFacts {
@@ -212,13 +211,13 @@ pub fn facts(description: &BenchDescription) -> BenchFacts {
     }
 }
 
-/// A bench that is reserved for a run. Dropped without a start, it is free again.
+/// Reservation of a bench for a run. Dropping it without a start releases the bench.
 pub struct Claim {
     bench: BenchHandle,
 }
 
 impl Claim {
-    /// Hands a run that is in the store to the worker. Where there is none, the run is interrupted before it began.
+    /// Passes a stored run to the worker. Without a worker, the run is interrupted before its start.
     pub async fn start(self, run: RunId, plan: Plan) -> Result<(), LabError> {
         let bench = &self.bench;
         let display = Display::new(bench.alongside(run, &plan).await, plan.rate_hz);
@@ -237,7 +236,7 @@ impl Claim {
 impl Drop for Claim {
     fn drop(&mut self) {
         self.bench.shared.claimed.store(false, Ordering::Release);
-        // Whoever waits until the bench is free looks again.
+        // Wakes tasks that wait for a free bench.
         self.bench.shared.status.send_modify(|_| {});
     }
 }

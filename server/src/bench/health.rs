@@ -1,4 +1,4 @@
-//! How the channels of a run come in: how often, when last, and how many samples are missing.
+//! Input quality of the channels of a run: rate, time of the last sample, and number of missing samples.
 
 use crate::view::ChannelHealth;
 use jiff::{SignedDuration, Timestamp};
@@ -8,12 +8,12 @@ use jointbench_instrument::{Bench, Trace};
 use jointbench_procedure::engine::SLOW_EVERY_S;
 use serde::{Deserialize, Serialize};
 
-/// A rate is told over this long at least.
+/// Minimum time for the calculation of a rate.
 const OVER_S: f64 = 1.0;
-/// Moments are kept in whole microseconds: such as differ by less are one.
+/// Times are stored in microseconds: times with a smaller difference are equal.
 const SAME_S: f64 = 3e-6;
 
-/// How a channel comes in, as far as it is known.
+/// Input quality of a channel, as far as it is known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Incoming {
     name: String,
@@ -35,7 +35,7 @@ impl Incoming {
     }
 }
 
-/// What the bench feels in every run. Those of a run take their place.
+/// The channels of every run on this bench. The channels of a run replace them.
 pub(super) fn expected(bench: &Bench) -> Vec<Incoming> {
     let joint = bench.joint.resolution();
     let channels = [
@@ -57,23 +57,23 @@ pub(super) struct Health {
     period_s: f64,
     /// Time and segment of the newest row.
     newest: Option<(f64, f64)>,
-    /// Rows that did not come, the time between two segments apart.
+    /// Rows that are missing within segments.
     missing: u64,
     channels: Vec<Known>,
 }
 
-/// What is known of a channel that has a unit.
+/// State of a channel that has a unit.
 struct Known {
     at: usize,
     name: String,
-    /// Which column tells when it was felt, where that is not its row.
+    /// Column of the time offset of the measurement, if it differs from the time of the row.
     skew: Option<usize>,
-    /// A value that is not so much later than the last one is that one, held.
+    /// A reading within this time after the last one is a held value.
     apart_s: f64,
-    /// The readings that the rate is counted over: the first, the last, and how many follow the first.
+    /// Readings for the rate: first and last time, and number of readings after the first.
     over: Option<(f64, f64, u32)>,
     rate_hz: Option<f64>,
-    /// Rows without a value, behind the first that had one.
+    /// Rows without a value after the first value.
     empty: u64,
 }
 
@@ -101,7 +101,7 @@ impl Health {
         }
     }
 
-    /// `now`: when the newest row came.
+    /// `now`: arrival time of the newest row.
     pub fn told(&self, now: Timestamp) -> Vec<Incoming> {
         let newest_s = self.newest.map_or(0.0, |(at_s, _)| at_s);
         let tell = |channel: &Known| {
@@ -166,7 +166,7 @@ mod tests {
         let names = ["time_s", "link_torque_nm", "temperature_c", "brake_current_a", BRAKE_SKEW, "segment"];
         let mut rows = Trace::new(names.map(Channel::new).into());
         for at_s in times {
-            // The supply was read at every tenth of a second.
+            // The supply was read every 0.1 s.
             let read_s = (at_s * 10.0 + 1e-6).floor() / 10.0;
             rows.push_row(&[at_s, at_s.sin(), 25.0, 0.5, read_s - at_s, f64::from(u8::from(at_s > 3.0))]);
         }

@@ -1,4 +1,4 @@
-//! Opens the instruments of a description. Simulation swaps the wire, not the driver.
+//! Opens the instruments of a description. A simulation replaces the transport, not the driver.
 
 use crate::config::{BenchDescription, Source};
 use crate::view::{Instrument, InstrumentIdentity};
@@ -9,16 +9,16 @@ use jointbench_instrument::{Bench, Clock, SystemClock};
 use std::path::Path;
 use std::sync::Arc;
 
-/// What opening has brought: the instruments one by one, and the bench where all of them answer.
+/// Result of opening: each instrument, and the bench if all instruments answer.
 #[derive(Default)]
 pub struct Opened {
     pub instruments: Vec<Instrument>,
     pub bench: Option<Bench>,
-    /// Answers for as long as it is held.
+    /// The simulation runs until this is dropped.
     pub mock: Option<MockBench>,
 }
 
-/// Opens and identifies every instrument. Nothing is commanded. A fault is data here, and stands beside its instrument.
+/// Opens and identifies every instrument without commands. A fault is stored with its instrument.
 pub fn open(description: &BenchDescription) -> Opened {
     match reach(description) {
         Ok(Reached { slots, clock, mock }) => {
@@ -32,14 +32,14 @@ pub fn open(description: &BenchDescription) -> Opened {
     }
 }
 
-/// The instruments that answer, whatever the others do.
+/// The instruments that answer, independent of the others.
 pub struct Reached {
     pub slots: Instruments,
     clock: Arc<dyn Clock>,
     mock: Option<MockBench>,
 }
 
-/// `Err` says why there is no simulated bench, or no record.
+/// `Err`: why the simulated bench or the traffic record is not available.
 pub fn reach(description: &BenchDescription) -> Result<Reached, String> {
     let (mut settings, clock, mock): (_, Arc<dyn Clock>, _) = match &description.source {
         Source::Hardware(settings) => ((**settings).clone(), Arc::new(SystemClock::start()), None),
@@ -54,7 +54,7 @@ pub fn reach(description: &BenchDescription) -> Result<Reached, String> {
     Ok(Reached { slots: settings.open(&clock), clock, mock })
 }
 
-/// One folder for each opening: what went wrong before a bench was opened anew stays.
+/// One folder for each opening, so that a new opening does not overwrite earlier traffic.
 fn record(settings: &mut InstrumentSettings, folder: &Path) -> Result<(), String> {
     let folder = folder.join(Timestamp::now().strftime("%Y%m%dT%H%M%S%3fZ").to_string());
     std::fs::create_dir_all(&folder)

@@ -1,5 +1,5 @@
-//! Stores what the worker of a bench brings, in order, and tries again for as long as the disk does not take it. Nobody but
-//! this task waits for the disk.
+//! Stores the commits of a bench worker in order, and retries until the disk accepts them. Only this task waits for the
+//! disk.
 
 use super::shared::Shared;
 use super::status::New;
@@ -16,28 +16,28 @@ use tokio::sync::mpsc::UnboundedReceiver;
 use tokio::sync::oneshot;
 use tokio::time::{sleep, timeout};
 
-/// So often it is tried again.
+/// Retry interval.
 const AGAIN_EVERY: Duration = Duration::from_millis(500);
-/// A disk that has not answered for so long is said to be slow.
+/// A disk that needs longer than this is reported as slow.
 const SLOW: Duration = Duration::from_millis(500);
 pub(super) const NEVER_BEGAN: &str = "the bench became unavailable before the run started";
-/// So many commits become durable together.
+/// Maximum number of commits in one transaction.
 const MOST_TOGETHER: usize = 64;
 
 pub(super) enum Item {
     Entry(Arc<Entry>),
-    /// The worker died: how its run ended is said here.
+    /// The worker ended: the keeper stores the end of its run.
     Interrupted {
         run: RunId,
         safe: Safe,
         reason: &'static str,
     },
     Fault(New),
-    /// Answered when everything before it is stored.
+    /// Answered when all earlier items are stored.
     Flush(oneshot::Sender<()>),
 }
 
-/// What is stored in one transaction.
+/// Data of one transaction.
 enum Work {
     Commits(Vec<Arc<Entry>>),
     Interruption { run: RunId, safe: Safe, reason: &'static str },
@@ -46,7 +46,7 @@ enum Work {
 
 pub(super) struct Keeper {
     shared: Arc<Shared>,
-    /// The newest line of each run's journal that was told.
+    /// Number of the last published event of each run.
     told_events: BTreeMap<RunId, u64>,
 }
 
@@ -78,7 +78,7 @@ impl Keeper {
                 }
                 Item::Interrupted { run, safe, reason } => self.keep_interrupted(run, safe, reason).await,
                 Item::Fault(new) => drop(self.insist(&Work::Fault(new)).await),
-                // Whoever asked may have left.
+                // The requester may no longer wait.
                 Item::Flush(done) => drop(done.send(())),
             }
             if next.is_none() && items.is_empty() {
@@ -122,13 +122,13 @@ impl Keeper {
         self.shared.settle(run, |run| (run.ended, run.stored) = (true, true));
     }
 
-    /// Tries until it is stored, or the store says that it never will be. Whether it is.
+    /// Retries until the data is stored (`true`), or until the store refuses it permanently (`false`).
     async fn insist(&self, work: &Work) -> bool {
         loop {
             match self.attempt(work).await {
                 Ok(()) => return true,
                 Err(fault) if fault.may_pass() => {
-                    // A run goes on while a visitor holds the database; what else is wrong will hardly pass by itself.
+                    // A run continues while another program locks the database; other faults end the run.
                     self.set_trouble(Some((fault.to_string(), !matches!(fault, StoreError::Held))));
                     tokio::select! {
                         () = sleep(AGAIN_EVERY) => {}
@@ -143,7 +143,7 @@ impl Keeper {
         }
     }
 
-    /// Once. A disk that does not answer is told while it is waited for.
+    /// One attempt. Reports a slow disk during the wait.
     async fn attempt(&self, work: &Work) -> Result<(), StoreError> {
         self.shared.store.fill_disk(self.shared.disk_is_full.load(Ordering::Acquire)).await?;
         let mut attempt = std::pin::pin!(self.store(work));
@@ -172,7 +172,7 @@ impl Keeper {
         }
     }
 
-    /// What is wrong with storing, and whether that ends the run that is on.
+    /// Sets the storage fault and whether it ends the active run.
     fn set_trouble(&self, trouble: Option<(String, bool)>) {
         let shared = &self.shared;
         let (fault, ends_run) = trouble.unzip();
@@ -191,7 +191,7 @@ impl Keeper {
         self.tell_ends_that_wait();
     }
 
-    /// A run that is over is shown as such, whatever the disk does.
+    /// Publishes the ends of runs before they are stored.
     fn tell_ends_that_wait(&self) {
         let over: Vec<RunId> = {
             let status = self.shared.status.borrow();
@@ -200,7 +200,7 @@ impl Keeper {
         over.into_iter().for_each(|run| self.tell_end(run));
     }
 
-    /// Tells the journal's new lines with the numbers that the store gave them.
+    /// Publishes the new events with the numbers from the store.
     async fn tell_events(&mut self, run: RunId) {
         let told = self.told_events.entry(run).or_default();
         for event in self.shared.store.events(run, *told).await.unwrap_or_default() {
@@ -222,7 +222,7 @@ impl Keeper {
     }
 }
 
-/// Stores a block as soon as that can be, before anything else that waits.
+/// Stores a block as soon as possible, before other waiting data.
 pub(super) fn keep_block(shared: Arc<Shared>, block: SafetyRecord) {
     shared.runtime.clone().spawn(async move {
         while let Err(fault) = shared.store.keep_block(shared.name(), &block).await {

@@ -1,5 +1,5 @@
-//! What a worker could not hand to the store, because the server part of the daemon ended before it: one file in the data
-//! folder, which the next start stores and removes.
+//! Data that a worker could not send to the store because the server part of the daemon had ended. A file in the data
+//! folder holds it; the next start stores the data and removes the file.
 
 use super::wire::{Entry, receive, send};
 use super::worker::file_name;
@@ -14,11 +14,11 @@ use std::sync::Arc;
 
 const FOLDER: &str = "unstored";
 const ENDING: &str = "msgpack";
-/// Of a file that is being written.
+/// Extension of an incomplete file.
 const UNFINISHED: &str = "part";
 const LOST_STOP: &str =
     "a file in the folder unstored is damaged or unfinished; a stop may be lost: inspect the bench before the reset";
-/// Of a file that holds what no run takes: kept for a person to look at, never read again.
+/// Extension of a file with commits that the store refused. It is kept for a person and not read again.
 const NO_PLACE: &str = "no-place";
 
 #[derive(Serialize, Deserialize)]
@@ -28,7 +28,7 @@ struct Leftovers {
     entries: Vec<Arc<Entry>>,
 }
 
-/// Writes what is left, where something is, and returns the file. What cannot be written is logged, and lost.
+/// Writes unstored data, if any, to a file and returns its path. A write error is logged and the data is lost.
 pub(super) fn leave(data: &Path, bench: &str, block: Option<SafetyRecord>, entries: &[Arc<Entry>]) -> Option<PathBuf> {
     if block.is_none() && entries.is_empty() {
         return None;
@@ -47,7 +47,7 @@ pub(super) fn leave(data: &Path, bench: &str, block: Option<SafetyRecord>, entri
     }
 }
 
-/// Whole or not there: behind its digest, and under its name only when it is on the disk.
+/// Atomic: writes data and digest to a temporary file, and renames it after it is on the disk.
 fn write(folder: &Path, left: &Leftovers) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     let mut body = Vec::new();
@@ -74,11 +74,11 @@ fn read(path: &Path) -> io::Result<Leftovers> {
     receive(&mut &*body)?.ok_or_else(damaged)
 }
 
-/// Stores what workers have left in the data folder. A file with commits that no run takes is set aside under another ending;
-/// so is one that is damaged or was never finished, behind which a stop may be lost: the benches are blocked.
+/// Stores the files that workers left in the data folder. A file with refused commits, a damaged file and an incomplete
+/// file are renamed. After the latter two, a stop may be lost: the benches are blocked.
 ///
 /// # Errors
-/// Where the store refuses; the file stays for the next start.
+/// Errors of the store; the file remains for the next start.
 pub async fn store_all(data: &Path, store: &Store) -> Result<(), StoreError> {
     let Ok(found) = fs::read_dir(data.join(FOLDER)) else { return Ok(()) };
     let mut files: Vec<PathBuf> = found.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -109,14 +109,14 @@ pub async fn store_all(data: &Path, store: &Store) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// Whether every commit found its place.
+/// Whether the store accepted every commit.
 async fn store_one(left: Leftovers, store: &Store) -> Result<bool, StoreError> {
     use StoreError as E;
     let Leftovers { bench, block, entries } = left;
     let mut all_placed = true;
     for entry in &entries {
         match store.commit_all(&[&entry.commit]).await {
-            // Ended by a start that did not know of them, or the commit before it never came. The daemon starts all the same.
+            // The run is already ended, or an earlier commit is missing. The daemon starts anyway.
             Err(fault @ (E::RunOver { .. } | E::NoRun(_) | E::CommitMissing { .. } | E::OtherChannels { .. })) => {
                 tracing::error!(run.id = entry.commit.run, %fault, "what a worker has left has no place");
                 all_placed = false;

@@ -1,4 +1,4 @@
-//! A look at every instrument that answers: its state, and how fast it is read. Nothing is commanded.
+//! State and read rate of every instrument that answers. Sends no commands.
 
 use jointbench_devices::Instruments;
 use jointbench_instrument::Fault;
@@ -7,21 +7,21 @@ use jointbench_instrument::roles::{
 };
 use std::time::{Duration, Instant};
 
-/// Readings that are timed, and the longest that this may take.
+/// Maximum number of timed readings, and their maximum time.
 const READINGS: usize = 200;
 const LONGEST: Duration = Duration::from_millis(400);
-/// More brake current than this is not the offset of a meter.
+/// A brake current above this value exceeds the offset of a meter.
 const NO_CURRENT_A: f64 = 0.01;
 
-/// What was seen of one instrument.
+/// Check result of one instrument.
 pub struct Look {
     pub role: &'static str,
-    /// `Err`: why it is not ready, and what to do.
+    /// `Err`: why it is not ready, with the remedy.
     pub state: Result<String, String>,
     pub timing: Option<Timing>,
 }
 
-/// How long a reading takes on the clock on the wall.
+/// Duration of a reading, in wall-clock time.
 #[derive(Debug, Clone, Copy)]
 pub struct Timing {
     pub median: Duration,
@@ -64,7 +64,7 @@ pub fn look(slots: &mut Instruments) -> Vec<Look> {
 }
 
 type Seen = (Result<String, String>, Option<Timing>);
-/// What an instrument tells, and what stands against its use.
+/// Description of an instrument, and a reason against its use.
 type State = Result<(String, Option<String>), Fault>;
 
 fn seen(timing: Result<Timing, Fault>, state: impl FnOnce() -> State) -> Seen {

@@ -1,5 +1,5 @@
-//! One bench, one worker: a process of its own holds the instruments ([`worker`]), everybody else a [`BenchHandle`]. Between
-//! them go messages ([`wire`]); what is to be stored goes through one task ([`keeper`]), which alone waits for the disk.
+//! Each bench has one worker process, which owns the instruments ([`worker`]). Other code uses a [`BenchHandle`]. They
+//! exchange messages ([`wire`]). One task ([`keeper`]) stores all data, and only this task waits for the disk.
 
 mod display;
 mod handle;

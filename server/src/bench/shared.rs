@@ -1,4 +1,4 @@
-//! What the server's side of a bench shares: its status, the way to its worker, what keeps it from moving.
+//! Shared state of a bench in the server: its status, the connection to its worker, and its block.
 
 use super::display::Display;
 use super::keeper::Item;
@@ -25,17 +25,17 @@ pub(super) struct Shared {
     pub hub: Hub,
     pub data: PathBuf,
     pub program: PathBuf,
-    /// For the threads that are none of its own.
+    /// For threads outside of the runtime.
     pub runtime: Handle,
     pub status: watch::Sender<Status>,
-    /// In the order in which it is to be stored.
+    /// Queue of the data to store, in order.
     pub to_keep: UnboundedSender<Item>,
     pub display: Mutex<Option<Display>>,
-    /// The bench is reserved for a run that has no number yet.
+    /// The bench is reserved for a run without a number.
     pub claimed: AtomicBool,
-    /// The daemon ends: the worker is not started again.
+    /// The daemon ends: the worker is not restarted.
     pub ending: AtomicBool,
-    /// Whether the mock bench has a full disk, and that this has changed.
+    /// Whether the mock bench simulates a full disk, and a notification of changes.
     pub disk_is_full: AtomicBool,
     pub disk_changed: Notify,
     orders: Mutex<Option<ChildStdin>>,
@@ -43,12 +43,12 @@ pub(super) struct Shared {
     last_ticket: AtomicU64,
 }
 
-/// The worker of the bench is not there to hear it.
+/// The bench has no worker that could receive the order.
 #[derive(Debug)]
 pub(super) struct NoWorker;
 
 impl Shared {
-    /// Within the runtime.
+    /// Requires a runtime.
     pub fn new(
         description: BenchDescription,
         store: Store,
@@ -80,11 +80,11 @@ impl Shared {
         &self.description.name
     }
 
-    /// A worker has come, or has gone.
+    /// Sets or removes the connection to the worker.
     pub fn set_worker(&self, orders: Option<ChildStdin>) {
         *lock(&self.orders) = orders;
         if lock(&self.orders).is_none() {
-            // Whoever waits for an answer of it waits in vain.
+            // The worker sends no more answers: end the waiting requests.
             lock(&self.tickets).clear();
         }
     }
@@ -94,7 +94,7 @@ impl Shared {
         wire::send(orders.as_mut().ok_or(NoWorker)?, order).map_err(|_| NoWorker)
     }
 
-    /// An order whose being done is told, with what was read.
+    /// Sends an order and returns a receiver for its completion, with the data that was read.
     pub fn order_and_hear(
         &self,
         order: impl FnOnce(u64) -> Order,
@@ -108,12 +108,12 @@ impl Shared {
 
     pub fn done(&self, ticket: u64, read: Option<MemoryRead>) {
         if let Some(done) = lock(&self.tickets).remove(&ticket) {
-            // Whoever asked may have left.
+            // The requester may no longer wait.
             let _ = done.send(read);
         }
     }
 
-    /// `status` is that of this bench: whoever waits for a change holds it already, and must not ask for it again.
+    /// `status` is an argument because a waiting task already holds its lock.
     pub fn is_busy(&self, status: &Status) -> bool {
         self.claimed.load(Ordering::Acquire) || !status.runs.is_empty()
     }
@@ -130,7 +130,7 @@ impl Shared {
         self.hub.tell(LiveMessage::Bench { bench: Box::new(bench) });
     }
 
-    /// A block that begins now. What blocked the bench before is not forgotten over it.
+    /// A block from now on. It keeps an earlier software stop and its reason.
     pub fn new_block(&self, stopped: bool, reason: &str, run: Option<RunId>, by: Option<&str>) -> SafetyRecord {
         let before = self.status.borrow().blocked.clone();
         let reason = match &before {
@@ -143,7 +143,7 @@ impl Shared {
         SafetyRecord { blocked: true, stopped, reason, run, by: by.map(str::to_owned), at }
     }
 
-    /// Nothing moves on this bench from here on, until a person lifts the block: shown at once, stored as soon as that can be.
+    /// Blocks all motion until a person releases the block: shown immediately, stored as soon as possible.
     pub fn enter(self: &Arc<Self>, block: SafetyRecord) {
         self.change(|status| {
             status.blocked = Some(blocked(&block, false));
@@ -156,7 +156,7 @@ impl Shared {
         super::keeper::keep_block(self.clone(), block);
     }
 
-    /// The block that began at this moment is lifted; one that began later is not. Whether nothing blocks the bench now.
+    /// Releases the block that began at `since`, no later block. Returns whether the bench is free.
     pub fn lift(&self, since: &str) -> bool {
         let is_free = self.change(|status| {
             status.blocked.take_if(|blocked| blocked.since == since);
@@ -183,7 +183,7 @@ impl Shared {
         }
     }
 
-    /// A run leaves the list when its worker is through with it and its end is stored.
+    /// Removes a run when its worker has finished and its end is stored.
     pub fn settle(&self, run: RunId, change: impl FnOnce(&mut Underway)) {
         self.change(|status| {
             let Some(underway) = status.runs.get_mut(&run) else { return };

@@ -1,4 +1,4 @@
-//! What the server knows of a bench.
+//! State of a bench as known to the server.
 
 use super::health::Incoming;
 use crate::store::RunCommit;
@@ -9,17 +9,17 @@ use jointbench_instrument::{Fault, Trace};
 use jointbench_procedure::{EventKind, RunId, RunState, Safe};
 use std::collections::BTreeMap;
 
-/// So many of the last faults of an instrument are told.
+/// Number of the last faults that are shown for an instrument.
 pub(super) const FAULTS: usize = 5;
 
-/// A fault that a run has met.
+/// A fault during a run.
 pub(super) struct Met {
     pub at: Timestamp,
     pub fault: Fault,
     pub recovered: bool,
 }
 
-/// A fault that nobody knew of yet.
+/// A fault that is not yet recorded.
 pub(super) struct New {
     pub instrument: String,
     pub fault: InstrumentFault,
@@ -32,27 +32,27 @@ pub struct Status {
     pub progress: Option<Progress>,
     pub instruments: Vec<Instrument>,
     pub blocked: Option<Blocked>,
-    /// The newest row of the run, against the limits.
+    /// The newest row of the run, for comparison with the limits.
     pub readings: Vec<(Limited, f64)>,
     pub channels: Vec<Incoming>,
-    /// The worker has opened and secured the bench since it began, as far as that was possible.
+    /// Whether the worker has tried to open and secure the bench since its start.
     pub settled: bool,
-    /// All instruments answered when they were opened.
+    /// Whether all instruments answered when they were opened.
     pub open: bool,
-    /// Runs that are on, or of whose end the store does not know yet.
+    /// Runs that are active or whose end is not stored.
     pub runs: BTreeMap<RunId, Underway>,
     pub unstored: Unstored,
 }
 
-/// A run as its worker has told of it, which may be more than the store knows.
+/// State of a run as reported by its worker. It may be newer than the state in the store.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Underway {
     pub state: RunState,
     pub safe: Option<Safe>,
     pub reason: Option<String>,
-    /// The worker is through with it.
+    /// The worker has finished the run.
     pub ended: bool,
-    /// The store has its end.
+    /// The end is stored.
     pub stored: bool,
 }
 
@@ -61,7 +61,7 @@ impl Underway {
         Self { state: RunState::Queued, safe: None, reason: None, ended: false, stored: false }
     }
 
-    /// Takes over what a commit says.
+    /// Updates the state from a commit.
     pub(super) fn take_in(&mut self, commit: &RunCommit) {
         self.state = commit.state;
         for event in &commit.events {
@@ -74,13 +74,13 @@ impl Underway {
     }
 }
 
-/// What was measured and is not yet durable.
+/// Data that is measured but not yet durable.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Unstored {
     pub rows: usize,
-    /// Since when none of them was stored.
+    /// Start of the time in which none of them was stored.
     pub since: Option<Timestamp>,
-    /// Why nothing can be stored, or so slowly.
+    /// Why storing fails or is slow.
     pub fault: Option<String>,
 }
 
@@ -101,7 +101,7 @@ impl Status {
         }
     }
 
-    /// The bench has nothing on: its state comes from its block and its instruments.
+    /// Sets the state of an idle bench from its block and its instruments.
     pub(super) fn rest(&mut self) {
         self.state = match &self.blocked {
             Some(blocked) if blocked.stopped => BenchState::Stopped,
@@ -115,7 +115,7 @@ impl Status {
         self.readings.clear();
     }
 
-    /// What is known of a run whose end is not stored, where the store is in trouble; and why it is not stored.
+    /// State of a run whose end is not stored because of a storage fault, and that fault.
     pub fn not_stored(&self, run: RunId) -> Option<(&Underway, &str)> {
         Some((self.runs.get(&run)?, self.unstored.fault.as_deref()?))
     }
@@ -124,7 +124,7 @@ impl Status {
         self.readings.iter().find(|(limited, _)| *limited == quantity).map(|(_, value)| *value)
     }
 
-    /// A run has met a fault of an instrument, which is not ready until it was tried again where it did not come back.
+    /// Records a fault during a run. An instrument that did not recover is not ready until the next attempt.
     pub(super) fn met(&mut self, Met { at, fault, recovered }: &Met) -> Option<New> {
         let instrument = self.instruments.iter_mut().find(|one| one.name == fault.instrument)?;
         if !recovered {
@@ -135,7 +135,7 @@ impl Status {
         Some(enter(instrument, *at, fault.to_string()))
     }
 
-    /// The instruments as they were found by asking them. What was wrong before stays known; what is new is told.
+    /// Replaces the instruments by their new state. Keeps earlier faults and returns the new ones.
     pub(super) fn found(&mut self, mut instruments: Vec<Instrument>) -> Vec<New> {
         let mut new = Vec::new();
         for instrument in &mut instruments {
@@ -155,7 +155,6 @@ impl Status {
         new
     }
 
-    /// The faults of the instruments, in one sentence.
     pub fn faults(&self) -> Option<String> {
         let faults: Vec<&str> = self.instruments.iter().filter_map(|i| i.fault.as_deref()).collect();
         (!faults.is_empty()).then(|| faults.join("; "))
@@ -169,7 +168,7 @@ fn enter(instrument: &mut Instrument, at: Timestamp, text: String) -> New {
     New { instrument: instrument.name.clone(), fault }
 }
 
-/// The last row, as the limits see it.
+/// Values of the last row for comparison with the limits.
 pub(super) fn readings(rows: &Trace, gear_ratio: f64) -> Vec<(Limited, f64)> {
     let last = |name: &str| rows.column(name).and_then(|column| column.last().copied());
     let velocity = last("motor_velocity_rad_s");

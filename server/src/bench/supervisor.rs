@@ -1,4 +1,4 @@
-//! The thread of the server that has a worker: starts it, takes in what it reports, and starts another where it died.
+//! Server thread that starts a worker, processes its reports, and restarts it after a crash.
 
 use super::instruments::unreached;
 use super::keeper::{Item, NEVER_BEGAN};
@@ -19,24 +19,24 @@ use tokio::sync::oneshot;
 
 const DAEMON_ENDED: &str = "the daemon terminated during the run; its stored samples are kept";
 const WORKER_ENDED: &str = "the bench worker terminated during the run; samples that were not stored yet are lost";
-/// At its end a daemon waits so long for a store that does not take what is left.
+/// At its end, a daemon waits this long for the store to accept the remaining data.
 const DRAINED: Duration = Duration::from_secs(5);
-/// And so long for a worker that has secured its bench.
+/// Waiting time for a worker that has secured its bench.
 const GONE: Duration = Duration::from_secs(20);
 const SOONEST: Duration = Duration::from_millis(200);
 const LATEST: Duration = Duration::from_secs(10);
 const LOOK_EVERY: Duration = Duration::from_millis(20);
-/// A worker that lived so long did not die of its start.
+/// A worker with this lifetime did not fail at its start.
 const LIVED: Duration = Duration::from_secs(60);
 
 pub(super) struct Supervisor {
     shared: Arc<Shared>,
-    /// Runs that nobody makes any more, and of which it is not known how the bench was left.
+    /// Runs without a worker whose safe state is unknown.
     orphans: Vec<(RunId, &'static str)>,
 }
 
 impl Supervisor {
-    /// `interrupted`: the runs that another daemon left open on this bench.
+    /// `interrupted`: the runs that an earlier daemon left open on this bench.
     pub fn new(shared: Arc<Shared>, interrupted: Vec<RunId>) -> Self {
         shared.status.send_modify(|status| {
             status.runs = interrupted.iter().map(|run| (*run, Underway::queued())).collect();
@@ -44,7 +44,7 @@ impl Supervisor {
         Self { shared, orphans: interrupted.into_iter().map(|run| (run, DAEMON_ENDED)).collect() }
     }
 
-    /// Until the daemon ends.
+    /// Returns when the daemon ends.
     pub fn supervise(mut self) {
         let mut pause = SOONEST;
         loop {
@@ -68,7 +68,7 @@ impl Supervisor {
         }
     }
 
-    /// Whether another worker is wanted afterwards: a daemon that ends meanwhile waits for none.
+    /// Waits before a restart. Returns `false` if the daemon ends.
     fn rest(&self, pause: Duration) -> bool {
         let over = Instant::now() + pause;
         let is_ending = || self.shared.ending.load(Ordering::Acquire);
@@ -84,7 +84,7 @@ impl Supervisor {
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         #[cfg(unix)]
         {
-            // Ctrl-C in a terminal is the server's, which ends its workers in an orderly way.
+            // Ctrl-C in a terminal is only for the server, which ends its workers in order.
             use std::os::unix::process::CommandExt;
             command.process_group(0);
         }
@@ -95,7 +95,7 @@ impl Supervisor {
         let setup = Setup { description: shared.description.clone(), data: shared.data.clone(), block };
         let opened = shared.order(&Order::Open(Box::new(setup)));
         opened.map_err(|_| io::Error::other("it ends at once"))?;
-        // Whoever ends the daemon tells the worker that is there: one that comes just then has not heard it.
+        // A worker that starts during the end of the daemon may have missed the order to quit.
         if shared.ending.load(Ordering::Acquire) {
             shared.order(&Order::Quit).map_err(|_| io::Error::other("it ends at once"))?;
         }
@@ -103,7 +103,7 @@ impl Supervisor {
         Ok((child, reports))
     }
 
-    /// Takes in every report. Whether the worker came to its end in an orderly way.
+    /// Processes all reports. Returns whether the worker ended in order.
     fn attend(&mut self, reports: ChildStdout) -> bool {
         let mut reports = BufReader::new(reports);
         loop {
@@ -195,7 +195,7 @@ impl Supervisor {
         });
         self.keep_faults(new);
         if !commit.state.is_final() && commit.events.iter().any(|event| matches!(event.kind, EventKind::State { .. })) {
-            // The end is told with its reason, when it is stored.
+            // The keeper publishes the end with its reason when it is stored.
             shared.hub.tell(LiveMessage::State {
                 bench: shared.name().to_owned(),
                 run: commit.run,
@@ -222,7 +222,7 @@ impl Supervisor {
         self.shared.enter(self.shared.new_block(false, &reason, run, None));
     }
 
-    /// What was wrong with an instrument before the daemon was started.
+    /// Faults of an instrument before the start of the daemon.
     fn known_faults(&self, instrument: &str) -> Vec<InstrumentFault> {
         let shared = &self.shared;
         let known = shared.runtime.block_on(shared.store.faults(shared.name(), instrument, FAULTS as u32));
@@ -240,7 +240,7 @@ impl Supervisor {
         }
     }
 
-    /// Lets the store have what the worker has brought; a worker that is left with something leaves it in the data folder.
+    /// Waits until the store has the data of the worker. On a timeout the worker writes the rest to the data folder.
     fn drain(&self) {
         let (done, stored) = oneshot::channel();
         self.keep(Item::Flush(done));
@@ -254,7 +254,7 @@ impl Supervisor {
         }
     }
 
-    /// The bench has nobody: nothing moves, and what it does is not known until another worker has secured it.
+    /// Marks the bench as unreachable: its state is unknown until another worker has secured it.
     fn worker_is_gone(&mut self, finished: bool, how: &str) {
         let ending = self.shared.ending.load(Ordering::Acquire);
         if finished && ending {
@@ -269,7 +269,7 @@ impl Supervisor {
         for run in open {
             let is_over = self.shared.status.borrow().runs.get(&run).is_some_and(|run| run.state.is_final());
             if is_over {
-                // Its last word has come; only the worker's own end has not.
+                // The last commit of the run has arrived.
                 self.shared.settle(run, |run| run.ended = true);
             } else {
                 self.orphans.push((run, WORKER_ENDED));
@@ -312,7 +312,7 @@ fn record(blocked: &view::Blocked) -> SafetyRecord {
     SafetyRecord { blocked: true, stopped, reason, run: None, by, at: since }
 }
 
-/// How a worker ended; one that does not end is killed.
+/// Waits for the end of a worker and kills it after a timeout.
 fn wait(child: &mut Child) -> String {
     let give_up = Instant::now() + GONE;
     loop {
@@ -321,7 +321,7 @@ fn wait(child: &mut Child) -> String {
             Ok(None) if Instant::now() < give_up => {}
             Ok(None) => {
                 tracing::error!(process = child.id(), "the bench worker does not end and is killed");
-                // An error says that it has ended by itself.
+                // An error means that it has already ended.
                 let _ = child.kill();
             }
             Err(fault) => return fault.to_string(),

@@ -1,5 +1,5 @@
-//! What the server and the worker of a bench say to each other, over the worker's standard input and output: MessagePack,
-//! each message behind its length.
+//! Messages between server and bench worker, over standard input and output of the worker. A message is MessagePack,
+//! preceded by its length.
 
 use super::health::Incoming;
 use crate::config::BenchDescription;
@@ -13,20 +13,20 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Longer messages are none of ours: a plan that goes on from a long run is the longest.
+/// Limit of a message. The longest valid message is a plan that continues a long run.
 const LONGEST_BYTES: u32 = 1 << 30;
 
 /// From the server to the worker.
 #[derive(Debug, Serialize, Deserialize)]
 pub enum Order {
-    /// The first one.
+    /// The first message.
     Open(Box<Setup>),
     Run {
         run: RunId,
         plan: Box<Plan>,
     },
     Control(Demand),
-    /// The software stop. Carried out before anything else that waits.
+    /// The software stop. It has priority over other orders.
     Stop {
         block: SafetyRecord,
         ticket: u64,
@@ -34,61 +34,61 @@ pub enum Order {
     BlockStored {
         at: String,
     },
-    /// A person has looked: a block that began at this moment or earlier is lifted.
+    /// Releases a block that began at this time or earlier, after a person checked the bench.
     Release {
         until: String,
     },
-    /// Opens what is not open, asks these instruments again, and secures the bench.
+    /// Opens a closed bench, reconnects the named instruments, and secures the bench.
     Reopen {
         wanting: Vec<String>,
         ticket: u64,
     },
-    /// Reads these ranges of the memory of the joint's servo: first address and number of bytes.
+    /// Reads ranges (first address, number of bytes) of the memory of the joint's servo.
     ReadMemory {
         ranges: Vec<(u8, u8)>,
         ticket: u64,
     },
-    /// Everything up to this number is durable.
+    /// All entries up to this number are durable.
     Stored {
         number: u64,
     },
-    /// Why nothing can be stored now, or that it can again.
+    /// The storage fault, or `None` after recovery.
     Storage {
         fault: Option<String>,
     },
-    /// Ends the run that is on, secures the bench and ends the worker.
+    /// Ends an active run, secures the bench and ends the worker.
     Quit,
 }
 
-/// What a worker begins with.
+/// Initial data of a worker.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Setup {
     pub description: BenchDescription,
     /// The data folder, absolute.
     pub data: PathBuf,
-    /// What keeps the bench from moving already.
+    /// An existing block of the bench.
     pub block: Option<SafetyRecord>,
 }
 
 /// From the worker to the server.
 #[derive(Debug, Serialize, Deserialize)]
 pub enum Report {
-    /// The instruments, as opening or asking them again found them.
+    /// The instruments after they were opened or reconnected.
     Opened {
         instruments: Vec<Instrument>,
         channels: Vec<Incoming>,
         open: bool,
     },
-    /// No run is on: the bench was secured.
+    /// Result of securing the bench without a run.
     Secured {
         safe: Safe,
         notes: Vec<String>,
     },
-    /// What was asked for with this ticket is done; a stop: known, and being carried out.
+    /// The order with this ticket is done; a stop is received and in progress.
     Done {
         ticket: u64,
     },
-    /// What the memory of the joint's servo holds, asked for with this ticket.
+    /// Result of reading the memory of the joint's servo, for this ticket.
     Memory {
         ticket: u64,
         read: MemoryRead,
@@ -104,28 +104,28 @@ pub enum Report {
         run: RunId,
         end: RunEnd,
     },
-    /// The bench is not open, or nobody would store the run: nothing was commanded.
+    /// The bench is not open or the server is gone: nothing was commanded.
     NotBegun {
         run: RunId,
     },
-    /// The mock bench's disk has its bad day, or no longer.
+    /// Whether the mock bench simulates a full disk.
     DiskFull(bool),
-    /// The last one: the bench is secured, and nothing more will come.
+    /// The last message: the bench is secured.
     Finished,
 }
 
-/// What came of reading the memory of a joint's servo.
+/// Result of reading the memory of a joint's servo.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MemoryRead {
     /// The bytes of each range.
     Read(Vec<Vec<u8>>),
-    /// The joint's drive has no memory that can be read.
+    /// The joint's drive has no readable memory.
     None,
-    /// Why it could not be read.
+    /// The reason of the failure.
     Failed(String),
 }
 
-/// What is to be stored, in this order.
+/// Data to be stored, in this order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// Counts from 1 for each worker.
@@ -134,7 +134,7 @@ pub struct Entry {
 }
 
 /// # Errors
-/// Where the other side is gone.
+/// If the other side is gone.
 pub fn send(stream: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
     let body = rmp_serde::to_vec_named(message).map_err(io::Error::other)?;
     let length = u32::try_from(body.len()).ok().filter(|length| *length <= LONGEST_BYTES);
@@ -144,10 +144,10 @@ pub fn send(stream: &mut impl Write, message: &impl Serialize) -> io::Result<()>
     stream.flush()
 }
 
-/// `None` where the other side has ended between two messages.
+/// `None` if the other side has ended between two messages.
 ///
 /// # Errors
-/// Where it ended within one, or what came is no message.
+/// If the other side ended within a message, or the data is not a message.
 pub fn receive<T: DeserializeOwned>(stream: &mut impl Read) -> io::Result<Option<T>> {
     let mut length = [0; 4];
     match stream.read_exact(&mut length) {

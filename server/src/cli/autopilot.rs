@@ -1,4 +1,4 @@
-//! `jointbench autopilot`: runs, diagnoses and runs again on a running daemon, until nothing is missing.
+//! `jointbench autopilot`: runs and diagnoses on a daemon, repeated until no effect is missing.
 
 use super::arguments::Autopilot as Arguments;
 use super::client::Client;
@@ -42,7 +42,7 @@ pub fn autopilot(arguments: &Arguments) -> Done {
     ending(&client, &autopilot)
 }
 
-/// Follows it to its end, telling each step as it is made.
+/// Waits for the end and prints each step when it is complete.
 fn wait(client: &Client, id: i64, tells: bool) -> Result<Autopilot, Exit> {
     let mut told = 0;
     let mut shown: Option<RunProgress> = None;
@@ -82,7 +82,7 @@ fn conclude(client: &Client, autopilot: &Autopilot) -> Done {
         println!("model {id}: {}", model.effects.join(" + "));
     }
     println!("{} runs, {:.0} s of bench time", autopilot.runs.len(), autopilot.bench_time_s);
-    // What it was cut short by is told with the exit code.
+    // An external reason is printed with the exit code.
     let by_itself = matches!(autopilot.state, AutopilotState::Finished | AutopilotState::BudgetSpent);
     if let Some(reason) = autopilot.reason.as_ref().filter(|_| by_itself) {
         println!("{reason}");
@@ -90,7 +90,7 @@ fn conclude(client: &Client, autopilot: &Autopilot) -> Done {
     Ok(())
 }
 
-/// It is done when its last diagnosis is, as `discover` is: a verdict that names nothing is a verdict too.
+/// Has the exit code of its last diagnosis, like `discover`: a verdict without an effect is a result, too.
 fn ending(client: &Client, autopilot: &Autopilot) -> Done {
     let said = || autopilot.reason.clone().unwrap_or_default();
     match autopilot.state {

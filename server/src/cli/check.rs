@@ -1,4 +1,4 @@
-//! `jointbench check`: description and instruments, without moving anything.
+//! `jointbench check`: checks description and instruments without motion.
 
 use super::arguments::Check;
 use super::exit::{Done, Exit};
@@ -31,7 +31,7 @@ pub fn check(arguments: &Check) -> Done {
     }
 }
 
-/// The number of instruments that are not ready.
+/// Returns the number of instruments that are not ready.
 fn check_bench(description: &BenchDescription) -> usize {
     let kind = if description.is_simulated() { "simulated" } else { "hardware" };
     println!("bench {} ({kind}): description is valid", description.name);

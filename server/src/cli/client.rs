@@ -1,4 +1,4 @@
-//! A running daemon, over REST.
+//! REST client of a running daemon.
 
 use super::arguments::Reach;
 use super::exit::Exit;
@@ -37,7 +37,7 @@ impl Client {
         format!("{}{path}", self.base.trim_end_matches("/api/v1"))
     }
 
-    /// A daemon is there, whatever it says.
+    /// Whether a daemon answers; its answer is ignored.
     pub fn is_answered(&self) -> bool {
         self.agent.get(format!("{}/health", self.base)).call().is_ok()
     }
@@ -100,7 +100,7 @@ impl Client {
     }
 }
 
-/// Whose signature a daemon at https:// is believed for.
+/// Certificates that are trusted for a daemon at https://.
 fn trusted(file: Option<&Path>) -> Result<RootCerts, Exit> {
     let Some(file) = file else { return Ok(RootCerts::WebPki) };
     let pem = super::files::read(file)?;

@@ -1,4 +1,4 @@
-//! `jointbench convert`: any readable file as a run table.
+//! `jointbench convert`: converts any readable file to a run table.
 
 use super::arguments::Convert;
 use super::exit::{Done, Exit};
@@ -20,7 +20,7 @@ pub fn convert(arguments: &Convert) -> Done {
         )));
     }
     let units = understood.stated_units();
-    // A measurement that says its kind is joined and looked at as a run; any other table is written as it was understood.
+    // With a known kind, the measurement is completed and checked as a run. Other tables are written as they were read.
     let (meta, trace, notes, left) = match understood.lacks() {
         None => {
             let left = understood.left.clone();

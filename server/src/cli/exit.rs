@@ -1,4 +1,4 @@
-//! How a command ends that could not do what it was asked to.
+//! Exit code and message of a failed command.
 
 use crate::lab::LabError;
 use jointbench_files::{FileError, OptionFault};
@@ -9,21 +9,21 @@ use std::process::ExitCode;
 #[derive(Debug, Clone)]
 pub struct Exit {
     pub code: u8,
-    /// For a person; empty where everything is said already.
+    /// Message for a person; empty if it is already printed.
     pub said: String,
 }
 
 pub type Done = Result<(), Exit>;
 
 impl Exit {
-    /// What `files` could not be used for.
+    /// Adds the names of the files to a fault of the model.
     pub fn of(files: &[impl AsRef<Path>], fault: ModelError) -> Self {
         let exit = Exit::from(fault);
         let names: Vec<String> = files.iter().map(|file| file.as_ref().display().to_string()).collect();
         Exit { said: format!("{}: {}", words::list(&names), exit.said), ..exit }
     }
 
-    /// Says it on standard error.
+    /// Prints the message on standard error.
     pub fn tell(&self) -> ExitCode {
         if !self.said.is_empty() {
             eprintln!("jointbench: {}", self.said);
@@ -70,7 +70,7 @@ impl From<FormulaFault> for Exit {
 }
 
 impl From<ModelError> for Exit {
-    /// What the arguments or the facts have wrong is bad input; what the data cannot tell is undecided.
+    /// Errors in arguments or metadata are bad input; data without a clear result is undecided.
     fn from(error: ModelError) -> Self {
         use ModelError as E;
         let said = error.to_string();

@@ -5,10 +5,10 @@ use jointbench_files::FileFault;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// How the table of a run is called in a folder of its own.
+/// Names of a run table in its own folder.
 const TABLES: [&str; 4] = ["run.csv", "run.csv.gz", "run.parquet", "run.arrow"];
 
-/// The table of a run: what was named, or the one in the folder that was named.
+/// The table of a run: the named file, or the one in the named folder.
 pub fn table(named: &Path) -> Result<PathBuf, Exit> {
     if !named.is_dir() {
         return Ok(named.to_owned());
@@ -27,7 +27,7 @@ pub fn table(named: &Path) -> Result<PathBuf, Exit> {
     }
 }
 
-/// Refuses a path at which no file could be, before the work whose result is to be kept there.
+/// Refuses an impossible output path before the work starts.
 pub fn writable(path: &Path) -> Done {
     if path.is_dir() {
         let folder = path.display();

@@ -1,4 +1,4 @@
-//! `jointbench identify` and `jointbench report`: what a kept run shows.
+//! `jointbench identify` and `jointbench report`: results of a stored run.
 
 use super::arguments::{Identify, Report};
 use super::exit::{Done, Exit};
@@ -25,7 +25,7 @@ pub fn identify(arguments: &Identify) -> Done {
     ending(&found)
 }
 
-/// How a command ends that has told what was found.
+/// Exit code of a command that has printed a result.
 pub(super) fn ending(found: &Identification) -> Done {
     match found.result.verdict {
         Identified::Identified | Identified::IdentifiedWithWarning => Ok(()),

@@ -1,4 +1,4 @@
-//! The JUnit report of a run: one test case for the run, one for each limit.
+//! The JUnit report of a run: one test case for the run, and one for each requirement.
 
 use super::arguments::Run as Arguments;
 use super::exit::Exit;
@@ -7,8 +7,8 @@ use super::require::{Kept, Requirement};
 use super::run::{Found, ending, title};
 use crate::view::Run;
 
-/// A test case for the run, a failure where it did not complete or nothing was identified, an error where there is no run to
-/// tell of; then one for each demand, skipped where no run has completed.
+/// The run's test case is a failure if it did not complete or has no result, and an error if there is no run. The other
+/// test cases are skipped if no run has completed.
 pub fn junit(
     arguments: &Arguments,
     ended: &Result<Run, Exit>,

@@ -1,4 +1,4 @@
-//! `jointbench procedures` and `jointbench effects`: what can be measured, and what a model can hold.
+//! `jointbench procedures` and `jointbench effects`: lists the procedures and the effects of the library.
 
 use super::exit::{Done, Exit};
 use jointbench_devices::sim::HIDDEN_EFFECTS;

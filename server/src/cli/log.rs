@@ -1,4 +1,4 @@
-//! Logs go to standard error: results on standard output stay clean.
+//! Logs go to standard error, so that standard output contains only results.
 
 use clap::ValueEnum;
 use std::io::{IsTerminal, stderr};
@@ -12,7 +12,7 @@ pub enum LogForm {
     Json,
 }
 
-/// `RUST_LOG` decides what is told; without it everything from `level` on.
+/// `RUST_LOG` selects the log messages; the default is everything from `level` on.
 pub fn start(form: LogForm, level: &str) {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
     let builder = tracing_subscriber::fmt().with_env_filter(filter).with_writer(stderr);

@@ -1,4 +1,4 @@
-//! `jointbench servo-memory`: what the memory of a joint's servo holds.
+//! `jointbench servo-memory`: reads the memory of a joint's servo.
 
 use super::arguments::ServoMemory as Arguments;
 use super::client::Client;
@@ -8,7 +8,7 @@ use super::run::choose_bench;
 use crate::view::{MemoryVariable, ServoMemory};
 
 const HEAD: &str = "address  name      bytes                      value                 meaning";
-/// A longer row of bytes is cut.
+/// Longer byte sequences are truncated.
 const MOST_BYTES: usize = 8;
 
 pub fn memory(arguments: &Arguments) -> Done {

@@ -37,15 +37,15 @@ use std::process::ExitCode;
 
 pub use exit::Exit;
 
-/// Reads the arguments and does what they say. Exit codes: 0 done, 1 the run failed or a limit was broken, 2 bad arguments
-/// or bad input, 3 could not be decided.
+/// Executes the command of the arguments. Exit codes: 0 success, 1 failed run or exceeded limit, 2 invalid arguments or
+/// input, 3 no decision possible.
 pub fn main() -> ExitCode {
     jointbench_model::one_heap();
     if let Err(exit) = secrets::take_out_of_sight() {
         return exit.tell();
     }
     let arguments = Arguments::parse();
-    // `jointbench fit … | head` ends quietly. Never where a bench is ours: its end is the engine's business.
+    // `jointbench fit … | head` ends without an error. Not for a process with a bench: the engine ends it.
     if !matches!(arguments.command, Command::Demo(_) | Command::Serve(_) | Command::Worker) {
         sigpipe::reset();
     }

@@ -1,4 +1,4 @@
-//! `jointbench model`: exported models, on files, and into the store.
+//! `jointbench model`: exported models in files, and their import into the store.
 
 use super::arguments::{Model, ModelCommand};
 use super::exit::{Done, Exit};
@@ -76,7 +76,7 @@ pub fn model(arguments: &Model) -> Done {
     }
 }
 
-/// Writes a fit as `fit --out` does.
+/// Writes a fit in the format of `fit --out`.
 pub fn save(fit: &Fit, path: &Path) -> Done {
     write(path, export(fit, Format::Json)?.as_bytes())
 }
@@ -84,9 +84,9 @@ pub fn save(fit: &Fit, path: &Path) -> Done {
 fn open(path: &Path) -> Result<Fit, Exit> {
     let refuse = |fault: &dyn std::fmt::Display| Exit::bad_input(format!("{}: {fault}", path.display()));
     let bytes = files::read(path)?;
-    // A table that was named in its place may not even be text.
+    // A table in place of a model may not be text.
     let text = String::from_utf8_lossy(&bytes);
-    // Headers, tables and attributes of joints go out only.
+    // The other export formats (headers, tables, attributes of joints) cannot be read back.
     if !text.trim_start().starts_with('{') {
         return Err(refuse(
             &"not a model file (arguments: first the model, then the run): give a JSON file written by `jointbench fit \

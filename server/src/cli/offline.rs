@@ -1,4 +1,4 @@
-//! `jointbench diagnose`, `discover`, `fit`: on a file, without a daemon.
+//! `jointbench diagnose`, `discover`, `fit`: work on a file, without a daemon.
 
 use super::arguments::{Columns, Diagnose, Discover, Fit, Measured, Preparation};
 use super::exit::{Done, Exit};
@@ -48,7 +48,7 @@ pub fn discover(arguments: &Discover) -> Done {
     decided(discovery.undecided.as_ref())
 }
 
-/// The summary has said why.
+/// The exit has no message: the summary contains the reason.
 pub(super) fn decided(undecided: Option<&String>) -> Done {
     match undecided {
         None => Ok(()),
@@ -118,7 +118,7 @@ pub(super) fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Resul
     Ok(run)
 }
 
-/// What there is in a file, and which file that is.
+/// Content of a file, and the path of that file.
 pub(super) fn understood(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<(Understood, PathBuf), Exit> {
     let options = ReadOptions { meta_path: meta.map(Path::to_owned), ..columns.choices().options()? };
     let table = files::table(file)?;
@@ -135,7 +135,7 @@ fn options(preparation: &Preparation) -> Result<Options, Exit> {
     let defaults = Options::default();
     let residual = match preparation.residual.as_deref() {
         None => None,
-        // The words of the argument are those of the type.
+        // The argument has the same words as the type.
         Some(word) => Some(reread(&word)?),
     };
     Ok(Options {

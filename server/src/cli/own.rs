@@ -25,7 +25,7 @@ pub struct OwnEffects {
 }
 
 impl OwnEffects {
-    /// All of them; what names no kind is of the run's. What there is to think about is told.
+    /// Reads all effects; an effect without a kind gets the kind of the run. Prints doubts about the formulas.
     pub fn read(&self, kind: Kind, motion: Motion) -> Result<Vec<OwnEffect>, Exit> {
         let mut all = Vec::new();
         for file in &self.effect_file {

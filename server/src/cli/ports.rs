@@ -24,7 +24,7 @@ pub fn ports(arguments: &Ports) -> Done {
     Ok(())
 }
 
-/// One port: where, what, whether it may be opened, and the address that lasts.
+/// One port: path, device, permission, and its permanent address.
 fn line(port: &FoundPort) -> String {
     let mark = if port.closed.is_some() { "closed" } else { "ok    " };
     let usb = port.usb.as_ref().map(|usb| {

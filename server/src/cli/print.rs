@@ -1,4 +1,4 @@
-//! Results as a person reads them.
+//! Prints results for a person.
 
 mod advice;
 mod maps;
@@ -68,7 +68,7 @@ pub fn evaluation(file: &Path, evaluation: &Evaluation) {
     }
 }
 
-/// What the error was taken over.
+/// The data of the validation error.
 fn judged(evaluation: &Evaluation) -> String {
     let Evaluation { rows, samples, .. } = evaluation;
     match evaluation.settled_share {
@@ -136,7 +136,7 @@ pub fn discovery(discovery: &Discovery) {
         .map(|step| {
             let name = match (&step.added, &step.removed) {
                 (Some(added), Some(removed)) => format!("+ {added} − {removed}"),
-                // What acts around reversals or on ramps is judged there.
+                // Effects at reversals or on ramps are evaluated there.
                 (Some(added), None) if step.validation_rms == last_rms => format!("+ {added} (transients only)"),
                 (Some(added), None) => format!("+ {added}"),
                 (None, Some(removed)) => format!("− {removed}"),
@@ -183,7 +183,7 @@ pub fn parameters(parameters: &[Parameter]) {
     }
 }
 
-/// What is wrong with a parameter, in words.
+/// The state of a parameter in words.
 fn state(parameter: &Parameter) -> String {
     match (parameter.state, &parameter.note) {
         (ParameterState::Ok, _) => String::new(),
@@ -207,7 +207,7 @@ pub fn regions(regions: &[Region], unit: &str) {
     }
 }
 
-/// `present_rms`: error of the model at hand on data that took no part in its fit.
+/// `present_rms`: validation error of the current model.
 pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     if suggestions.is_empty() {
         return;
@@ -218,7 +218,7 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     println!("missing effects, most important first{beside}; ΔBIC below 0 favours the effect:");
     for (i, suggestion) in suggestions.iter().enumerate() {
         let (share, rms) = (suggestion.error_reduction, suggestion.validation_rms);
-        // Effects of reversals and ramps are judged there, and leave the settled motion as it was.
+        // Effects of reversals and ramps are evaluated there, and do not change the error in steady state.
         let elsewhere = (1.0 - rms / present_rms - share).abs() > 0.01;
         let gain = match elsewhere {
             true => format!("validation error {:+.1} % in transients, unchanged in steady state", -100.0 * share),
@@ -235,7 +235,7 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         };
         let together = suggestion.error_reduction_together;
         let beside = format!("{:+.1} % together with the others", -100.0 * together);
-        // What others mask shows only beside them.
+        // An effect that other effects mask shows only together with them.
         let gain = match several {
             true if together > share => format!("{beside}; alone: {gain}"),
             true => format!("{gain} alone; {beside}"),
@@ -262,8 +262,8 @@ fn chance(suggestion: &Suggestion) -> String {
     format!("{p_value}{}{weak}", bic.unwrap_or_default())
 }
 
-/// A value and its interval, with as many digits as tell the ends apart. A whole number that was chosen has no width, and
-/// neither has what the run does not depend on.
+/// A value and its interval, with enough digits to distinguish the limits. A selected integer, and a parameter without
+/// influence on the run, have no interval.
 fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, String) {
     match (low == high, low == 0.0) {
         (true, true) => ("–".to_owned(), "–".to_owned()),
@@ -280,7 +280,7 @@ fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, String) {
     }
 }
 
-/// A number without a unit is not followed by one.
+/// Dimensionless numbers have no unit.
 fn shown(unit: &str) -> &str {
     if unit == "1" { "" } else { unit }
 }
@@ -298,7 +298,7 @@ fn floor(floor: &NoiseFloor, unit: &str) {
     }
 }
 
-/// The validation error of each step as a table and a picture, with the noise floor.
+/// The validation error of each step as a table and a bar chart, with the noise floor.
 pub fn fall(steps: &[(String, f64)], floor: Option<f64>, unit: &str) {
     let top = steps.iter().map(|(_, rms)| *rms).fold(floor.unwrap_or(0.0), f64::max);
     let wide = steps.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0).max("noise floor".len());
@@ -342,12 +342,12 @@ fn of(residual: ResidualKind) -> &'static str {
     }
 }
 
-/// Four significant digits, plain where that is short.
+/// Four significant digits, without an exponent if that is short.
 pub fn figure(value: f64) -> String {
     rounded(value, 3)
 }
 
-/// So many digits after the first.
+/// Rounds to `digits` digits after the first.
 fn rounded(value: f64, digits: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();

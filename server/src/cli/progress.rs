@@ -1,4 +1,4 @@
-//! How far a run is: a bar on a terminal, plain lines elsewhere.
+//! Progress of a run: a bar on a terminal, plain lines otherwise.
 
 use crate::view::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -23,7 +23,7 @@ impl RunProgress {
         Self { bar, told: None, paused: false }
     }
 
-    /// Told once, until it goes on.
+    /// Printed once for each pause.
     pub fn paused(&mut self, run: i64) {
         let said = format!("paused: resume it with `jointbench resume {run}`");
         if let Some(bar) = &self.bar {

@@ -1,4 +1,4 @@
-//! `jointbench reproduce`: the documents' campaigns again on the mock bench, each table beside the document's.
+//! `jointbench reproduce`: repeats the measurements of the source documents on the mock bench and compares the tables.
 
 use super::arguments::Reproduce;
 use super::exit::{Done, Exit};
@@ -26,7 +26,7 @@ const COLUMNS: &str =
     "| table | quantity | document | measured | 95 % interval | true value | inside | required | met |";
 
 pub fn reproduce(arguments: &Reproduce) -> Done {
-    // Minutes later would be too late.
+    // Check the path now: the measurements take minutes.
     if let Some(page) = &arguments.out {
         let folder = page.with_extension("");
         if folder == *page {
@@ -88,7 +88,7 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
     Err(Exit::failed(format!("deviation from the true value beyond chance: {}", beyond.join(", "))))
 }
 
-/// What a reader has to know before the first table.
+/// Introduction of the page.
 fn preamble(seed: u64) -> String {
     format!(
         "# Tables of the source documents, reproduced\n\nWritten by `jointbench reproduce --seed {seed} --out …`, version {}. The bench is simulated. *True value* is the constant of the simulation, used only for this comparison; *inside* states whether the 95 % interval contains it. *Required* is the maximum width of the interval or the limit of the figure, and *met* states whether it is met. A joint of the mock bench is similar to the joint of the document, not identical: depending on the seed, its Coulomb and viscous friction are within 8 % of the document and its breakaway torque within 18 %, and its velocity loop follows a trajectory more closely.\n",
@@ -97,7 +97,7 @@ fn preamble(seed: u64) -> String {
 }
 
 fn measure(joint: Joint, subject: Subject, seed: u64) -> Result<Vec<Chapter>, Exit> {
-    // The documents' joints have a Stribeck rise.
+    // The joints of the documents have no hidden effects except a Stribeck effect.
     let hidden: &[&str] = if joint == Joint::EncoderShaft { &[] } else { &["stribeck"] };
     let mut settings = MockSettings::new(joint, seed).hiding(hidden);
     if subject == Subject::GearAndBrakeB {
@@ -118,7 +118,7 @@ fn measure(joint: Joint, subject: Subject, seed: u64) -> Result<Vec<Chapter>, Ex
     .map_err(|fault| Exit::failed(fault.to_string()))
 }
 
-/// What the bench was built with, by the names of the quantities.
+/// The true value of the simulation for a quantity.
 fn given(truth: &Truth, name: &str) -> Option<f64> {
     let stribeck = |figure: &str| truth.hidden.iter().find(|h| h.effect == "stribeck")?.parameters.get(figure).copied();
     let encoders = &truth.encoders;
@@ -145,7 +145,7 @@ fn given(truth: &Truth, name: &str) -> Option<f64> {
     }
 }
 
-/// An arm's lines, in volts of its shunt and degrees each second at the link.
+/// True lines of an arm, in volts of its shunt and link degrees per second.
 fn of_arm(truth: &Truth, name: &str) -> Option<f64> {
     let hidden =
         |effect: &str, figure: &str| truth.hidden.iter().find(|h| h.effect == effect)?.parameters.get(figure).copied();
@@ -190,7 +190,7 @@ fn asked(demand: Demand, unit: &str) -> String {
     }
 }
 
-/// A chapter of the page; its figures go into a folder of the page's name.
+/// A chapter of the page. Its figures are written to a folder with the name of the page.
 fn told(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<String, Exit> {
     let mut text = format!("\n### {}\n\n{}\n", chapter.title, chapter.identification.summary);
     if !chapter.comparisons.is_empty() {
@@ -237,10 +237,10 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    /// Renewed by `jointbench reproduce --seed 1 --out docs/reproduction.md`.
+    /// Update with `jointbench reproduce --seed 1 --out docs/reproduction.md`.
     const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/reproduction.md");
 
-    /// Without the figures, which take minutes: what a page of this program begins with, and all of its headings.
+    /// Compares only the beginning and the headings of the page: the figures take minutes.
     #[test]
     fn the_kept_page_is_one_of_this_program() {
         let page = fs::read_to_string(PAGE).unwrap();
@@ -257,7 +257,7 @@ mod tests {
         assert_eq!(kept, expected, "{renew}");
     }
 
-    /// One subject stands for all: the others take minutes.
+    /// Tests only one subject: the others take minutes.
     #[test]
     fn the_kept_figures_are_those_of_this_program() {
         let page = fs::read_to_string(PAGE).unwrap();

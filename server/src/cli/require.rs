@@ -1,4 +1,4 @@
-//! What a script demands of a result: `tau_c < 0.035 Nm`.
+//! Requirements of a script on a result: `tau_c < 0.035 Nm`.
 
 use crate::view::{Identification, Quantity};
 use jointbench_instrument::spelling::nearest;
@@ -21,15 +21,15 @@ pub struct Requirement {
     unit: String,
 }
 
-/// What came of a demand.
+/// Result of a requirement.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Kept {
     Yes(String),
-    /// The value breaks the limit.
+    /// The value exceeds the limit.
     No(String),
-    /// The value keeps the limit, its interval does not.
+    /// The value is within the limit, but its interval is not.
     Unsure(String),
-    /// There is no such quantity, or it has another unit.
+    /// The quantity is missing, or has another unit.
     Unknown(String),
 }
 
@@ -57,7 +57,7 @@ impl Requirement {
         &self.text
     }
 
-    /// Whether a run of a procedure that finds these could keep it, or why none can.
+    /// Whether a procedure with these results can meet the requirement, or why not.
     pub fn could_be_kept_by(&self, procedure: &str, finds: &[Findable]) -> Result<(), String> {
         match finds.iter().find(|findable| findable.is(&self.name)) {
             Some(findable) => factor(&self.unit, findable.unit).map(drop).ok_or_else(|| self.in_unit(findable.unit)),
@@ -68,7 +68,7 @@ impl Requirement {
         }
     }
 
-    /// What could be demanded instead.
+    /// Suggests existing quantities.
     fn instead(&self, names: &[&str]) -> String {
         let meant = nearest(&self.name, names.iter().copied());
         let meant = meant.map(|near| format!("did you mean {near}? ")).unwrap_or_default();
@@ -116,7 +116,7 @@ impl Requirement {
     }
 }
 
-/// From the written unit to the quantity's own: the same, or with a prefix.
+/// Factor from the written unit to the unit of the quantity: the same unit, or with a prefix.
 fn factor(written: &str, own: &str) -> Option<f64> {
     if written == own || (written.is_empty() && own == "1") {
         return Some(1.0);
@@ -132,7 +132,7 @@ pub(super) mod tests {
     use super::*;
     use crate::view::{Applies, Identified, Shown};
 
-    /// A friction of 30.6 mNm ± 0.4 mNm.
+    /// A friction result of 30.6 mNm ± 0.4 mNm.
     pub fn found() -> Identification {
         let quantity = Quantity {
             name: "tau_c".to_owned(),

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
 
-/// What the run shows, or why that cannot be told.
+/// Result of the run, or why it is not available.
 pub(super) type Found = Result<Identification, Exit>;
 
 pub fn run(arguments: &Arguments) -> Done {
@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Done {
     }
 }
 
-/// A demand that no run of the procedure could keep is refused before anything moves.
+/// Refuses a requirement that the procedure cannot meet, before any motion.
 fn demand_what_can_be_found(client: &Client, arguments: &Arguments) -> Done {
     if arguments.require.is_empty() {
         return Ok(());
@@ -56,7 +56,7 @@ fn demand_what_can_be_found(client: &Client, arguments: &Arguments) -> Done {
         (None, Some(before)) => client.get::<Run>(&format!("/runs/{before}"))?.summary.procedure,
         (id, _) => id.clone().unwrap_or_default(),
     };
-    // One that nobody knows is refused by the daemon.
+    // The daemon refuses an unknown procedure.
     let Some(procedure) = procedure(&id) else { return Ok(()) };
     let finds = procedure.finds();
     arguments.require.iter().try_for_each(|demand| {
@@ -83,8 +83,8 @@ fn check(demand: &Requirement, found: &Found) -> Kept {
     }
 }
 
-/// Says how each demand was met. What cannot be checked ends with 2; then a failed result or a broken limit with 1; then
-/// what is not decided with 3.
+/// Prints the result of each requirement. Exit codes in order of priority: 2 for a requirement that cannot be checked,
+/// 1 for a failed result or an exceeded limit, 3 for no decision.
 fn judge(found: Option<&Found>, demands: &[(&Requirement, Kept)], quiet: bool) -> Done {
     let told = demands.iter().map(|(_, kept)| match kept {
         Kept::Yes(said) => ("kept", said, 0),
@@ -92,7 +92,7 @@ fn judge(found: Option<&Found>, demands: &[(&Requirement, Kept)], quiet: bool) -
         Kept::Unsure(said) => ("unsure", said, 3),
         Kept::Unknown(said) => ("unknown", said, 2),
     });
-    // What cannot be checked is an error of use, which the command ends with.
+    // A requirement that cannot be checked is reported with the exit code.
     if !quiet {
         told.clone().filter(|(_, _, code)| *code != 2).for_each(|(word, said, _)| println!("{word}: {said}"));
     }
@@ -113,7 +113,7 @@ fn judge(found: Option<&Found>, demands: &[(&Requirement, Kept)], quiet: bool) -
     }
 }
 
-/// The run as it has just started, or as it ended where that is waited for.
+/// The started run, or the ended run if the command waits.
 fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
     let run: Run = match arguments.continues {
         Some(before) => {
@@ -138,20 +138,20 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
         return Ok(run);
     }
     say_that_it_goes_on(id);
-    // The arguments were good: from here on it is the run that fails.
+    // The arguments are valid: later errors belong to the run.
     wait_at_most(client, id, arguments.timeout).map_err(|exit| lost(id, client.is_answered(), &exit.said))
 }
 
-/// A daemon that does not answer is waited for so long.
+/// Waiting time for a daemon that does not answer.
 const RESTARTED: Duration = Duration::from_secs(15);
-/// As a shell says of a command that Ctrl-C has ended.
+/// Exit code of a shell after Ctrl-C.
 const INTERRUPTED: i32 = 130;
 
-/// Ctrl-C ends the waiting and not the run, which the person at the bench has to know at once.
+/// Ctrl-C ends only the wait, not the run: informs the person at the bench.
 fn say_that_it_goes_on(id: i64) {
     std::thread::spawn(move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-        // Without it Ctrl-C ends this command as it ends any other.
+        // Without the runtime, Ctrl-C ends this command without a message.
         let Ok(runtime) = runtime else { return };
         if runtime.block_on(tokio::signal::ctrl_c()).is_ok() {
             eprintln!("\nrun {id} continues: show it with `jointbench runs id:{id}`, end it with `jointbench stop`");
@@ -160,7 +160,7 @@ fn say_that_it_goes_on(id: i64) {
     });
 }
 
-/// What is known of a run whose daemon has gone, and of one that cannot be asked for any more.
+/// Message about a run whose daemon is gone, or whose state cannot be requested.
 fn lost(id: i64, is_answered: bool, said: &str) -> Exit {
     Exit::failed(match is_answered {
         true => format!("run {id}: its state is unknown ({said})"),
@@ -211,7 +211,7 @@ pub(super) fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
     wait_at_most(client, id, None)
 }
 
-/// A run that takes longer than `limit` is aborted, and its end is waited for.
+/// Aborts a run that takes longer than `limit`, and waits for its end.
 fn wait_at_most(client: &Client, id: i64, limit: Option<Duration>) -> Result<Run, Exit> {
     let mut shown = RunProgress::begin();
     let began = Instant::now();
@@ -219,12 +219,12 @@ fn wait_at_most(client: &Client, id: i64, limit: Option<Duration>) -> Result<Run
     loop {
         if let Some(limit) = limit.filter(|limit| exceeded.is_none() && began.elapsed() > *limit) {
             exceeded = Some(limit);
-            // One that has ended in the meantime refuses, which the next look shows.
+            // The daemon refuses this for an ended run; the next request shows the end.
             drop(client.post::<Run>(&format!("/runs/{id}/abort"), &()));
         }
         let run: Run = match client.get(&format!("/runs/{id}")) {
             Ok(run) => run,
-            // A daemon that is started again knows how the run ended.
+            // A restarted daemon knows the end of the run.
             Err(_) if answered.elapsed() < RESTARTED && !client.is_answered() => {
                 std::thread::sleep(LOOK_EVERY);
                 continue;
@@ -232,8 +232,8 @@ fn wait_at_most(client: &Client, id: i64, limit: Option<Duration>) -> Result<Run
             Err(exit) => return Err(exit),
         };
         answered = Instant::now();
-        // A run that its daemon has left is told in two strokes: its end, then how the bench was secured and why.
-        // What has completed is only read when it is stored; any other end is final, whatever the disk does.
+        // After a restart of the daemon, the end of a run appears before its safe state. A completed run can be read
+        // only when it is stored. Other ends are final immediately.
         let waits_for_the_disk = run.summary.state == RunState::Completed && run.summary.not_stored.is_some();
         if is_over(run.summary.state) && run.summary.safe.is_some() && !waits_for_the_disk {
             shown.end();

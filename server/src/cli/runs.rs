@@ -1,4 +1,4 @@
-//! `jointbench runs`: what was measured.
+//! `jointbench runs`: lists the runs.
 
 use super::arguments::Runs;
 use super::exit::Done;
@@ -12,11 +12,11 @@ use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use jointbench_model::words;
 
-/// What stands above the list; times are local, error and Coulomb friction are of the last version that is not idle.
+/// Header of the list. Times are local; error and Coulomb friction are from the last version that is not idle.
 const HEAD: &str = "  run  started (local)   state        procedure                 bench             duration       rows       error     Coulomb";
 const BENCH: usize = 16;
 
-/// Of a run that is not over, in a folder that no daemon has.
+/// For an unfinished run in a folder without a daemon.
 const NO_DAEMON: &str =
     "its daemon has terminated: `jointbench serve` with this folder secures the bench and marks the run as interrupted";
 
@@ -61,7 +61,7 @@ fn line(run: &RunSummary) -> String {
     let reason = run.damaged.as_ref().or(run.reason.as_ref()).map(|reason| format!("  {reason}")).unwrap_or_default();
     let not_stored = run.not_stored.as_ref().map(|why| format!("  not yet stored: {why}")).unwrap_or_default();
     let (id, state, procedure, rows) = (run.id, word(run.state), &run.procedure, run.rows);
-    // Of a long path the end tells more.
+    // The end of a long path is more useful than its beginning.
     let bench = match run.bench.chars().count().saturating_sub(BENCH) {
         0 => run.bench.clone(),
         more => std::iter::once('…').chain(run.bench.chars().skip(more + 1)).collect(),
@@ -74,7 +74,7 @@ fn line(run: &RunSummary) -> String {
     )
 }
 
-/// A moment of the API, which is in UTC, on the clock of the person who reads the list.
+/// Converts a time of the API (UTC) to local time.
 fn local(moment: &str, zone: &TimeZone) -> String {
     match moment.parse::<Timestamp>() {
         Ok(moment) => moment.to_zoned(zone.clone()).strftime("%Y-%m-%d %H:%M").to_string(),
@@ -82,7 +82,7 @@ fn local(moment: &str, zone: &TimeZone) -> String {
     }
 }
 
-/// As it may stand in an address.
+/// URL-encodes a text.
 fn encoded(text: &str) -> String {
     let byte = |byte: u8| match byte {
         b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' | b'~' => char::from(byte).to_string(),

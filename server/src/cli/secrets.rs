@@ -1,4 +1,4 @@
-//! Tokens, from where nobody else reads them: files, credentials of systemd, the environment.
+//! Tokens from protected sources: files, systemd credentials, environment.
 
 use super::arguments::{Reach, ServedTokens};
 use super::exit::Exit;
@@ -7,16 +7,16 @@ use std::ffi::{OsStr, OsString};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// A token is one short line.
+/// Limit of a token file: a token is one short line.
 const LONGEST_BYTES: u64 = 4096;
-/// The files that systemd hands over (`LoadCredential=`) are here.
+/// Folder of the files from systemd (`LoadCredential=`).
 const CREDENTIALS: &str = "CREDENTIALS_DIRECTORY";
 const CREDENTIAL: &str = "jointbench-token";
 const READ_CREDENTIAL: &str = "jointbench-read-token";
-/// Options whose value is a secret, with the variables that carry it unseen.
+/// Options with a secret value, with the environment variables that replace them.
 const SECRET: [(&str, &str); 2] = [("--token", TOKENS[0]), ("--read-token", TOKENS[1])];
 
-/// The tokens that a daemon is started with: that which may do everything, and that which only reads.
+/// The tokens of a daemon: full access and read access.
 pub fn of_daemon(given: &ServedTokens) -> Result<[Option<String>; 2], Exit> {
     let token = choose(given.token_file.as_deref(), given.token.clone(), credential(CREDENTIAL))?;
     let read = choose(given.read_token_file.as_deref(), given.read_token.clone(), credential(READ_CREDENTIAL))?;
@@ -28,7 +28,7 @@ pub fn of_client(reach: &Reach) -> Result<Option<String>, Exit> {
     choose(reach.token_file.as_deref(), reach.token.clone(), None)
 }
 
-/// A file that is named, else what is given, else a credential.
+/// Priority: named file, given value, credential.
 fn choose(file: Option<&Path>, given: Option<String>, credential: Option<PathBuf>) -> Result<Option<String>, Exit> {
     match (file, given, credential) {
         (Some(file), _, _) => read(file).map(Some),
@@ -71,8 +71,8 @@ fn warn_if_shared(file: &Path, opened: &std::fs::File) {
 #[cfg(not(unix))]
 fn warn_if_shared(_: &Path, _: &std::fs::File) {}
 
-/// Takes tokens out of the arguments, where every user of the computer sees them (`ps`): the program starts itself again in its
-/// own place, with the tokens in its environment. Returns where none was there.
+/// Removes tokens from the arguments, which all users of the computer can see (`ps`). The program restarts itself with
+/// the tokens in its environment. Returns if the arguments contain no token.
 pub fn take_out_of_sight() -> Result<(), Exit> {
     let given: Vec<OsString> = std::env::args_os().skip(1).collect();
     let (rest, secrets) = parted(&given);
@@ -84,7 +84,7 @@ pub fn take_out_of_sight() -> Result<(), Exit> {
 
 type Secrets = Vec<(&'static str, OsString)>;
 
-/// The arguments without the tokens, and the tokens by their variables.
+/// The arguments without tokens, and the tokens with their variables.
 fn parted(given: &[OsString]) -> (Vec<OsString>, Secrets) {
     let (mut rest, mut secrets) = (Vec::new(), Secrets::new());
     let mut left = given.iter();
@@ -102,7 +102,7 @@ fn parted(given: &[OsString]) -> (Vec<OsString>, Secrets) {
         });
         match (option, value) {
             (Some((_, variable)), Some(value)) => secrets.push((variable, value)),
-            // Without a value it is the business of whoever reads the arguments.
+            // The argument parser reports an option without a value.
             _ => rest.push(one.clone()),
         }
     }
@@ -114,11 +114,11 @@ fn start_again(rest: &[OsString], secrets: &Secrets) -> Result<(), Exit> {
     use std::os::unix::process::CommandExt;
     warn("it has been removed from the process list");
     let name = std::env::args_os().next().unwrap_or_else(|| OsStr::new("jointbench").to_owned());
-    // By its path, so that lists of processes go on to call it by its name.
+    // Uses the path, so that the process list still shows the name of the program.
     let program = std::env::current_exe().unwrap_or_else(|_| crate::program::own());
     let mut command = std::process::Command::new(program);
     command.arg0(name).args(rest).envs(secrets.iter().map(|(variable, value)| (variable, value)));
-    // It returns only where it has failed.
+    // Returns only on failure.
     Err(Exit::failed(format!(
         "the token cannot be removed from the process list ({}): use --token-file",
         command.exec()

@@ -20,12 +20,12 @@ pub fn serve(arguments: Serve) -> Done {
         daemon.stop().await;
         Ok(())
     });
-    // Everything that counts is kept: a thread that still reads or packs holds nothing up.
+    // All important data is stored: do not wait for threads that read or pack.
     runtime.shutdown_timeout(LAST_MOMENT);
     done
 }
 
-/// A description from a file, or a ready-made one by its name.
+/// Reads a description from a file or by the name of a ready-made one.
 pub(super) fn describe(config: &str) -> Result<Vec<BenchDescription>, Exit> {
     let ready_made = config::READY_MADE.iter().find(|(name, _)| *name == config);
     let benches = match ready_made {
@@ -54,8 +54,8 @@ pub(super) fn settings(place: Place, data: &str, mut benches: Vec<BenchDescripti
     })
 }
 
-/// Threads for what blocks: files, and columns that are packed or unpacked. Each has a stack of 2 MiB, and a daemon may have
-/// an address space of 1 GiB in all.
+/// Limit of the threads for blocking work: files, and packing of columns. Each has a stack of 2 MiB, and a daemon may
+/// be limited to an address space of 1 GiB.
 const BLOCKING_THREADS: usize = 32;
 const LAST_MOMENT: Duration = Duration::from_millis(500);
 

@@ -1,4 +1,4 @@
-//! `jointbench stop`, `pause`, `resume` and `reset`: what a run that is on, or a bench that stands still, is told.
+//! `jointbench stop`, `pause`, `resume` and `reset`: control of an active run or an idle bench.
 
 use super::arguments::{Reset, Steer, Stop};
 use super::client::Client;
@@ -28,7 +28,7 @@ pub fn resume(arguments: &Steer) -> Done {
     steer(arguments, "resume", RunState::Running)
 }
 
-/// Returns when the run has come to where it was told to.
+/// Waits until the run has the wanted state.
 fn steer(arguments: &Steer, how: &str, wanted: RunState) -> Done {
     let client = Client::new(&arguments.reach)?;
     let id = named_or_on(&client, arguments.run)?;

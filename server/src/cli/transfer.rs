@@ -1,4 +1,4 @@
-//! `jointbench import` and `jointbench export`: to and from the folder itself, or through the daemon that has it.
+//! `jointbench import` and `jointbench export`: directly in the data folder, or through the daemon that uses it.
 
 use super::arguments::{Columns, Export, Import, StorePlace};
 use super::client::Client;
@@ -67,7 +67,7 @@ pub fn export(arguments: &Export) -> Done {
     Ok(())
 }
 
-/// What was asked for, or what the file's ending says.
+/// The requested format, or the format of the file extension.
 fn format(arguments: &Export) -> Result<FileFormat, Exit> {
     let ending = arguments.out.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
     let said = [FileFormat::Csv, FileFormat::Parquet, FileFormat::Mat]
@@ -93,7 +93,7 @@ pub(super) enum Way {
 }
 
 pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_it: bool) -> Result<Way, Exit> {
-    // A folder that is named outweighs an address of the environment, and an address that is named a folder.
+    // Priority: explicit address, explicit folder, address from the environment.
     let outweighed = place.data.is_some() && place.reach.daemon == std::env::var("JOINTBENCH_URL").ok();
     if place.reach.daemon.is_some() && !outweighed {
         return Ok(Way::Daemon(Client::new(&place.reach)?));
@@ -108,7 +108,7 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
     match runtime.block_on(crate::store::Store::open(data)) {
         Ok(store) => Ok(Way::Folder(Lab::of_store(store))),
         Err(in_use @ crate::store::StoreError::InUse { .. }) => {
-            // Most likely by the daemon on this machine's usual address, but another one may be there.
+            // The folder probably belongs to the daemon at the default address; verify this.
             let client = Client::new(&place.reach)?;
             match client.get::<Health>("/health") {
                 Ok(health) if in_use.to_string().contains(&format!("(process {})", health.process)) => {
@@ -141,7 +141,7 @@ fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportReq
 
 fn upload(client: &Client, request: &ImportRequest) -> Result<Run, Exit> {
     let bytes = files::read(&request.file)?;
-    // Long enough not to be in any file by chance.
+    // Long enough not to occur in a file by chance.
     let boundary = format!("jointbench-{:032x}", rand::random::<u128>());
     let mut body = Vec::new();
     let mut part = |name: &str, bytes: &[u8]| {

@@ -1,4 +1,4 @@
-//! `jointbench verify`: whether all that is stored can be read.
+//! `jointbench verify`: checks that all stored data is readable.
 
 use super::arguments::Verify;
 use super::exit::{Done, Exit};

@@ -1,4 +1,4 @@
-//! Raw values to checked ones.
+//! Checks raw values and converts them.
 
 use super::figures::{Sheet, check_reach};
 use super::instruments::{calibrations, instruments};
@@ -12,7 +12,7 @@ use jointbench_instrument::spelling::plainly;
 use serde::Serialize;
 use toml::Spanned;
 
-/// Of a bench.
+/// Of the name of a bench.
 const LONGEST_NAME: usize = 64;
 
 pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
@@ -35,7 +35,7 @@ pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mis
             );
         }
     }
-    // Every bench is looked at, whatever is wrong with the one before it.
+    // Checks every bench, so that the errors of all benches are reported.
     let benches: Vec<_> = raw.bench.iter().map(|bench| check_bench(bench, text, &mut wrong)).collect();
     wrong.finish(file, benches.into_iter().collect())
 }
@@ -60,7 +60,7 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
         }
     };
     let sheet = match &source {
-        // Limits and constants come with the simulated joint, which is not known.
+        // Limits and constants depend on the simulated joint, which is unknown.
         None if raw.mock.is_some() => return None,
         Some(Source::Mock(MockSettings { joint, load, .. })) => {
             Sheet::simulated(joint.limits(*load), joint.constants(*load))
@@ -83,7 +83,7 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
     })
 }
 
-/// What describes the bench whose name stands at this place: all of the file where it is the only one.
+/// The text of the bench whose name is at `name_at`: its section, or the whole file if it has one bench.
 fn own_part(text: &str, name_at: usize) -> &str {
     let lines = text.split_inclusive('\n').scan(0, |end, line| {
         *end += line.len();
@@ -97,7 +97,7 @@ fn own_part(text: &str, name_at: usize) -> &str {
     }
 }
 
-/// Bad days that can come, each to an instrument that the bench has.
+/// Checks simulated faults, each for an instrument of the bench.
 fn troubles(given: &[Spanned<PlannedTrouble>], bench: &MockSettings, wrong: &mut Collector) -> Vec<PlannedTrouble> {
     for planned in given {
         let PlannedTrouble { instrument, trouble, from_s, until_s } = *planned.get_ref();
@@ -120,7 +120,7 @@ fn troubles(given: &[Spanned<PlannedTrouble>], bench: &MockSettings, wrong: &mut
     given.iter().map(|planned| *planned.get_ref()).collect()
 }
 
-/// As it is written in a description.
+/// The spelling in a description.
 fn word(named: impl Serialize) -> String {
     serde_json::to_value(named).map(|word| word.to_string()).unwrap_or_default()
 }
@@ -155,7 +155,7 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     }
     let load = load.unwrap_or(Some(settings.load))?;
     let (filter, supply, troubles) = (raw.filter, supply?, troubles(&raw.troubles, &settings, wrong));
-    // A bench that keeps time is one that other programs may listen to; in a time-lapse they could not follow.
+    // Other programs can connect to a bench with a pace; a bench without one is too fast for them.
     let transport = if pace.is_some() { Transport::Terminal } else { settings.transport };
     Some(MockSettings { load, effects, pace, filter, supply, troubles, transport, gains, ..settings })
 }

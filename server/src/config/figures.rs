@@ -1,4 +1,4 @@
-//! Limits and constants: given, or from a data sheet, or nothing that the bench has.
+//! Limits and constants: from the description, from a data sheet, or not needed by the bench.
 
 use super::mistake::Collector;
 use super::raw::{RawBench, RawConstants, RawLimits};
@@ -7,14 +7,14 @@ use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
 use toml::Spanned;
 
-/// A source regulates around its set point: a limit a little above the rated current is no mistake.
+/// A source regulates around its set point, so a limit slightly above the rated current is valid.
 const ABOVE_RATED: f64 = 1.1;
 
-/// Where figures come from that the description does not give.
+/// Source of values that the description does not contain.
 pub struct Sheet {
-    /// Of a simulated bench.
+    /// Values of a simulated bench.
     known: Option<(Limits, JointConstants)>,
-    /// What a bench without a brake has for its ratings, and one that feels no torque for its limit.
+    /// Ratings without a brake, and torque limit without a torque sensor or a brake.
     without_brake: Option<f64>,
     without_torque: Option<f64>,
 }
@@ -38,7 +38,7 @@ impl Sheet {
         self.known.as_ref().map(|(_, constants)| of(constants))
     }
 
-    /// Names every limit that is missing or wrong.
+    /// Reports every missing or wrong limit.
     pub fn limits(&self, raw: &RawBench, wrong: &mut Collector) -> Option<Limits> {
         let given = raw.limits.as_ref();
         let mut take = |name: &str, of: fn(&RawLimits) -> Option<&Spanned<f64>>, sheet: Option<f64>| {
@@ -64,7 +64,7 @@ impl Sheet {
         })
     }
 
-    /// Names every constant that is missing or wrong.
+    /// Reports every missing or wrong constant.
     pub fn constants(&self, raw: &RawBench, wrong: &mut Collector) -> Option<JointConstants> {
         let given = raw.constants.as_ref();
         let range = given.and_then(|given| given.link_range_rad.as_ref());
@@ -96,7 +96,7 @@ impl Sheet {
     }
 }
 
-/// The value given, or that of the data sheet.
+/// The given value, or the value of the data sheet.
 fn either(
     given: Option<&Spanned<f64>>,
     sheet: Option<f64>,
@@ -115,7 +115,7 @@ fn either(
     }
 }
 
-/// A limit beyond what an instrument can show or bear protects nothing.
+/// Refuses a limit above the range or the rating of an instrument: it would not protect.
 pub fn check_reach(raw: &RawBench, limits: &Limits, constants: &JointConstants, wrong: &mut Collector) {
     let Some(given) = &raw.limits else { return };
     if let (Some(place), Some(sensor)) = (&given.link_torque_nm, &raw.torque_sensor) {

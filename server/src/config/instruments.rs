@@ -13,9 +13,9 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::value::Datetime;
 
-/// Ticks of a Puma's servo from one set-point to the next, where none are given: VAL's 28 ms.
+/// Default number of servo ticks between two set points of a Puma: 28 ms, as in VAL.
 const NINTER: u8 = 32;
-/// Counts of a turn after the quadrature: what the counter's 32 bits hold with turns to spare.
+/// Maximum counts per turn after quadrature: the 32-bit counter still has room for several turns.
 const MOST_COUNTS: u32 = 1 << 24;
 
 pub fn instruments(raw: &RawBench, joint: &RawJoint, wrong: &mut Collector) -> Option<InstrumentSettings> {
@@ -39,7 +39,7 @@ pub fn instruments(raw: &RawBench, joint: &RawJoint, wrong: &mut Collector) -> O
     })
 }
 
-/// The days of calibration that are given, by role.
+/// The given calibration dates by role.
 pub fn calibrations(raw: &RawBench, wrong: &mut Collector) -> Option<Vec<(String, Date)>> {
     let counter = |raw: &Option<RawCounter>| raw.as_ref().and_then(|counter| counter.calibrated.clone());
     let given: [(&'static str, Option<Spanned<Datetime>>); 6] = [

@@ -1,4 +1,4 @@
-//! What is wrong with a bench description: the line, and the cure.
+//! Errors in a bench description: line and remedy.
 
 use std::fmt;
 use std::ops::Range;
@@ -7,11 +7,11 @@ use std::ops::Range;
 pub struct Mistake {
     /// Counted from 1.
     pub line: usize,
-    /// What is wrong, then what to write.
+    /// The error, then the remedy.
     pub what: String,
 }
 
-/// All mistakes of one file.
+/// All errors of one file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mistakes {
     pub file: String,
@@ -30,7 +30,7 @@ impl fmt::Display for Mistakes {
 
 impl std::error::Error for Mistakes {}
 
-/// Collects mistakes while a file is checked, so that one reading names them all.
+/// Collects errors during a check, so that one check reports all of them.
 pub(super) struct Collector<'a> {
     text: &'a str,
     mistakes: Vec<Mistake>,

@@ -1,4 +1,4 @@
-//! Bench descriptions: raw in, checked out, and never checked again.
+//! Bench descriptions: raw values are checked once during parsing.
 
 mod check;
 mod figures;
@@ -20,7 +20,7 @@ use jointbench_instrument::spelling::nearest;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Ready-made descriptions, also to start a new one from.
+/// Ready-made descriptions, also as templates.
 pub const READY_MADE: [(&str, &str); 8] = [
     ("joint-a-mock", include_str!("../../descriptions/joint-a-mock.toml")),
     ("joint-b-mock", include_str!("../../descriptions/joint-b-mock.toml")),
@@ -39,34 +39,34 @@ pub struct BenchDescription {
     pub source: Source,
     pub limits: Limits,
     pub constants: JointConstants,
-    /// When which instrument was calibrated, by its role.
+    /// Calibration dates of the instruments, by role.
     pub calibrated: Vec<(String, Date)>,
-    /// Every opening of its instruments writes their traffic down in a new folder in this one.
+    /// Each time the instruments are opened, their traffic is recorded in a new subfolder.
     pub record: Option<PathBuf>,
-    /// As written, for the provenance of its runs; nothing of other benches in the same file.
+    /// Original text for the provenance of its runs, without other benches of the file.
     pub text: String,
 }
 
-/// Where the instruments are.
+/// Source of the instruments.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Source {
     Mock(MockSettings),
     Hardware(Box<InstrumentSettings>),
 }
 
-/// The roles that decide which procedures a bench can run.
+/// Properties of a bench that determine which procedures it can run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Has {
     pub torque_sensor: bool,
-    /// Every moment of its torque in two ranges.
+    /// The torque sensor has two ranges and measures both at the same time.
     pub two_ranges: bool,
     pub brake: bool,
-    /// Counts of a turn: reference, and encoder under test.
+    /// Counts per turn: reference encoder and encoder under test.
     pub encoder_counts: Option<[f64; 2]>,
     pub stage: bool,
-    /// Motor current for each volt, where it is read as the voltage at a shunt.
+    /// Motor current per volt, if it is measured as the voltage at a shunt.
     pub amperes_per_volt: Option<f64>,
-    /// The joint's drive takes a motor current beside a velocity.
+    /// The joint's drive accepts a motor current in addition to a velocity.
     pub feeds_forward: bool,
 }
 
@@ -97,7 +97,7 @@ impl BenchDescription {
         matches!(self.source, Source::Mock(_))
     }
 
-    /// Seconds of the bench in one of the person who waits; `None` where it runs as fast as it can.
+    /// Bench seconds per second of real time; `None` if it runs as fast as possible.
     pub fn pace(&self) -> Option<f64> {
         match &self.source {
             Source::Mock(settings) => settings.pace,
@@ -141,7 +141,7 @@ impl BenchDescription {
     }
 }
 
-/// Reads a description. Names every mistake at its line with its cure.
+/// Reads a description. Reports every error with line and remedy.
 pub fn read(path: &Path) -> Result<Vec<BenchDescription>, Mistakes> {
     let file = path.display().to_string();
     match std::fs::read_to_string(path) {
@@ -150,7 +150,7 @@ pub fn read(path: &Path) -> Result<Vec<BenchDescription>, Mistakes> {
     }
 }
 
-/// Why there is no description of this name, and which there are.
+/// Message about an unknown description, with the known names.
 pub fn unread(name: &str, fault: &std::io::Error) -> String {
     let ready_made = READY_MADE.map(|(name, _)| name);
     let meant = nearest(name, ready_made).map(|near| format!("did you mean {near}? ")).unwrap_or_default();
@@ -161,7 +161,7 @@ pub fn unread(name: &str, fault: &std::io::Error) -> String {
     format!("{why}: {meant}give the path of a bench description, or a built-in one: {}", ready_made.join(", "))
 }
 
-/// `file` stands in messages.
+/// `file` is the name in messages.
 pub fn parse(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
     check::check(file, text)
 }

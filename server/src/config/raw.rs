@@ -1,4 +1,4 @@
-//! The bench description as it is written. Values keep their place in the file, for messages.
+//! The bench description before the checks. Values keep their position in the file for messages.
 
 use jointbench_devices::PumaGains;
 use jointbench_devices::sim::PlannedTrouble;
@@ -41,7 +41,7 @@ impl RawBench {
     }
 }
 
-/// Simulated instruments in place of all others.
+/// Simulated instruments, which replace all others.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RawMock {
@@ -55,7 +55,7 @@ pub struct RawMock {
     /// Whether the interpolation filter of the encoder under test is on.
     #[serde(default)]
     pub filter: bool,
-    /// A thermometer, which an encoder bench has anyway.
+    /// Adds a thermometer. An encoder bench always has one.
     #[serde(default)]
     pub thermometer: bool,
     #[serde(default)]
@@ -73,7 +73,7 @@ pub struct RawJoint {
     pub deadline_ms: Option<Spanned<u64>>,
     pub link_encoder: Option<Spanned<bool>>,
     pub thermistor: Option<Spanned<String>>,
-    /// Of a Puma-type servo.
+    /// For a Puma-type servo.
     pub counts_per_turn: Option<Spanned<u32>>,
     pub amperes_per_volt: Option<Spanned<f64>>,
     pub ninter: Option<Spanned<u8>>,
@@ -92,7 +92,7 @@ pub struct RawTorqueSensor {
     pub calibrated: Option<Spanned<Datetime>>,
 }
 
-/// An instrument of which nothing but its port has to be known.
+/// An instrument that needs only its port.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RawPort {

@@ -1,4 +1,4 @@
-//! Descriptions that are right, and the mistakes that are named.
+//! Tests of valid descriptions and of error messages.
 
 use super::*;
 

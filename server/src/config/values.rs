@@ -1,4 +1,4 @@
-//! Single values of a description: each is right, or named with its cure.
+//! Checks of single values: each is valid, or reported with a remedy.
 
 use super::mistake::Collector;
 use jiff::Zoned;
@@ -11,7 +11,7 @@ use toml::value::Datetime;
 const LONGEST_DEADLINE_MS: u64 = 10_000;
 const DEADLINE_MS: u64 = 100;
 
-/// A slot that is empty, or filled and right.
+/// `Some(None)` for an empty slot, `Some(Some)` for a valid value, `None` for an invalid one.
 pub fn flip<T>(slot: Option<Option<T>>) -> Option<Option<T>> {
     match slot {
         None => Some(None),
@@ -76,7 +76,7 @@ pub fn positive(given: &Spanned<f64>, what: &str, wrong: &mut Collector) -> Opti
     None
 }
 
-/// A day that has been.
+/// A date that is not in the future.
 pub fn calibrated(given: &Spanned<Datetime>, wrong: &mut Collector) -> Option<Date> {
     let written = given.get_ref();
     let day = written.date.filter(|_| written.time.is_none()).and_then(|date| {

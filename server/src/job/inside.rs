@@ -1,4 +1,4 @@
-//! The inside of a job's process: `jointbench job`.
+//! The process of a job: `jointbench job`.
 
 use super::reply::{Head, Refusal};
 use super::{Job, Request};
@@ -9,13 +9,13 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Steps behind everything else on the processor.
+/// Lower scheduling priority than other processes.
 #[cfg(unix)]
 const NICE: i32 = 10;
-/// Blocking threads, each with a stack of its own: reading a run takes one for each channel in turn.
+/// Blocking threads, each with its own stack: reading a run uses one for each channel in sequence.
 const BLOCKING_THREADS: usize = 16;
 
-/// Reads a request, answers it, and ends. Exit code 0 says that the answer is whole.
+/// Reads a request, answers it, and ends. Exit code 0 means that the answer is complete.
 pub fn main() -> ExitCode {
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);
@@ -24,7 +24,7 @@ pub fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     stay_small(request.memory_bytes);
-    // What happens here is told to the daemon by how this process ends.
+    // The daemon learns about this process from its standard error and exit code.
     std::panic::set_hook(Box::new(|panic| eprintln!("{panic}")));
     end_with_whoever_asked();
     let begun = Arc::<AtomicBool>::default();
@@ -58,8 +58,8 @@ fn answer(request: Request<Job>, mut out: Answering) -> Result<(), LabError> {
     })
 }
 
-/// A limit to the memory of this process, and the last place on the processor. Where the system is short of memory it ends
-/// this process before the daemon.
+/// Limits the memory of this process and lowers its priority. If memory is short, the system kills this process before
+/// the daemon.
 #[cfg(unix)]
 fn stay_small(memory_bytes: u64) {
     use rustix::process::{Resource, Rlimit, nice, setrlimit};
@@ -67,16 +67,16 @@ fn stay_small(memory_bytes: u64) {
     if let Err(fault) = setrlimit(Resource::As, limit) {
         tracing::warn!(%fault, "the memory of a computation is not limited");
     }
-    // Without either the computation is as it would be anyway.
+    // The computation is correct without these two settings.
     let _ = nice(NICE);
     let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
 }
 
-/// Such a system has other means, and the limit of time holds.
+/// Only the time limit applies on such a system.
 #[cfg(not(unix))]
 fn stay_small(_: u64) {}
 
-/// The daemon holds the other end of standard input: when it goes, also by `kill -9`, nobody waits any more.
+/// The daemon holds the other end of standard input. If it closes, also by `kill -9`, no client waits for the result.
 fn end_with_whoever_asked() {
     let watch = || {
         let _ = io::stdin().lock().read(&mut [0]);
@@ -85,7 +85,7 @@ fn end_with_whoever_asked() {
     let _ = std::thread::Builder::new().stack_size(64 << 10).spawn(watch);
 }
 
-/// Standard output, with the head of an answer before its first byte.
+/// Standard output; the head of an answer is written before the first byte.
 struct Answering {
     begun: Arc<AtomicBool>,
 }
@@ -104,7 +104,7 @@ impl Write for Answering {
     }
 }
 
-/// Past the line buffer of standard output, which would look for line ends in tables.
+/// Avoids the line buffer of standard output, which would search tables for line ends.
 fn said(bytes: &[u8]) -> io::Result<()> {
     let out = io::stdout();
     let mut out = out.lock();

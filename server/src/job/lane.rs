@@ -1,12 +1,12 @@
-//! How many computations are on at once, and how many wait.
+//! Limits the number of simultaneous and waiting computations.
 
 use crate::lab::LabError;
 use std::sync::Arc;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-/// At once: a fit takes every core by itself, and memory by the size of its run.
+/// Simultaneous computations: a fit uses every core, and memory in proportion to its run.
 const AT_ONCE: usize = 2;
-/// Who comes when so many wait is sent away, and may come again.
+/// Further requests are refused and can be repeated later.
 const WAITING: usize = 16;
 
 #[derive(Debug)]
@@ -15,7 +15,7 @@ pub struct Lane {
     slots: Arc<Semaphore>,
 }
 
-/// The right to compute; given back when dropped.
+/// Permission to compute, released on drop.
 #[derive(Debug)]
 pub struct Turn {
     _place: OwnedSemaphorePermit,
@@ -29,7 +29,7 @@ impl Default for Lane {
 }
 
 impl Lane {
-    /// Waits for its turn. [`LabError::Busy`] where too many wait already, or where the daemon ends.
+    /// Waits for a free place. [`LabError::Busy`] if too many are waiting, or if the daemon ends.
     pub async fn enter(&self) -> Result<Turn, LabError> {
         let busy = || {
             LabError::Busy(format!(
@@ -42,7 +42,7 @@ impl Lane {
         Ok(Turn { _place: place, _slot: slot })
     }
 
-    /// Nobody's turn comes any more.
+    /// Refuses all waiting and later computations.
     pub fn close(&self) {
         self.slots.close();
     }

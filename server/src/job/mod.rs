@@ -1,13 +1,13 @@
-//! Computations on whole runs, each in a process of its own.
+//! Computations on whole runs, each in a separate process.
 //!
-//! A fit needs memory and time by the size of its run, and a table that comes from outside may be made to need too much of
-//! both. The daemon starts itself anew for each of them (`jointbench job`): with a limit to its memory, behind everything
-//! else on the processor, and killed as soon as nobody waits for it any more. Such a process only reads the store. What is to
-//! be kept it hands back, and the daemon keeps it in one transaction.
+//! A fit needs memory and time in proportion to its run, and a table from outside can be made to need too much. The
+//! daemon starts a process for each of them (`jointbench job`), with a memory limit and low priority. It kills the
+//! process when no client waits for it. The process only reads the store; the daemon stores its results in one
+//! transaction.
 //!
 //! ```text
-//! stdin      one line, a request as JSON; then open for as long as somebody waits
-//! stdout     one line, whether it is answered or refused; then the answer, as its job makes it
+//! stdin      one line, a request as JSON; then open while a client waits
+//! stdout     one line, answer or refusal; then the answer of the job
 //! ```
 
 mod inside;
@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// What is computed. Runs and models are named by their numbers in the store.
+/// The computations. Runs and models are identified by their ids in the store.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Job {
     Fit {
@@ -61,7 +61,7 @@ pub enum Job {
         model: i64,
         run: i64,
     },
-    /// An exported model on a run, before it is taken in.
+    /// An exported model on a run, before the import.
     EvaluateFile {
         file: serde_json::Value,
         run: i64,
@@ -69,7 +69,7 @@ pub enum Job {
     TryEffect {
         trial: EffectTrial,
     },
-    /// `step`: where the run ended, such as `step 3 of 41`, which only those know who know the bench.
+    /// `step`: the step in which the run ended, such as `step 3 of 41`. Only a process with the bench knows it.
     Identify {
         run: i64,
         step: Option<String>,
@@ -81,7 +81,7 @@ pub enum Job {
     BrakeModel {
         run: i64,
     },
-    /// What the steps left of an unfinished run learn from its measurement.
+    /// The part of an unfinished run's measurement that its remaining steps need.
     Recall {
         run: i64,
         lesson: Lesson,
@@ -108,13 +108,13 @@ pub enum Job {
         window: [Option<f64>; 2],
     },
     Export(ExportRequest),
-    /// Rows are laid down in a file; a file that was `uploaded` has closer bounds than one of the user's own.
+    /// Writes the rows to a file. An `uploaded` file has stricter limits than a local file of the user.
     Import {
         request: ImportRequest,
         rows: PathBuf,
         uploaded: bool,
     },
-    /// What a file holds, before it is taken in.
+    /// Content of a file before the import.
     Preview {
         request: ImportRequest,
         uploaded: bool,
@@ -122,13 +122,13 @@ pub enum Job {
 }
 
 impl Job {
-    /// Files wait for each other, not for computations: a slow reader of an export holds up no fit.
+    /// File transfers have their own queue, so that a slow reader of an export does not delay a fit.
     fn moves_a_file(&self) -> bool {
         matches!(self, Job::Export(_) | Job::Import { .. } | Job::Preview { .. })
     }
 }
 
-/// What one computation may take.
+/// Limits of one computation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limits {
     /// Address space of its process.
@@ -144,7 +144,7 @@ impl Default for Limits {
     }
 }
 
-/// What the process is told.
+/// Input of the process.
 #[derive(Debug, Serialize, Deserialize)]
 struct Request<J> {
     data: PathBuf,

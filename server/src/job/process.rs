@@ -1,4 +1,4 @@
-//! The daemon's side: starts the process of a job, hears what it answers, and ends it when nobody waits any more.
+//! The daemon's side of a job: starts the process, reads its answer, and kills it when no client waits.
 
 use super::lane::{Lane, Turn, ending};
 use super::reply::Head;
@@ -14,17 +14,17 @@ use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
 
-/// The largest answer that is taken in whole. What is larger goes through piece by piece ([`Jobs::stream`]).
+/// Limit of a complete answer in memory. Larger answers are streamed ([`Jobs::stream`]).
 const MOST_ANSWERED_BYTES: u64 = 128 << 20;
-/// A head is one line with a sentence in it.
+/// Limit of the head: one line with a sentence.
 const MOST_HEAD_BYTES: u64 = 1 << 20;
-/// What a process has said of itself: its last words are in there.
+/// Limit of the stored error output, which contains the last messages of the process.
 const MOST_COMPLAINT_BYTES: u64 = 16 << 10;
-/// Bytes that go through at a time, and how many such pieces wait for a slow reader.
+/// Bytes of a piece, and number of pieces that wait for a slow reader.
 const PIECE_BYTES: usize = 64 << 10;
 const PIECES: usize = 4;
 
-/// Starts the jobs of one daemon. Clones share its lanes.
+/// Starts the jobs of one daemon. Clones share its queues.
 #[derive(Debug, Clone)]
 pub struct Jobs {
     inner: Arc<Inner>,
@@ -40,25 +40,25 @@ struct Inner {
     ending: watch::Sender<bool>,
 }
 
-/// An answer piece by piece. Its process ends when this is dropped.
+/// An answer in pieces. Dropping it ends its process.
 pub type Streamed = mpsc::Receiver<Result<Bytes, LabError>>;
 
 impl Jobs {
-    /// `program` is the file of `jointbench`, `data` the folder of the store.
+    /// `program` is the path of the `jointbench` executable, `data` the data folder.
     pub fn new(program: &Path, data: &Path, limits: Limits) -> Jobs {
         let (program, data) = (program.to_owned(), data.to_owned());
-        // A process has no more than the one that starts it.
+        // A process cannot have more memory than its parent.
         let limits = Limits { memory_bytes: limits.memory_bytes.min(own_memory_bytes()), ..limits };
         let (computing, moving, ending) = Default::default();
         Jobs { inner: Arc::new(Inner { program, data, limits, computing, moving, ending }) }
     }
 
-    /// The folder of the store.
+    /// The data folder.
     pub fn data(&self) -> &Path {
         &self.inner.data
     }
 
-    /// The answer. Dropping the future ends the process; so do [`Jobs::end`] and the limit of time.
+    /// The complete answer. The process ends if the future is dropped, with [`Jobs::end`], and at the time limit.
     pub async fn run(&self, job: &Job) -> Result<Vec<u8>, LabError> {
         let mut process = self.start(job).await?;
         let mut answer = Vec::new();
@@ -74,7 +74,7 @@ impl Jobs {
         Ok(answer)
     }
 
-    /// The same, for answers that may be of any size. What is refused before the first piece is refused here.
+    /// The same for answers of any size. A refusal before the first piece is returned as an error here.
     pub async fn stream(&self, job: &Job) -> Result<Streamed, LabError> {
         let mut process = self.start(job).await?;
         let (give, take) = mpsc::channel(PIECES);
@@ -86,7 +86,7 @@ impl Jobs {
                 };
                 let Some(piece) = piece.transpose() else { return };
                 let is_last = piece.is_err();
-                // A reader who stops reading holds the process no longer than its time.
+                // A reader that stops reading holds the process only until its time limit.
                 let given = process.in_time(async { Ok(give.send(piece).await) }).await;
                 if is_last || !matches!(given, Ok(Ok(()))) {
                     return;
@@ -96,7 +96,7 @@ impl Jobs {
         Ok(take)
     }
 
-    /// Ends all processes, and lets none begin any more.
+    /// Ends all processes and refuses new ones.
     pub fn end(&self) {
         self.inner.computing.close();
         self.inner.moving.close();
@@ -116,10 +116,10 @@ impl Jobs {
     }
 }
 
-/// One job on its way. Dropping it kills the process.
+/// The process of a job. Dropping it kills the process.
 struct Process {
     child: Child,
-    /// Open for as long as somebody waits.
+    /// Open while a client waits.
     asked: ChildStdin,
     said: BufReader<ChildStdout>,
     complaint: JoinHandle<String>,
@@ -135,7 +135,7 @@ impl Process {
         #[cfg(unix)]
         command.arg0("jointbench");
         let piped = command.arg("job").stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        // Tokens stand in the environment.
+        // The environment may contain tokens.
         let spawned = piped.env_clear().kill_on_drop(true).spawn();
         let mut child =
             spawned.map_err(|fault| LabError::Internal(format!("the computation cannot be started: {fault}")))?;
@@ -153,12 +153,12 @@ impl Process {
         })
     }
 
-    /// Hands the request in and waits for the head of the reply.
+    /// Sends the request and waits for the head of the reply.
     async fn ask(&mut self, line: &[u8]) -> Result<(), LabError> {
         let mut head = String::new();
         let (asked, said) = (&mut self.asked, &mut self.said);
         let hear = async {
-            // A process that ends at once does not read: its end tells why.
+            // A process that ends immediately does not read the request; its exit status contains the reason.
             let _ = asked.write_all(line).await;
             said.take(MOST_HEAD_BYTES).read_line(&mut head).await
         };
@@ -170,7 +170,7 @@ impl Process {
         }
     }
 
-    /// The next piece; `None` behind the last one of an answer that is whole.
+    /// The next piece; `None` after the last piece of a complete answer.
     async fn piece(&mut self) -> Result<Option<Bytes>, LabError> {
         let mut piece = vec![0; PIECE_BYTES];
         let read = in_time(self.until, &mut self.ending, self.limits, self.said.read(&mut piece)).await?;
@@ -188,7 +188,7 @@ impl Process {
         in_time(self.until, &mut self.ending, self.limits, what).await
     }
 
-    /// Why there is no answer.
+    /// The reason for a missing answer.
     async fn died(&mut self) -> LabError {
         let ended = async { self.child.wait().await };
         let status = match in_time(self.until, &mut self.ending, self.limits, ended).await {
@@ -208,7 +208,7 @@ async fn hear(complaint: ChildStderr) -> String {
     let mut complaint = BufReader::new(complaint);
     let mut words = Vec::new();
     let _ = (&mut complaint).take(MOST_COMPLAINT_BYTES).read_to_end(&mut words).await;
-    // Nothing blocks on a full pipe.
+    // Reads the rest, so that the process does not block on a full pipe.
     let _ = tokio::io::copy(&mut complaint, &mut tokio::io::sink()).await;
     String::from_utf8_lossy(&words).into_owned()
 }
@@ -236,7 +236,7 @@ fn own_memory_bytes() -> u64 {
     u64::MAX
 }
 
-/// An allocation that fails ends a Rust program by SIGABRT; a system that is short of memory ends it by SIGKILL.
+/// A failed allocation ends a Rust program by SIGABRT; a system with too little memory ends it by SIGKILL.
 fn lacked_memory(status: ExitStatus, complaint: &str) -> bool {
     #[cfg(unix)]
     let killed = std::os::unix::process::ExitStatusExt::signal(&status) == Some(9);
@@ -245,7 +245,7 @@ fn lacked_memory(status: ExitStatus, complaint: &str) -> bool {
     killed || says_memory(complaint)
 }
 
-/// Rust's own words, those of the system (ENOMEM, and EAGAIN for the stack of a thread), and those of SQLite.
+/// Messages of Rust, the system (ENOMEM, and EAGAIN for the stack of a thread) and SQLite.
 fn says_memory(words: &str) -> bool {
     let known = ["memory allocation of", "Cannot allocate memory", "out of memory", "Resource temporarily unavailable"];
     known.iter().any(|known| words.contains(known))
@@ -272,7 +272,7 @@ impl Limits {
         ))
     }
 
-    /// A refusal that only says in other words that memory was short.
+    /// Replaces a refusal whose cause was a lack of memory.
     fn told(self, error: LabError) -> LabError {
         match &error {
             LabError::Internal(text) | LabError::Setup(text) if says_memory(text) => self.too_much_memory(),

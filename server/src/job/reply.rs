@@ -1,4 +1,4 @@
-//! The first line of a reply: whether there is an answer, or why there is none.
+//! The first line of a reply: an answer follows, or the refusal.
 
 use crate::lab::LabError;
 use jointbench_model::FormulaFault;
@@ -12,7 +12,7 @@ pub enum Head {
     Refused(Box<Refusal>),
 }
 
-/// A [`LabError`] on its way out of the process that refused.
+/// A [`LabError`] in serialized form.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Refusal {
     kind: Kind,
@@ -25,7 +25,7 @@ pub struct Refusal {
     formula: Option<Formula>,
 }
 
-/// A mistake in a formula that only the columns of a run show.
+/// An error in a formula that depends on the columns of a run.
 #[derive(Debug, Serialize, Deserialize)]
 struct Formula {
     effect: String,
@@ -34,11 +34,11 @@ struct Formula {
     position: usize,
     length: usize,
     message: String,
-    /// Position, length and message of further ones.
+    /// Position, length and message of further errors.
     also: Vec<(usize, usize, String)>,
 }
 
-/// The parts of a definition in which a mistake can be.
+/// The parts of a definition that can contain an error.
 const FIELDS: [&str; 4] = ["formula", "parameters", "id", "inline"];
 
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -121,7 +121,7 @@ impl From<Formula> for FormulaFault {
 }
 
 impl Head {
-    /// One line, its end included.
+    /// One line with its line end.
     pub fn line(&self) -> Vec<u8> {
         let mut line = serde_json::to_vec(self).expect("a head is plain JSON");
         line.push(b'\n');

@@ -1,4 +1,4 @@
-//! Autopilots: asked for, looked at, stopped. What one does is in [`pilot`](super::pilot).
+//! Autopilots: create, list, stop. [`pilot`](super::pilot) contains their steps.
 
 use super::pilot::{Goal, Pilot};
 use super::{Answer, Lab, LabError, reread};
@@ -11,15 +11,15 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 use tokio::task::JoinHandle;
 
-/// One that is on.
+/// An active autopilot.
 pub(super) struct Flight {
     bench: String,
-    /// Who has asked it to end.
+    /// Sends the name of the person who requested the end.
     stop: watch::Sender<Option<String>>,
     task: JoinHandle<()>,
 }
 
-/// Those that are on, by their number.
+/// The active autopilots by id.
 #[derive(Default)]
 pub(super) struct Flights(Mutex<HashMap<i64, Flight>>);
 
@@ -28,7 +28,7 @@ impl Flights {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Ends all, where they stand.
+    /// Aborts all autopilots immediately.
     pub fn abort(&self) {
         self.lock().drain().for_each(|(_, flight)| flight.task.abort());
     }
@@ -55,7 +55,7 @@ impl Lab {
         self.take_off(&new.bench, reread(new)?, Goal::Explain(new.clone()), by).await
     }
 
-    /// A first run that cannot be made is refused now, not later.
+    /// Refuses an invalid first run now, not after the start.
     async fn first_run(&self, new: &NewAutopilot) -> Answer<Kind> {
         let handle = self.handle(&new.bench)?;
         let (_, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
@@ -71,7 +71,7 @@ impl Lab {
         Ok(plan.kind)
     }
 
-    /// Makes the run that a diagnosis asks for and diagnoses the same model again with it.
+    /// Executes the run that a diagnosis recommends and diagnoses the same model again with its data.
     pub async fn start_experiment(&self, diagnosis: i64, new: &NewExperiment, by: &str) -> Answer<Autopilot> {
         let (model, experiment) = self.asked_for(diagnosis, &new.bench).await?;
         let experiment = experiment.ok_or_else(|| {
@@ -99,7 +99,7 @@ impl Lab {
         let (stop, stopped) = watch::channel(None);
         let (lab, bench) = (self.clone(), bench.to_owned());
         let pilot = Pilot::new(lab.clone(), id, bench.clone(), stopped, by);
-        // The lock is held until the flight is entered, so that its end cannot come first.
+        // The lock is held until the flight is inserted: the task must not remove it earlier.
         let mut flights = self.inner.flights.lock();
         let task = tokio::spawn(async move {
             pilot.fly(goal).await;
@@ -130,7 +130,7 @@ impl Lab {
         autopilot(self.inner.store.autopilot(id).await?)
     }
 
-    /// Ends it after the step at hand; a run that is on ends as by `POST /runs/{id}/stop`.
+    /// Ends the autopilot after its current step. An active run ends as with `POST /runs/{id}/stop`.
     pub async fn stop_autopilot(&self, id: i64, by: &str) -> Answer<Autopilot> {
         let by = Some(by.to_owned());
         let told = self.inner.flights.lock().get(&id).is_some_and(|flight| flight.stop.send(by).is_ok());

@@ -1,4 +1,4 @@
-//! Benches and what they can be asked to do.
+//! Benches and requests to them.
 
 use super::calibrations::BRAKE_MODEL;
 use super::convert::{bench_view, safety_entry};
@@ -16,9 +16,9 @@ use serde_json::{Map, Value};
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// So many of the latest runs are looked at for one of this bench, and so much of its safety record is told.
+/// Number of latest runs in a search for a run of the bench, and of entries of the safety record.
 const RECENT: u32 = 100;
-/// At the start the store has so long for what it is given first.
+/// Waiting time at start until the store has accepted the first records.
 const STORES: Duration = Duration::from_secs(5);
 
 impl Lab {
@@ -38,7 +38,7 @@ impl Lab {
         })
     }
 
-    /// Ends a run on this bench at once, or secures the idle bench; nothing starts on it until somebody resets it.
+    /// Ends a run on this bench immediately, or secures the idle bench. No run starts until a person resets the bench.
     pub async fn emergency_stop(&self, name: &str, by: &str) -> Answer<Bench> {
         tracing::warn!(bench = name, by, "software stop");
         self.handle(name)?.stop(by).await;
@@ -82,7 +82,7 @@ impl Lab {
         self.bench(name)
     }
 
-    /// The catalogue, with what a bench could not make of it, where one is named.
+    /// The catalogue; with a bench, it includes the procedures' problems on that bench.
     pub async fn procedures(&self, bench: Option<&str>) -> Answer<Vec<view::Procedure>> {
         let facts = bench.map(|name| self.handle(name)).transpose()?.map(BenchHandle::facts);
         let mut told = Vec::new();
@@ -143,8 +143,8 @@ impl Lab {
         Ok((bench, plan))
     }
 
-    /// What a run of `brake_hysteresis` has found of this bench's brake; run 0 is the one that is applied to the bench, or the
-    /// last one that was completed. `None` where there is none yet.
+    /// The brake model that a run of `brake_hysteresis` identified on this bench. Run 0 selects the applied run or else
+    /// the last completed one. `None` if no such run exists.
     async fn brake_model(&self, bench: &str, run: i64) -> Answer<Option<(i64, BrakeModel)>> {
         let applied = self.inner.store.calibration(bench, BRAKE_MODEL).await?;
         let record = match (run, applied) {
@@ -182,16 +182,15 @@ impl Lab {
     pub(super) async fn wait_until_secured(&self) {
         for bench in &self.inner.benches {
             let mut watch = bench.watch();
-            // An error says that the thread has ended; its status tells why.
+            // An error means that the thread has ended; its status contains the reason.
             drop(watch.wait_for(|status| status.settled).await);
-            // How runs that were interrupted ended is stored by now, or the bench says why not.
+            // By now the ends of interrupted runs are stored, or the bench reports why not.
             drop(timeout(STORES, watch.wait_for(|status| status.runs.is_empty())).await);
         }
     }
 }
 
-/// Conditions of a start that the plan does not know.
-/// What a plan does on its bench, with what stands in its way now.
+/// Preview of a plan on its bench, with the conditions that prevent a start now.
 pub(super) fn previewed(bench: &BenchHandle, plan: &Plan) -> Answer<view::Preview> {
     let mut preview: view::Preview = super::reread(&plan.preview(&bench.facts()))?;
     preview.wait_s = bench.description().pace().map(|pace| preview.duration_s / pace);
@@ -225,7 +224,7 @@ fn readiness(bench: &BenchHandle) -> Vec<view::Check> {
     ]
 }
 
-/// Why a procedure could not be made with its defaults, or what was applied instead, as far as that does not depend on earlier runs.
+/// Why a procedure cannot run with its defaults or the applied values, without checks that need earlier runs.
 fn refusal(procedure: &dyn Procedure, given: &Map<String, Value>, facts: &BenchFacts) -> Option<String> {
     let defaults = Values::parse(procedure.schema(), given).ok()?;
     if procedure.brake_model(&defaults).is_some() {

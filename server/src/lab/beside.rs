@@ -1,17 +1,17 @@
-//! A run, also one that is on, beside the last model that its bench has: does the model still explain it?
+//! Compares a run, also an active one, with the last model of its bench: does the model still explain the run?
 
 use super::{Answer, Lab, models::blocking, reread};
 use crate::job::Job;
 use crate::view::{Beside, Figure, FigureAxis, FigureForm, FigureSeries, Mark};
 use jointbench_model::{Fit, Options, ResidualSet, residuals};
 
-/// More points than these no plot shows.
+/// A plot cannot show more points.
 const MOST_POINTS: usize = 1000;
-/// Of noise without structure 5 % lie further out.
+/// For noise without structure, 5 % of the points are outside of this band.
 const BAND_SIGMA: f64 = 2.0;
 
 impl Lab {
-    /// `None` where the bench has no model of this kind from another run.
+    /// `None` if the bench has no model of this kind from another run.
     pub async fn beside(&self, id: i64) -> Answer<Option<Beside>> {
         self.work_out(Job::Beside { run: id }).await
     }
@@ -43,7 +43,7 @@ impl Lab {
     }
 }
 
-/// Only of the points that the model was made to explain.
+/// Uses only the points that the model is expected to explain.
 fn show(beside: &mut Beside, left: &ResidualSet) {
     let judged: Vec<usize> = (0..left.error.len()).filter(|i| !left.held_out[*i]).collect();
     let band = BAND_SIGMA * beside.noise_rms;

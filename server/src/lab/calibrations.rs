@@ -1,16 +1,16 @@
-//! Results that the next runs of a bench use: the brake's hysteresis, with which a brake is commanded, the torque sensor's zero,
-//! which is taken off, and friction, with which its compensation is planned.
+//! Results that the next runs of a bench use: the brake hysteresis for brake commands, the zero of the torque sensor,
+//! which is subtracted, and the friction for planning its compensation.
 
 use super::{Answer, Lab, LabError};
 use crate::view::{Applies, Calibration, NewCalibration};
 use jointbench_procedure::{Procedure, RunState};
 use serde_json::{Map, Value};
 
-/// Whose result a brake is commanded with.
+/// Procedure whose result is used for brake commands.
 pub(super) const BRAKE_MODEL: &str = "brake_hysteresis";
 const SENSOR_ZERO: &str = "torque_sensor_zero";
 const FRICTION: &str = "friction";
-/// What can be applied, and what becomes of it.
+/// Applicable procedures and the use of their results.
 const USES: [(&str, &str); 3] = [
     (BRAKE_MODEL, "subsequent runs of this bench use this brake model"),
     (
@@ -21,7 +21,7 @@ const USES: [(&str, &str); 3] = [
     (FRICTION, "friction compensation on this bench uses these values by default"),
 ];
 
-/// What becomes of the result of a procedure when it is applied, or why it cannot be.
+/// The use of a procedure's result after it is applied, or why it cannot be applied.
 pub(super) fn applies(procedure: &str) -> Applies {
     match USES.iter().find(|(id, _)| *id == procedure) {
         Some((_, what)) => Applies { can: true, what: (*what).to_owned() },
@@ -56,7 +56,7 @@ impl Lab {
         Ok(told)
     }
 
-    /// The next run uses it. Gives all entries, this one first.
+    /// Applies a run to the next runs. Returns all entries, the new one first.
     pub async fn calibrate(&self, bench: &str, new: &NewCalibration, by: &str) -> Answer<Vec<Calibration>> {
         let is_simulated = self.handle(bench)?.description().is_simulated();
         let wanted = new.procedure.as_str();
@@ -88,14 +88,15 @@ impl Lab {
         self.calibrations(bench).await
     }
 
-    /// The choices for a procedure as the bench's applied friction gives them, and the run that found it.
+    /// Parameters of a procedure from the bench's applied friction run, and that run.
     pub(super) async fn applied_choices(&self, bench: &str, id: &str) -> Answer<Option<(i64, Map<String, Value>)>> {
         let Some(run) = self.inner.store.calibration(bench, FRICTION).await? else { return Ok(None) };
         let Some(next) = self.follow_up(run).await?.filter(|next| next.procedure == id) else { return Ok(None) };
         Ok(Some((run, next.parameters)))
     }
 
-    /// The zero that is taken off the torque of a run of this procedure: not of one that measures it anew.
+    /// The zero to subtract from the torque in a run of this procedure. `None` if the procedure measures the zero
+    /// itself.
     pub(super) async fn applied_zero(&self, bench: &str, of: &dyn Procedure) -> Answer<Option<(i64, f64)>> {
         let parts = of.finds();
         if parts.iter().any(|found| found.name.rsplit('.').next() == Some("zero")) {

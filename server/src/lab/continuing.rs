@@ -1,4 +1,4 @@
-//! Runs that go on where an earlier one ended too soon.
+//! Runs that continue an earlier run that ended too soon.
 
 use super::benches::previewed;
 use super::{Answer, Lab, LabError};
@@ -11,7 +11,7 @@ use jointbench_procedure::continuing::{Continues, Done, joined, learnt_from};
 use jointbench_procedure::{Lesson, Plan, RunState};
 
 impl Lab {
-    /// Starts a run that makes the steps that another one has left, behind what restores their history.
+    /// Starts a run with the remaining steps of another run, after steps that restore their history.
     pub async fn continue_run(&self, id: i64, by: &str) -> Answer<Run> {
         let record = self.inner.store.run(id).await?;
         let name = &record.procedure;
@@ -39,7 +39,7 @@ impl Lab {
         let rest = plan
             .rest(id, done.steps, done.next_segment, &bench.facts())
             .ok_or_else(|| LabError::Invalid(format!("run {id} has no finished step to resume from: {again}")))?;
-        // Read only where something is to be learnt from it: it may be long.
+        // The earlier data may be long: read it only if the plan needs it.
         let rest = match rest.lesson.clone() {
             Some(lesson) => {
                 let recalled = self.recall(id, lesson).await?;
@@ -50,7 +50,7 @@ impl Lab {
         self.launch(bench, rest, by).await
     }
 
-    /// What a run does, step by step: of one that goes on with another, what restores its history and what was left.
+    /// The steps of a run. For a continuing run: the restoring steps and the remaining steps.
     pub async fn plan_of(&self, id: i64) -> Answer<Preview> {
         let record = self.inner.store.run(id).await?;
         let (bench, plan) = self.plan(&record.bench, &record.procedure, &record.parameters).await?;
@@ -63,7 +63,7 @@ impl Lab {
         previewed(bench, &plan)
     }
 
-    /// In which of its steps a run ended: `step 3 of 41`, or `step 3` where it cannot be planned any more.
+    /// The step in which a run ended: `step 3 of 41`, or `step 3` if the run can no longer be planned.
     pub(super) async fn last_step(&self, id: i64) -> Answer<Option<String>> {
         let events = self.inner.store.events(id, 0).await?;
         let begun = |event: &EventRecord| event.data.get("step").and_then(serde_json::Value::as_u64);
@@ -71,13 +71,13 @@ impl Lab {
         else {
             return Ok(None);
         };
-        // Planning may ask what an earlier run has found, and so comes by here.
+        // `Box::pin` because of recursion: planning may use the result of an earlier run.
         let steps =
             Box::pin(self.plan_of(id)).await.map(|plan| format!(" of {}", plan.steps.len())).unwrap_or_default();
         Ok(Some(format!("step {}{steps}", step + 1)))
     }
 
-    /// A run behind those that it goes on with, the last first.
+    /// A run and the runs that it continues, in reverse order.
     async fn parts(&self, id: i64) -> Answer<Vec<RunRecord>> {
         let mut parts = vec![self.inner.store.run(id).await?];
         while let Some(before) = continues(&parts[parts.len() - 1])? {
@@ -86,17 +86,17 @@ impl Lab {
         Ok(parts)
     }
 
-    /// The runs that one measurement is made of, in their order.
+    /// The runs of one measurement, in order.
     pub(super) async fn together(&self, id: i64) -> Answer<Vec<i64>> {
         Ok(self.parts(id).await?.iter().rev().map(|part| part.id).collect())
     }
 
-    /// All that was measured: of a run that goes on with others, theirs too.
+    /// All data of a measurement, including the runs that this run continues.
     pub(super) async fn measurement(&self, id: i64) -> Answer<RunTable> {
         Ok(self.measured(id).await?.0)
     }
 
-    /// The same, with what was finished of it.
+    /// The same with its finished steps.
     async fn measured(&self, id: i64) -> Answer<(RunTable, Done)> {
         let mut parts = self.parts(id).await?;
         let (Some(first), later) = (parts.pop(), parts.into_iter().rev()) else { unreachable!("at least one part") };
@@ -112,14 +112,14 @@ impl Lab {
         Ok((whole, done))
     }
 
-    /// The part of a measurement that a lesson needs. `None`: nothing of it was measured.
+    /// The part of a measurement that a lesson needs. `None` if it was not measured.
     async fn recall(&self, run: i64, lesson: Lesson) -> Answer<Option<(RunTable, Done)>> {
         let bytes = self.worked_out(Job::Recall { run, lesson }).await?;
         rmp_serde::from_slice(&bytes)
             .map_err(|fault| LabError::Internal(format!("run {run} cannot be recalled: {fault}")))
     }
 
-    /// The same as bytes: JSON has no NaN.
+    /// The same as bytes, because JSON has no NaN.
     pub(super) async fn recall_here(&self, run: i64, lesson: &Lesson) -> Answer<Vec<u8>> {
         let (whole, done) = self.measured(run).await?;
         let recalled = match learnt_from(&whole, lesson) {
@@ -129,8 +129,8 @@ impl Lab {
         rmp_serde::to_vec_named(&recalled).map_err(|fault| LabError::Internal(fault.to_string()))
     }
 
-    /// What a run, with those before it, has finished of the plan of its procedure. With the plan at hand its steps are
-    /// compared with those of the journal.
+    /// The steps of the procedure's plan that a run and its predecessors have finished. With a `plan`, its steps are
+    /// compared with the events.
     async fn done(&self, record: &RunRecord, plan: Option<&Plan>) -> Answer<Done> {
         let continues = continues(record)?;
         let mut done = Done { steps: continues.map_or(0, |continues| continues.from_step), ..Done::default() };

@@ -1,4 +1,4 @@
-//! Records of the store and types of the lower crates, as views.
+//! Converts records of the store and types of the lower crates to views.
 
 use super::LabError;
 use crate::bench::Status;
@@ -13,8 +13,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-/// Reads one type's JSON as another. A NaN becomes `null` on the way, which a number refuses: nothing that is not finite
-/// gets through unnoticed.
+/// Converts a type to another through JSON. NaN becomes `null`, which a number refuses, so non-finite values cause an
+/// error.
 pub fn reread<T: Serialize, U: DeserializeOwned>(value: &T) -> Result<U, LabError> {
     let json = serde_json::to_value(value).map_err(|fault| LabError::Internal(fault.to_string()))?;
     serde_json::from_value(json)
@@ -105,7 +105,7 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
         tags: record.tags.clone(),
         note: record.note.clone(),
         verdict: record.verdict.as_ref().and_then(|verdict| reread(verdict).ok()),
-        // Figures of a model that cannot be read any more are none.
+        // An unreadable model is omitted.
         is_modelled,
         model: record.model.as_ref().filter(|_| is_modelled).and_then(|model| reread(model).ok()),
         not_stored: None,
@@ -113,7 +113,7 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
     }
 }
 
-/// A run whose end is not stored is shown as its worker has told of it.
+/// A run whose end is not stored is shown with the state of its worker.
 pub(super) fn as_it_is(run: &mut view::RunSummary, status: &Status) {
     let Some((underway, fault)) = status.not_stored(run.id) else { return };
     run.state = state_view(underway.state);
@@ -138,7 +138,7 @@ pub(super) fn run(record: RunRecord, progress: Option<view::Progress>) -> view::
     }
 }
 
-/// An entry of the journal with its plain sentence.
+/// An event with its sentence.
 pub fn run_event(record: EventRecord) -> view::RunEvent {
     let mut whole = record.data.clone();
     whole.insert("kind".to_owned(), Value::from(record.kind.clone()));
@@ -147,7 +147,7 @@ pub fn run_event(record: EventRecord) -> view::RunEvent {
         Err(_) if record.kind == "damaged" => {
             record.data.get("text").and_then(Value::as_str).unwrap_or_default().to_owned()
         }
-        // Written by another version.
+        // An event of another version.
         Err(_) => record.kind.replace('_', " "),
     };
     view::RunEvent { sequence: record.sequence, at_s: record.at_s, kind: record.kind, text, data: record.data }

@@ -6,22 +6,22 @@ use crate::view::{SampleColumn, Samples, SpectrumView, finite};
 use jointbench_model::channels::{ChannelFormula, spectrum};
 use serde::{Deserialize, Serialize};
 
-/// As many as one plot can tell apart beside each other.
+/// Limit of curves in one plot.
 const FORMULAS: usize = 4;
 const POINTS: u32 = 20_000;
 const TIME: &str = "time_s";
 
-/// What is told of many rows.
+/// Limit of the returned points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Most {
-    /// Smallest and largest value of each pixel, so that a spike of one sample is still seen.
+    /// Smallest and largest value of each pixel, so that a spike of one sample remains visible.
     Pixels(u32),
-    /// Rows as they are, evenly chosen.
+    /// Unchanged rows, evenly selected.
     Rows(u32),
 }
 
 impl Lab {
-    /// A channel for each formula, over the window `[from_s, to_s]`.
+    /// A channel for each formula in the window `[from_s, to_s]`.
     pub async fn derived(
         &self,
         run: i64,
@@ -92,7 +92,7 @@ impl Lab {
         })
     }
 
-    /// Every row of a window: its time and what each formula makes of it.
+    /// Every row of a window: time and result of each formula.
     async fn computed(
         &self,
         run: i64,
@@ -122,7 +122,7 @@ impl Lab {
     }
 }
 
-/// Which rows each point stands for.
+/// The row range of each point.
 fn grouped(rows: usize, most: Most) -> Vec<std::ops::Range<usize>> {
     let (Most::Pixels(points) | Most::Rows(points)) = most;
     let points = (points as usize).min(rows);

@@ -1,4 +1,4 @@
-//! Runs held against a first one: a channel over what they are aligned by, and how far it is from that of the first.
+//! Compares runs with a first run: a channel over an alignment axis, and its differences from the first run.
 
 use super::statistics::ROWS_AT_ONCE;
 use super::{Answer, Lab, LabError};
@@ -8,31 +8,31 @@ use jointbench_instrument::Channel;
 use jointbench_model::words::spoken;
 use serde::{Deserialize, Serialize};
 
-/// Places along the axis.
+/// Bins along the axis.
 const PLACES: usize = 60;
-/// Two runs are held against each other at so many moments in each place of the time.
+/// Two runs are compared at this number of moments in each bin of time.
 const MOMENTS: usize = 8;
 const AT_MOST: usize = 6;
 const TIME: &str = "time_s";
 const VELOCITY: &str = "motor_velocity_rad_s";
 const LOAD: &str = "link_torque_nm";
-/// Only what carries about the same load is held against each other: the span of all loads in so many.
+/// Only data at similar load is compared: the range of all loads is divided into this number of bins.
 const LOADS: usize = 8;
-/// Slower than this share of the fastest speed, a joint goes neither way.
+/// Below this share of the maximum speed, the direction is undefined.
 const AT_REST: f64 = 0.01;
 
-/// What is looked at, and over what.
+/// The compared channel and the alignment axis.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Alignment {
     pub channel: String,
     pub by: String,
-    /// The event from which on the time is told.
+    /// The event that is the zero of time.
     pub from: Option<String>,
 }
 
 impl Lab {
-    /// The channel over what the runs are aligned by, unless that is the time, and the differences from the first run with two
-    /// standard errors, which come from how far stretches at the same place and load are apart.
+    /// The channel over the alignment axis (unless that is time), and the differences from the first run with two
+    /// standard errors. The standard errors follow from the scatter of passes at the same place and load.
     pub async fn differences(&self, runs: &[i64], how: &Alignment) -> Answer<Vec<Figure>> {
         if !(2..=AT_MOST).contains(&runs.len()) {
             return Err(LabError::Invalid(format!("{} runs: choose 2 to {AT_MOST}", runs.len())));
@@ -65,7 +65,7 @@ impl Lab {
         Ok(figures(runs[0], how, &courses[0].unit, shown, apart))
     }
 
-    /// Each run from the first over the time that the two have, so that a short one takes nothing from the others.
+    /// Compares each run with the first over their common time, so that a short run does not limit the others.
     async fn over_time(&self, runs: &[i64], how: &Alignment, zeros: &[f64], spans: &[[f64; 2]]) -> Answer<Vec<Figure>> {
         let (mut apart, mut unit) = (Vec::new(), String::new());
         for other in 1..runs.len() {
@@ -76,7 +76,7 @@ impl Lab {
                 let both = self.inner.store.rows_between(runs[i], Some(low + zeros[i]), Some(high + zeros[i])).await?;
                 rows = rows.min(both.end - both.start);
             }
-            // Two rows in each moment, or nothing is there to be told.
+            // Each moment needs two rows; otherwise there is no value.
             let places = (rows as usize / 2 / MOMENTS).max(1) * MOMENTS;
             let axis = Axis { low, step: (high - low) / places as f64, places };
             let base = self.course(runs[0], how, [&axis, &Axis::ANY], zeros[0]).await?;
@@ -88,7 +88,7 @@ impl Lab {
         Ok(figures(runs[0], how, &unit, Vec::new(), apart))
     }
 
-    /// The moment from which on a run's time is told [s].
+    /// The zero of a run's time [s].
     async fn zero(&self, run: i64, how: &Alignment) -> Answer<f64> {
         let Some(from) = how.from.as_deref().filter(|_| how.by == TIME) else { return Ok(0.0) };
         let events = self.events(run, None).await?;
@@ -109,7 +109,7 @@ impl Lab {
         Ok(spans)
     }
 
-    /// The loads, where they are about the same in all runs and not themselves what is looked at.
+    /// Load bins, if all runs have similar loads and the load is neither the channel nor the axis.
     async fn loads(&self, runs: &[i64], how: &Alignment) -> Answer<Axis> {
         let spans = match [how.channel.as_str(), how.by.as_str()].contains(&LOAD) {
             true => Vec::new(),
@@ -173,23 +173,23 @@ struct Axis {
 }
 
 impl Axis {
-    /// One place for whatever there is.
+    /// One bin for all values.
     const ANY: Axis = Axis { low: f64::MIN, step: f64::INFINITY, places: 1 };
 
     fn place(&self, at: f64) -> Option<usize> {
         let place = (at - self.low) / self.step;
-        // The largest value is in the last place.
+        // The largest value belongs to the last bin.
         (place >= 0.0 && place <= self.places as f64).then(|| (place as usize).min(self.places - 1))
     }
 
-    /// The middle of a place that is `wide` of these.
+    /// Centre of a bin that is `wide` bins of this axis.
     fn centre(&self, place: usize, wide: usize) -> f64 {
         self.low + (place as f64 + 0.5) * wide as f64 * self.step
     }
 }
 
-/// What a run shows at each place, first forwards and then backwards, and load: means of stretches, as samples that follow
-/// each other are not independent, each with the weight of its rows.
+/// Values of a run for each place (forwards, then backwards) and load. They are means of passes, weighted by their
+/// rows, because consecutive samples are not independent.
 struct Course {
     tallies: Vec<[Tally; LOADS]>,
     unit: String,
@@ -197,19 +197,19 @@ struct Course {
 }
 
 impl Course {
-    /// Over all loads.
+    /// Mean over all loads.
     fn at(&self, place: usize) -> Option<Tally> {
         let mut all = Tally::default();
         self.loads(place).for_each(|(_, tally)| all.take(tally.mean, tally.weight));
         Some(all).filter(|tally| tally.n > 0)
     }
 
-    /// What there is at a place, load by load.
+    /// The values at a place, by load.
     fn loads(&self, place: usize) -> impl Iterator<Item = (usize, Tally)> {
         self.tallies[place].into_iter().enumerate().filter(|(_, tally)| tally.n > 0)
     }
 
-    /// How far another is from this where both carry the same load, and its variance when a row of each has `scatters`.
+    /// Mean difference to another run at equal loads, and its variance; `scatters` are the variances per row.
     fn apart(&self, other: &Course, place: usize, scatters: [f64; 2]) -> Option<(f64, f64)> {
         let (mut all, mut variance) = (Tally::default(), 0.0);
         for (load, a) in self.loads(place) {
@@ -224,7 +224,7 @@ impl Course {
     }
 }
 
-/// A weighted mean, and what the values are from it.
+/// A weighted mean and the sum of squares about it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tally {
     n: usize,
@@ -243,7 +243,7 @@ impl Tally {
     }
 }
 
-/// Rows one after the other: as long as they stay at a place they are one stretch.
+/// Consecutive rows: rows at the same place form one pass.
 struct Walk<'a> {
     loads: &'a Axis,
     tallies: Vec<[Tally; LOADS]>,
@@ -280,18 +280,18 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Variance of a stretch about the others at its place and load, times its rows, over all places: few are come back to
-/// often.
+/// Variance of the passes about the mean at their place and load, times their rows. It is pooled over all places,
+/// because most places have few passes.
 fn scatter(course: &Course) -> Option<f64> {
     let tallies = || course.tallies.iter().flatten();
     let more = tallies().map(|tally| tally.n.saturating_sub(1) as f64).sum::<f64>();
     (more > 0.0).then(|| tallies().map(|tally| tally.squares).sum::<f64>() / more)
 }
 
-/// Place, value and two standard errors, where they are known.
+/// Place, value and, if known, two standard errors.
 type Points = Vec<(f64, f64, Option<f64>)>;
 
-/// Means of all runs, and how far the others are from the first, at each place and in each direction.
+/// Means of all runs and their differences from the first, for each place and direction.
 fn over_places(runs: &[i64], axis: &Axis, courses: &[Course]) -> (Vec<FigureSeries>, Vec<FigureSeries>) {
     let ways: &[&str] = if courses.iter().any(|course| course.turns) { &[", forwards", ", backwards"] } else { &[""] };
     let (mut shown, mut apart) = (Vec::new(), Vec::new());
@@ -320,7 +320,7 @@ fn over_places(runs: &[i64], axis: &Axis, courses: &[Course]) -> (Vec<FigureSeri
     (shown, apart)
 }
 
-/// From the differences at the moments of a place.
+/// Difference at a place from the differences at its moments.
 fn apart_at(axis: &Axis, [base, other]: [&Course; 2], place: usize) -> Option<(f64, f64, Option<f64>)> {
     let mut tally = Tally::default();
     for moment in place * MOMENTS..(place + 1) * MOMENTS {

@@ -1,19 +1,18 @@
-//! Every way in which the lab refuses, and which one to use where.
+//! Errors of the lab and their use.
 //!
-//! * [`LabError::NotFound`]: what was named is not there.
-//! * [`LabError::Invalid`]: the request is understood, but its values make no sense here; say what to do instead.
-//! * [`LabError::File`]: a measurement file or description was refused; carries file, line and column where known.
-//! * [`LabError::Formula`]: a user's effect is wrong at a character.
-//! * [`LabError::Conflict`]: right request, wrong moment (bench busy, bench blocked).
-//! * [`LabError::Busy`]: nothing is wrong with the request; the same may work in a moment (disk full, database held, too many
-//!   computations at once).
-//! * [`LabError::Over`]: too late for ever, whatever is waited for (a run that has ended, or was gone on with).
-//! * [`LabError::Bench`]: an instrument does not do what it should.
-//! * [`LabError::TooLarge`]: it needs more memory or time than it may have.
-//! * [`LabError::Setup`]: the daemon cannot start as it was asked to (port taken, folder unwritable, old database).
-//! * [`LabError::Internal`]: ours; the detail goes to the log as well.
+//! * [`LabError::NotFound`]: the named object does not exist.
+//! * [`LabError::Invalid`]: the request is valid, but its values are not possible here; the message has the remedy.
+//! * [`LabError::File`]: a measurement file or description was refused; contains file, line and column if known.
+//! * [`LabError::Formula`]: an error in a user's effect, with its position.
+//! * [`LabError::Conflict`]: a valid request at the wrong time (bench busy, bench blocked).
+//! * [`LabError::Busy`]: the same request may succeed later (disk full, database locked, too many computations).
+//! * [`LabError::Over`]: permanently too late (the run has ended, or another run has continued it).
+//! * [`LabError::Bench`]: an instrument does not work as required.
+//! * [`LabError::TooLarge`]: the request exceeds the limit of memory or time.
+//! * [`LabError::Setup`]: the daemon cannot start with this setup (port in use, folder not writable, old database).
+//! * [`LabError::Internal`]: an internal fault; the detail is also logged.
 //!
-//! `api::problem` decides what each means in HTTP, [`LabError::exit_code`] what it means to a shell.
+//! `api::problem` maps each error to HTTP, [`LabError::exit_code`] to a shell.
 
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum LabError {
@@ -53,7 +52,7 @@ impl LabError {
         ))
     }
 
-    /// 0 done, 1 the run failed or a limit was broken, 2 bad arguments or bad input, 3 could not be decided.
+    /// 0 success, 1 failed run or exceeded limit, 2 invalid arguments or input, 3 no decision possible.
     pub fn exit_code(&self) -> u8 {
         match self {
             LabError::Conflict(_) | LabError::Busy(_) | LabError::Bench(_) | LabError::Internal(_) => 1,

@@ -1,13 +1,13 @@
-//! Stretches of a measurement that a person takes out of a fit.
+//! Sections of a measurement that a person excludes from a fit.
 
 use super::{Answer, LabError, names};
 use crate::view::Exclusion;
 use jointbench_instrument::{RunTable, Trace};
 
-/// A brush along one axis of a long run leaves this many at most; more are a mistake.
+/// One brush along an axis of a long run creates fewer sections; a larger number is a mistake.
 const MOST: usize = 5_000;
 
-/// Refuses what cannot be meant.
+/// Refuses invalid sections.
 pub fn check(stretches: &[Exclusion]) -> Answer<()> {
     if stretches.len() > MOST {
         return Err(LabError::Invalid(format!("{} excluded intervals: the maximum is {MOST}", stretches.len())));
@@ -29,11 +29,11 @@ pub fn check(stretches: &[Exclusion]) -> Answer<()> {
     Ok(())
 }
 
-/// Tells of each time in order, counted from the first, whether it is excluded.
+/// For each time, counted from the first, whether it is excluded. The times are in ascending order.
 pub fn marked(time_s: &[f64], stretches: &[Exclusion]) -> Vec<bool> {
     let mut sorted: Vec<(f64, f64)> = stretches.iter().map(|one| (one.from_s, one.to_s)).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // The furthest end so far: the last stretch that has begun need not be the one that ends last.
+    // The largest end so far: the section that began last need not be the one that ends last.
     let mut furthest = f64::NEG_INFINITY;
     let ends: Vec<f64> = sorted
         .iter()
@@ -49,7 +49,7 @@ pub fn marked(time_s: &[f64], stretches: &[Exclusion]) -> Vec<bool> {
     time_s.iter().map(|at_s| inside(*at_s)).collect()
 }
 
-/// The measurement without these stretches, as if they had not been recorded.
+/// The measurement without these sections, as if they had not been recorded.
 pub fn without(table: RunTable, stretches: &[Exclusion]) -> Answer<RunTable> {
     if stretches.is_empty() {
         return Ok(table);

@@ -1,4 +1,4 @@
-//! What to measure next: the menu of a bench, or of what a run itself has shown, put to the model.
+//! Recommended next run: selects from the menu of a bench, or of the conditions that the run itself covers.
 
 use super::{Answer, Lab, LabError, convert};
 use crate::job::Job;
@@ -10,7 +10,7 @@ use jointbench_procedure::{BenchFacts, menu};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// A bench with the parameters that its runs so far were made with.
+/// A bench with the parameters of its runs so far.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Offer {
     pub bench: BenchFacts,
@@ -18,13 +18,13 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// Where there is no bench: what the run has shown to be possible.
+    /// Without a bench: the conditions that the run covers.
     pub fn shown_by(run: &RunTable) -> Self {
         Self { bench: BenchFacts::shown_by(run), parameters: Map::new() }
     }
 }
 
-/// The run to make next. A diagnosis stands without it: where it cannot be worked out there is none.
+/// The recommended next run. A diagnosis is valid without one: an error gives an empty recommendation.
 pub fn next_run(run: &RunTable, open: &Open, offer: &Offer, options: &Options) -> Next {
     let menu = menu(&offer.bench, run, &offer.parameters);
     jointbench_model::next_run(run, open, &menu, options).unwrap_or_else(|fault| {
@@ -34,8 +34,8 @@ pub fn next_run(run: &RunTable, open: &Open, offer: &Offer, options: &Options) -
 }
 
 impl Lab {
-    /// What can be measured next to these runs: on the bench named, else on the one that made the first of them; `None`: what
-    /// they have shown.
+    /// The possible next runs on the named bench, or else on the bench of the first run. `None` selects the conditions
+    /// that the runs cover.
     pub(super) async fn offer(&self, runs: &[i64], bench: Option<&str>) -> Answer<Option<Offer>> {
         let Some(first) = runs.first() else { return Ok(None) };
         let record = self.inner.store.run(*first).await?;
@@ -47,14 +47,14 @@ impl Lab {
             },
         };
         let mut parameters = record.parameters;
-        // Each further run in another order.
+        // Each further run uses another random order.
         if let Some(seed) = parameters.get("order_seed").and_then(Value::as_f64) {
             parameters.insert("order_seed".into(), (seed + runs.len() as f64 - 1.0).into());
         }
         Ok(Some(Offer { bench: handle.facts(), parameters }))
     }
 
-    /// The run that a kept diagnosis asks for on this bench, with the model that was diagnosed.
+    /// The run that a stored diagnosis recommends on this bench, and the diagnosed model.
     pub(super) async fn asked_for(
         &self,
         diagnosis: i64,
@@ -81,7 +81,7 @@ impl Lab {
     }
 }
 
-/// A run of another joint than the bench carries could not be looked at together with one made there.
+/// Refuses a run of another joint: it cannot be combined with a run of this bench.
 fn check_same_joint(run: &RunTable, bench: &BenchFacts) -> Answer<()> {
     let (meta, constants) = (run.meta(), &bench.constants);
     let facts = [

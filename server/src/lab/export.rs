@@ -1,4 +1,4 @@
-//! Run tables out, a stretch at a time, so that a run of any length needs little memory.
+//! Export of run tables section by section, so that a run of any length needs little memory.
 
 use super::spreadsheet::defused_channels;
 use super::statistics::ROWS_AT_ONCE;
@@ -40,22 +40,22 @@ impl FileFormat {
     }
 }
 
-/// A run, or a stretch of it, as a file.
+/// Export of a run, or of a section of it, to a file.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ExportRequest {
     pub run: i64,
     pub format: FileFormat,
-    /// On the run's clock; its first row where left out.
+    /// On the run's clock; default: the first row.
     pub from_s: Option<f64>,
     pub to_s: Option<f64>,
-    /// No name of a column in a CSV is a formula to a spreadsheet.
+    /// Prevents that a spreadsheet reads a column name of a CSV file as a formula.
     pub spreadsheet_safe: bool,
 }
 
 impl Lab {
-    /// The file, piece by piece, which [`Lab::import`] takes back unchanged.
+    /// The file in parts. [`Lab::import`] reads it back unchanged.
     pub async fn export(&self, request: ExportRequest) -> Answer<Streamed> {
-        // What cannot be found is refused before a process is started.
+        // Refuses a missing run before a process is started.
         self.inner.store.run(request.run).await?;
         let job = Job::Export(request);
         match &self.inner.jobs {
@@ -63,14 +63,13 @@ impl Lab {
             None => {
                 let (give, take) = tokio::sync::mpsc::channel(1);
                 let whole = self.answer(job).await?;
-                // There is room for one.
+                // The channel has capacity for one item.
                 let _ = give.try_send(Ok(whole.into()));
                 Ok(take)
             }
         }
     }
 
-    /// Writes the file.
     pub(crate) async fn export_into(&self, request: ExportRequest, out: impl Write + Send + 'static) -> Answer<()> {
         let ExportRequest { run, format, from_s, to_s, spreadsheet_safe } = request;
         let (meta, record) = self.leaving(run).await?;
@@ -96,7 +95,7 @@ impl Lab {
         }
     }
 
-    /// A MAT file holds one channel behind the other.
+    /// A MAT file stores one channel after the other.
     async fn export_columns(
         &self,
         run: i64,
@@ -116,7 +115,7 @@ impl Lab {
         mat.finish(meta, channels).map_err(failed)
     }
 
-    /// The facts of a run as they leave with it.
+    /// The metadata of a run for an export.
     async fn leaving(&self, id: i64) -> Answer<(Meta, RunRecord)> {
         let (mut meta, record) = self.facts(id).await?;
         if record.simulated {
@@ -125,7 +124,7 @@ impl Lab {
         Ok((meta, record))
     }
 
-    /// The facts of a run as `meta.json`, for a table that cannot carry them itself.
+    /// The metadata of a run as `meta.json`, for a table format without metadata.
     pub async fn export_meta(&self, id: i64) -> Answer<String> {
         let (meta, record) = self.leaving(id).await?;
         Ok(meta_json(&meta, &record.channels))

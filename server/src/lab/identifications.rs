@@ -1,4 +1,4 @@
-//! What a procedure makes of a run that is kept.
+//! Results that a procedure identifies from a stored run.
 
 use super::calibrations::applies;
 use super::working::{Subject as Turn, patiently};
@@ -12,19 +12,18 @@ use jointbench_procedure::parameter::Values;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// As many as a small plot can show.
+/// Limit of a small plot.
 const EARLIER: u32 = 12;
-/// As many as a list shows before it is scrolled far: a daemon's start is no reason to read a whole store.
+/// Limit at a start: the daemon does not evaluate a whole store.
 const LEFT: u32 = 200;
-/// Under which names parts of what a complete run has found are kept.
+/// Cache keys of parts of an identification.
 const QUANTITIES: &str = "quantities";
 const FOLLOW_UP: &str = "follow_up";
-/// Of the journal's entries.
+/// Kind of an event.
 const WARNING: &str = "warning";
 
 impl Lab {
-    /// What earlier runs have found with which this one can be compared, newest first. A run of which this version makes
-    /// nothing is left out.
+    /// Results of comparable earlier runs, newest first. Runs without a result are omitted.
     pub async fn earlier(&self, id: i64) -> Answer<Vec<Earlier>> {
         let record = self.inner.store.run(id).await?;
         let applied = self.inner.store.calibration(&record.bench, &record.procedure).await?;
@@ -40,12 +39,12 @@ impl Lab {
         Ok(told)
     }
 
-    /// The figures of a run that is complete.
+    /// The quantities of a complete run.
     pub(super) async fn quantities(&self, run: i64) -> Answer<Vec<Quantity>> {
         self.kept_of(run, QUANTITIES, |found| found.result.quantities).await
     }
 
-    /// The same where they were worked out before.
+    /// The same if they are already in the cache.
     pub(super) async fn quantities_known(&self, run: i64) -> Answer<Option<Vec<Quantity>>> {
         let kept = self.inner.store.kept(Subject::Run(run), QUANTITIES).await?;
         kept.map(|kept| serde_json::from_slice(&kept))
@@ -53,12 +52,12 @@ impl Lab {
             .map_err(|fault| LabError::Internal(fault.to_string()))
     }
 
-    /// The run for which a complete one has found the parameters.
+    /// The next run that a complete run recommends, with parameters.
     pub(super) async fn follow_up(&self, run: i64) -> Answer<Option<FollowUp>> {
         self.kept_of(run, FOLLOW_UP, |found| found.follow_up).await
     }
 
-    /// A part of what a complete run has found: worked out once, then kept.
+    /// A cached part of the identification of a complete run.
     async fn kept_of<T: Serialize + DeserializeOwned>(
         &self,
         run: i64,
@@ -75,8 +74,7 @@ impl Lab {
         Ok(part)
     }
 
-    /// Worked out anew from the samples, so that it is always the present code's; `None` where the procedure asks nothing of
-    /// its run but samples.
+    /// Identifies the result from the samples each time, so that it always corresponds to the current code.
     pub async fn identification(&self, id: i64) -> Answer<Identification> {
         let record = self.inner.store.run(id).await?;
         if jointbench_procedure::procedure(&record.procedure).is_none() {
@@ -89,7 +87,7 @@ impl Lab {
         if record.state.is_final() && record.verdict.as_ref() != Some(&word(verdict)) {
             match self.inner.store.keep_verdict(id, &word(verdict)).await {
                 Ok(()) => self.hub().tell(LiveMessage::Verdict { run: id, verdict }),
-                // Without it the result stands all the same.
+                // The result is valid although its verdict is not stored.
                 Err(fault) => {
                     tracing::warn!(run.id = id, %fault, "what came of the run is not kept for the list of runs");
                 }
@@ -127,7 +125,7 @@ impl Lab {
         })
     }
 
-    /// What the runs of one measurement found broken, each once.
+    /// The warnings of all runs of a measurement, without repetition.
     async fn warnings(&self, runs: &[i64]) -> Answer<Vec<String>> {
         let mut warnings = Vec::new();
         for run in runs {
@@ -140,7 +138,7 @@ impl Lab {
         Ok(warnings)
     }
 
-    /// Has the list of runs say what came of a run, once it is over: who looks there has not asked for the result.
+    /// Stores the verdict after the end of a run, because the list of runs does not compute results.
     pub(super) fn judge_at_its_end(&self, bench: &BenchHandle, run: i64) {
         let (lab, bench) = (self.clone(), bench.clone());
         tokio::spawn(async move {
@@ -149,7 +147,7 @@ impl Lab {
         });
     }
 
-    /// The same of what was measured before the list could say so, or shortly before a daemon died: one after another.
+    /// The same for older runs without a verdict, for example after a crash; one after another.
     pub(super) fn judge_what_was_left(&self) {
         let lab = self.clone();
         tokio::spawn(async move {
@@ -164,7 +162,7 @@ impl Lab {
         });
     }
 
-    /// A procedure that makes nothing of its run, or not of this one, is no fault.
+    /// A run without a result is not a fault.
     async fn judge(&self, run: i64) {
         if let Err(fault) = patiently(|| self.identification(run)).await {
             tracing::debug!(run.id = run, %fault, "no result of the run");

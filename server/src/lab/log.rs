@@ -1,4 +1,4 @@
-//! What has happened, in one list: the benches' safety records, the journals of runs, the versions of their models, and tokens.
+//! The log: safety records of the benches, events of runs, model versions and tokens in one list.
 
 use super::convert::run_event;
 use super::{Answer, Lab, LabError};
@@ -6,13 +6,14 @@ use crate::store::{CalibrationRecord, RunFilter, RunRecord, SafetyRecord};
 use crate::view::{Effect, LogEntry};
 use jiff::{SignedDuration, Timestamp};
 
-/// So many runs are told of at a time.
+/// Number of runs in one request.
 const RUNS: u32 = 12;
-/// Kind of the entries that tell of tokens.
+/// Kind of the entries about tokens.
 pub const OF_TOKENS: &str = "token";
 
 impl Lab {
-    /// Newest first: of one run, or of the newest runs, or those `before` one, and of the benches and tokens in their time.
+    /// Newest first: one run, or the newest runs, or those `before` one, with the entries of benches and tokens in that
+    /// time.
     pub async fn log(&self, run: Option<i64>, before: Option<i64>) -> Answer<Vec<LogEntry>> {
         let store = &self.inner.store;
         let runs = match run {
@@ -44,7 +45,7 @@ impl Lab {
         for run in &runs {
             self.tell_run(run, &effects, &mut log).await?;
         }
-        // What happened at once stays in its order.
+        // Stable sort: entries of equal time keep their order.
         log.sort_by(|a, b| a.at.cmp(&b.at));
         log.reverse();
         Ok(log)
@@ -149,7 +150,7 @@ fn applied_to(bench: &str, entry: CalibrationRecord) -> LogEntry {
     }
 }
 
-/// When on the wall's clock something of a run happened.
+/// Wall-clock time of an event of a run.
 fn wall(run: &RunRecord, at_s: f64) -> Answer<String> {
     let read = |text: &String| {
         text.parse::<Timestamp>().map_err(|fault| LabError::Internal(format!("run {} at {text}: {fault}", run.id)))

@@ -1,4 +1,4 @@
-//! The memory of a joint's servo, read between runs.
+//! Memory of a joint's servo, read between runs.
 
 use super::{Answer, Lab, LabError};
 use crate::view::{MemoryVariable, ServoMemory};
@@ -6,7 +6,7 @@ use jointbench_devices::protocol::puma::Status;
 use jointbench_devices::protocol::puma::memory::{self, Form, Variable};
 
 impl Lab {
-    /// All variables, or what is at one address. Nothing is commanded, and no run can begin meanwhile.
+    /// All variables, or the data at one address. It sends no motion commands, and no run can start during the read.
     pub async fn servo_memory(&self, bench: &str, address: Option<u8>) -> Answer<ServoMemory> {
         let wanted = wanted(address)?;
         let ranges = wanted.iter().map(|variable| (variable.address, variable.bytes)).collect();

@@ -1,5 +1,4 @@
-//! The one service layer: whatever the REST API, the demo or the command line does with a bench or a run goes through
-//! a [`Lab`].
+//! The one service layer: REST API, demo and command line access benches and runs only through a [`Lab`].
 
 mod autopilot;
 mod benches;
@@ -60,7 +59,7 @@ use working::Turns;
 
 type Answer<T> = Result<T, LabError>;
 
-/// Benches, store and live stream together. Cheap to clone.
+/// Benches, store and live stream. Cheap to clone.
 #[derive(Clone)]
 pub struct Lab {
     inner: Arc<Inner>,
@@ -71,17 +70,17 @@ struct Inner {
     hub: Hub,
     benches: Vec<BenchHandle>,
     tokens: Tokens,
-    /// The file of `jointbench`.
+    /// Path of the `jointbench` executable.
     program: PathBuf,
     flights: Flights,
-    /// Where whole runs are computed on; `None`: here.
+    /// Worker processes for computations on whole runs; `None` computes in this process.
     jobs: Option<Jobs>,
     turns: Turns,
 }
 
 impl Lab {
-    /// Opens the store, ends what another daemon has left open, and starts one thread for each bench, which secures it.
-    /// Nothing that was interrupted starts again.
+    /// Opens the store, ends the runs that another daemon left open, and starts one thread for each bench, which
+    /// secures it. Interrupted runs do not restart.
     pub async fn open(
         data: &Path,
         descriptions: Vec<BenchDescription>,
@@ -136,7 +135,7 @@ impl Lab {
         Ok(lab)
     }
 
-    /// The store alone, to bring runs in and out while no daemon has it. No bench, and nothing is ended.
+    /// Only the store, for import and export without a daemon. It has no benches and ends no runs.
     pub fn of_store(store: Store) -> Lab {
         Lab {
             inner: Arc::new(Inner {
@@ -152,7 +151,7 @@ impl Lab {
         }
     }
 
-    /// The file of `jointbench`, for parts of the daemon that are processes of their own.
+    /// Path of the `jointbench` executable, for parts of the daemon in separate processes.
     pub fn program(&self) -> &Path {
         &self.inner.program
     }
@@ -182,7 +181,7 @@ impl Lab {
     }
 }
 
-/// The worker of a daemon that was killed secures its bench, and leaves what is not stored: that comes first.
+/// The worker of a killed daemon secures its bench and saves unstored commits: wait until it has ended.
 async fn wait_for_workers(data: &Path) {
     let data = data.to_owned();
     let waited = tokio::task::spawn_blocking(move || worker::wait_until_gone(&data)).await;
@@ -191,10 +190,10 @@ async fn wait_for_workers(data: &Path) {
     }
 }
 
-/// Where files lie that come in and are not runs yet.
+/// Folder of uploaded files that are not yet runs.
 const UPLOADS: &str = "uploads";
 
-/// What a daemon that was killed had not taken in.
+/// Removes files that a killed daemon had not imported.
 fn clear_uploads(data: &Path) -> Answer<()> {
     let folder = data.join(UPLOADS);
     let unwritable = |fault: std::io::Error| {

@@ -11,10 +11,10 @@ use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, OwnEffect};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// What is kept of a version under which name.
+/// Cache key of the residuals of a version.
 const RESIDUALS: &str = "residuals";
 
-/// What a fit found, ready to be kept. The residuals follow it, packed, where there are some.
+/// Result of a fit, to be stored. The packed residuals follow, if any.
 #[derive(Debug, Serialize, Deserialize)]
 struct Fitted {
     kind: String,
@@ -29,8 +29,8 @@ struct Fitted {
 }
 
 impl Lab {
-    /// Fits effects to runs of one joint, looked at together, and keeps the fit as a version of the first, with its
-    /// diagnosis. What is not to be looked at is what the parent does not look at, where nothing is said of it.
+    /// Fits effects to runs of one joint together and stores the fit, with its diagnosis, as a version of the first
+    /// run. The default exclusions are those of the parent.
     pub async fn create_model(
         &self,
         runs: &[i64],
@@ -92,7 +92,7 @@ impl Lab {
             fit: fitted.fit,
             by: by.to_owned(),
         };
-        // Without residuals the version stands all the same; whoever asks for them is told why.
+        // A version is valid without residuals; a request for them returns the reason.
         let residuals = Some((RESIDUALS, residuals)).filter(|(_, packed)| !packed.is_empty());
         let record = self.inner.store.save_fitted(&new, residuals, fitted.diagnosis.as_ref()).await?;
         tracing::info!(
@@ -106,7 +106,7 @@ impl Lab {
         convert::model(record)
     }
 
-    /// Fits and diagnoses: [`Fitted`] as one line, then the residuals, packed.
+    /// Fits and diagnoses: [`Fitted`] as one line, then the packed residuals.
     pub(super) async fn fit_here(
         &self,
         runs: &[i64],
@@ -146,15 +146,15 @@ impl Lab {
         Ok(answer)
     }
 
-    /// Makes a version that was only tried, or that is idle, one of the run's.
+    /// Keeps a version that was tried or is idle: it counts as a version of the run from now on.
     pub async fn keep_model(&self, id: i64, by: &str) -> Answer<Model> {
         let record = self.inner.store.keep_model(id, by).await?;
         self.hub().tell(LiveMessage::Model { run: record.run, model: id });
         convert::model(record)
     }
 
-    /// The version that was made of just that and without a parent, where there is one: pages that open a run at once share
-    /// it, and so does an autopilot that begins with the run.
+    /// An existing version of the same effects, runs and exclusions without a parent. Pages that open a run at the same
+    /// time share it, also with an autopilot.
     async fn first_version(
         &self,
         run: i64,
@@ -183,12 +183,12 @@ impl Lab {
         convert::model(self.inner.store.model(id).await?)
     }
 
-    /// What a version was fitted to.
+    /// The data that a version was fitted to.
     pub(super) async fn fitted_table(&self, record: &ModelRecord) -> Answer<RunTable> {
         excluding::without(self.tables(&record.runs()).await?, &reread::<_, Vec<Exclusion>>(&record.excluded)?)
     }
 
-    /// What the version leaves of its runs, as JSON ([`ResidualSet`]). Kept with the version; worked out where it is not.
+    /// The residuals of the version as JSON ([`ResidualSet`]), from the cache if they are there.
     pub async fn residuals(&self, id: i64) -> Answer<Vec<u8>> {
         let subject = Subject::Model(id);
         if let Some(kept) = self.inner.store.kept(subject, RESIDUALS).await? {
@@ -212,8 +212,8 @@ impl Lab {
         Ok(packed(&written(&left, &reread::<_, Vec<Exclusion>>(&model.excluded)?)?)?)
     }
 
-    /// The diagnosis of a version. Data and version never change: the answer is made once, and again where users' effects
-    /// have come, changed or gone since.
+    /// The diagnosis of a version. Data and version never change: it is computed once, and again after a change of
+    /// users' effects.
     pub async fn diagnose(&self, model: i64) -> Answer<Diagnosis> {
         let record = self.inner.store.model(model).await?;
         if let Some(kept) = self.diagnosis_kept(&record).await? {
@@ -229,7 +229,7 @@ impl Lab {
         convert::diagnosis(kept, record.run)
     }
 
-    /// The last diagnosis, where it knows the effects that there are now.
+    /// The last diagnosis, if it is based on the current effects.
     async fn diagnosis_kept(&self, record: &ModelRecord) -> Answer<Option<Diagnosis>> {
         let Some(kept) = self.inner.store.diagnoses(record.id).await?.pop() else { return Ok(None) };
         let known: jointbench_model::Diagnosis = reread(&kept.diagnosis)?;
@@ -249,7 +249,7 @@ impl Lab {
         reread(&diagnosis)
     }
 
-    /// Users' effects as a fit has them, and the others of its kind.
+    /// Users' effects in their version of the fit, and the other effects of this kind.
     async fn own_of(&self, fit: &Fit) -> Answer<Vec<OwnEffect>> {
         let mut own = fit.own.clone();
         own.extend(self.own_effects(fit.kind).await?.into_iter().filter(|o| !fit.own.iter().any(|f| f.id() == o.id())));
@@ -269,8 +269,8 @@ impl Lab {
     }
 }
 
-/// The residuals as the API tells them. Lists as long as these take a while as values of any kind: they are read from
-/// text, which refuses what is not finite.
+/// The residuals in the format of the API. Long lists are slow as `Value`, so they are parsed from text, which also
+/// refuses non-finite values.
 fn written(left: &jointbench_model::ResidualSet, excluded: &[Exclusion]) -> Answer<Vec<u8>> {
     let unfit =
         |fault: serde_json::Error| LabError::Internal(format!("the residuals are not finite or not whole: {fault}"));
@@ -283,7 +283,7 @@ fn written(left: &jointbench_model::ResidualSet, excluded: &[Exclusion]) -> Answ
     serde_json::to_vec(&set).map_err(unfit)
 }
 
-/// The diagnosis with the run to make next.
+/// The diagnosis with the recommended next run.
 pub fn diagnose(
     table: &RunTable,
     spec: &ModelSpec,
@@ -298,7 +298,7 @@ pub fn diagnose(
     Ok(diagnosis)
 }
 
-/// A run that can be fitted but not diagnosed still has a model.
+/// A run that can be fitted but not diagnosed still gets a model.
 fn fit_and_diagnose(
     table: &RunTable,
     spec: &ModelSpec,
@@ -311,7 +311,7 @@ fn fit_and_diagnose(
     }
 }
 
-/// Numbers take their time: not on the threads that answer requests.
+/// Runs long computations outside of the threads that answer requests.
 pub(super) async fn blocking<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, ModelError> + Send + 'static,
 ) -> Answer<T> {
@@ -343,7 +343,7 @@ pub(super) fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
             .map(|parameter| view::EffectParameter {
                 name: parameter.name.to_string(),
                 unit: parameter.unit.to_string(),
-                // A bound without end is none.
+                // An infinite bound is omitted.
                 min: finite(parameter.min),
                 max: finite(parameter.max),
             })

@@ -1,4 +1,4 @@
-//! Names and sentences that people give: bounded in length, and free of characters that change how the rest is shown.
+//! Names and sentences of users: limited in length, without characters that change the display of other text.
 
 use super::{Answer, ImportRequest, LabError};
 use crate::view::EffectDefinition;
@@ -6,14 +6,14 @@ use crate::view::EffectDefinition;
 pub const LONGEST_TOKEN_NAME: usize = 40;
 pub const LONGEST_TAG: usize = 40;
 pub const LONGEST_NOTE: usize = 4000;
-/// Of an effect, of its parameters and their units.
+/// Of effects, their parameters and units.
 const LONGEST_ID: usize = 64;
-/// Of a file, of a run that comes in.
+/// Of files and imported runs.
 pub const LONGEST_NAME: usize = 200;
-/// Why a bench was released, what an effect is called.
+/// Reason of a release, title of an effect.
 pub const LONGEST_SENTENCE: usize = 400;
 
-/// One line without its outer spaces: 1 to `longest` characters, none of which is invisible.
+/// One trimmed line of 1 to `longest` characters, all of them visible.
 pub fn checked<'t>(what: &str, text: &'t str, longest: usize) -> Answer<&'t str> {
     let line = text.trim();
     if line.is_empty() || line.chars().count() > longest || line.chars().any(is_unseen) {
@@ -22,7 +22,7 @@ pub fn checked<'t>(what: &str, text: &'t str, longest: usize) -> Answer<&'t str>
     Ok(line)
 }
 
-/// As [`checked`], with more than one line.
+/// Like [`checked`], but allows several lines.
 pub fn checked_text<'t>(what: &str, text: &'t str, longest: usize) -> Answer<&'t str> {
     let text = text.trim();
     let odd = |c: char| is_unseen(c) && !matches!(c, '\n' | '\r' | '\t');
@@ -32,7 +32,7 @@ pub fn checked_text<'t>(what: &str, text: &'t str, longest: usize) -> Answer<&'t
     Ok(text)
 }
 
-/// Every text of a user's effect. What an id may consist of, the formulas say.
+/// Checks all texts of a user's effect. The parser of formulas checks the id.
 pub fn check_effect(definition: &EffectDefinition) -> Answer<()> {
     let short = [("id", &definition.id)].into_iter();
     let short = short.chain(definition.parameters.iter().flat_map(|p| [("parameter", &p.name), ("unit", &p.unit)]));
@@ -45,7 +45,7 @@ pub fn check_effect(definition: &EffectDefinition) -> Answer<()> {
 }
 
 impl ImportRequest {
-    /// With names that can be shown: the one that a person gave is checked, the one that a file has is cleaned.
+    /// Makes the names displayable: checks the name of a user and cleans the name of a file.
     pub(super) fn with_names(mut self) -> Answer<Self> {
         if let Some(name) = &self.name {
             self.name = Some(checked("name", name, LONGEST_NAME)?.to_owned());
@@ -55,12 +55,12 @@ impl ImportRequest {
     }
 }
 
-/// A name that comes from elsewhere, such as that of a file: what may not stand in it is left out, and it is cut.
+/// A name from elsewhere, such as a file name: removes invalid characters and truncates it.
 pub fn cleaned(name: &str, longest: usize) -> String {
     name.chars().filter(|c| !is_unseen(*c)).take(longest).collect()
 }
 
-/// A character that moves, hides or turns what stands around it: controls, and the marks of writing direction.
+/// A character that moves, hides or reverses the text around it: control characters and marks of writing direction.
 fn is_unseen(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')

@@ -1,4 +1,4 @@
-//! What people say about runs: notes and tags.
+//! Notes and tags of runs.
 
 use super::names::{self, LONGEST_NOTE, LONGEST_TAG};
 use super::{Answer, Lab, LabError};
@@ -17,13 +17,13 @@ impl Lab {
         Ok(view(self.inner.store.save_note(run, new.at_s, text).await?))
     }
 
-    /// The run has these tags from now on, and no others.
+    /// Replaces the tags of a run.
     pub async fn set_tags(&self, run: i64, tags: &[String]) -> Answer<Run> {
         let tags: Vec<String> = tags.iter().map(|tag| tag.trim().to_owned()).collect();
         if tags.len() > MOST_TAGS {
             return Err(LabError::Invalid(format!("tags: at most {MOST_TAGS}, these are {}", tags.len())));
         }
-        // What the search could not ask for.
+        // The search cannot express these tags.
         let odd = |tag: &&String| names::checked("tag", tag, LONGEST_TAG).is_err() || tag.contains(['"', ' ']);
         if let Some(tag) = tags.iter().find(odd) {
             return Err(LabError::Invalid(format!("tag {tag:?}: write one word of at most {LONGEST_TAG} characters")));

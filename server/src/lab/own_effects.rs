@@ -1,4 +1,4 @@
-//! Effects that users write: checked, kept, and offered to every model of their kind.
+//! Effects that users write: checked, stored, and available to every model of their kind.
 
 use super::models::{blocking, effect_view, find_kind};
 use super::{Answer, Lab, LabError, names, reread};
@@ -28,7 +28,7 @@ impl Lab {
         Ok(all)
     }
 
-    /// A model of these effects that may hold, and be suggested, every effect that users wrote.
+    /// A model of these effects that may contain and suggest all users' effects.
     pub(super) async fn spec(&self, kind: Kind, effects: &[String]) -> Answer<ModelSpec> {
         Ok(ModelSpec::with_own(kind, effects, self.own_effects(kind).await?)?)
     }
@@ -38,7 +38,7 @@ impl Lab {
         records.iter().filter(|record| record.kind == kind.name()).map(read).collect()
     }
 
-    /// What a formula means, and what it comes to on a run.
+    /// The interpretation of a formula, and its values on a run.
     pub async fn check_effect(&self, trial: &EffectTrial) -> Answer<EffectCheck> {
         match self.reading(trial).await {
             Err(LabError::Formula(fault)) if trial.typing => {
@@ -76,7 +76,7 @@ impl Lab {
         Ok(check)
     }
 
-    /// Its parameters where it is fitted to the run of the trial beside the other effects, and what it cannot be told from.
+    /// Fitted parameters of the effect together with the other effects, and the effects that are confounded with it.
     pub(super) async fn try_effect_here(&self, trial: &EffectTrial) -> Answer<(Vec<FittedParameter>, Vec<String>)> {
         let own = parse(&trial.effect)?;
         let runs: Vec<i64> = trial.run.iter().chain(&trial.more_runs).copied().collect();
@@ -98,7 +98,7 @@ impl Lab {
         Ok((reread(&found)?, like))
     }
 
-    /// Keeps an effect; one of the same id becomes its next version.
+    /// Stores an effect; an existing id gets the next version.
     pub async fn define_effect(&self, definition: &EffectDefinition) -> Answer<Effect> {
         view(&self.keep_effect(&parse(definition)?).await?)
     }
@@ -111,8 +111,8 @@ impl Lab {
         Ok(record)
     }
 
-    /// Takes in what a model brings along, so that models can be made with it here. An id that stands for another formula here
-    /// would be two things at once.
+    /// Stores the effects of an imported model, so that models can use them here. Refuses an id that has another
+    /// formula here.
     pub(super) async fn bring_effects(&self, brought: &[OwnEffect]) -> Answer<()> {
         let mut new = Vec::new();
         for own in brought {
@@ -171,7 +171,7 @@ impl Lab {
     }
 }
 
-/// The other effects of which the data decides only a combination with this one, each once.
+/// The other effects that have a parameter trade-off with this one, without repetition.
 fn trading(own: &str, pairs: &[TradeOff]) -> Vec<String> {
     let effects =
         |pair: &TradeOff| [&pair.first, &pair.second].map(|name| name.split('.').next().unwrap_or_default().to_owned());

@@ -1,7 +1,7 @@
-//! What an autopilot does: measure, diagnose, add what is missing or make the run that would tell, again.
+//! The steps of an autopilot: measure, diagnose, then add a missing effect or make the recommended run, and repeat.
 //!
-//! Every run goes through [`Lab::start_run`], so through plan, limits and guard like any other. After a further run the
-//! model starts anew from the effects that were given: what was added on less data has to earn its place again.
+//! Every run uses [`Lab::start_run`], so plan, limits and guard apply. After a further run the model restarts from the
+//! given effects: effects that were added with less data must prove significant again.
 
 use super::working::patiently;
 use super::{Answer, Lab, LabError, reread};
@@ -15,9 +15,9 @@ use serde_json::{Map, Value};
 use tokio::sync::watch;
 
 pub(super) enum Goal {
-    /// Until nothing is missing.
+    /// Until no effect is missing.
     Explain(NewAutopilot),
-    /// One run that decides what a model leaves open.
+    /// One run that separates the candidate effects of a model.
     Decide { runs: Vec<i64>, model: i64, effects: Vec<String>, experiment: Experiment },
 }
 
@@ -26,15 +26,15 @@ pub(super) struct Pilot {
     id: i64,
     bench: String,
     stop: watch::Receiver<Option<String>>,
-    /// What it does is kept under this name.
+    /// Author of its runs and models.
     by: String,
-    /// Runs that the models look at.
+    /// Runs that the models are fitted to.
     runs: Vec<i64>,
     made: u32,
     bench_time_s: f64,
 }
 
-/// How it ends where nothing fails.
+/// End of an autopilot without a fault.
 struct End {
     state: AutopilotState,
     reason: String,
@@ -46,13 +46,13 @@ impl End {
     }
 }
 
-/// Work that is through, or cut short by a person.
+/// Completed work, or an end by a person.
 enum Through<T> {
     Done(T),
     Cut(End),
 }
 
-/// Hands the result on, or ends.
+/// Returns the value, or ends the caller.
 macro_rules! through {
     ($work:expr) => {
         match $work {
@@ -131,7 +131,7 @@ impl Pilot {
         }
     }
 
-    /// Adds the best effect again and again, until none is missing or a run can decide between the best and its rivals.
+    /// Adds the best effect repeatedly until none is missing or a run can separate the candidate effects.
     async fn add_what_is_missing(
         &mut self,
         request: &NewAutopilot,
@@ -140,7 +140,7 @@ impl Pilot {
     ) -> Answer<Through<Finding>> {
         for _ in 0..request.max_effects {
             let Some(best) = found.suggestions.first() else { break };
-            // What columns suggest that contradict each other is no advice.
+            // A diagnosis with data problems is no basis for effects.
             if found.undecided.is_some() {
                 break;
             }
@@ -164,13 +164,13 @@ impl Pilot {
         self.made < request.runs && experiment.expected_duration_s.unwrap_or(0.0) <= left_s
     }
 
-    /// A run that is there.
+    /// Begins with an existing run.
     async fn begin_with(&mut self, id: i64) -> Answer<Run> {
         self.runs.push(id);
         self.lab.run(id).await
     }
 
-    /// Makes a run and waits for its end.
+    /// Starts a run and waits for its end.
     async fn measure(&mut self, experiment: &Experiment) -> Answer<Through<Run>> {
         if let Some(end) = self.is_stopped() {
             return Ok(Through::Cut(end));
@@ -190,7 +190,7 @@ impl Pilot {
             by = self.stop.wait_for(Option::is_some) => by.ok().and_then(|by| by.clone()),
         };
         if let Some(by) = cut {
-            // It may have come to its end by itself in between.
+            // The run may have ended in the meantime.
             let _ = self.lab.control(id, Control::Stop, &by).await;
             handle.until_free().await;
         }
@@ -220,7 +220,6 @@ impl Pilot {
         }
     }
 
-    /// Fits effects to all runs so far.
     async fn fit(&mut self, effects: &[String], parent: Option<i64>) -> Answer<(Model, Finding)> {
         let before_rms = match parent {
             Some(parent) => Some(self.lab.model(parent).await?.validation_rms),
@@ -247,7 +246,7 @@ impl Pilot {
         Ok((model, found))
     }
 
-    /// Keeps a step about a model with what its diagnosis says.
+    /// Stores a step about a model with the summary of its diagnosis.
     async fn diagnosed(&mut self, model: &Model, step: AutopilotStep) -> Answer<Finding> {
         let kept = patiently(|| self.lab.diagnose(model.id)).await?;
         let step = AutopilotStep {
@@ -280,7 +279,7 @@ impl Pilot {
     }
 }
 
-/// The model to start from, by the facts of the run.
+/// The initial effects from the metadata of the run.
 fn baseline(run: &Run) -> Answer<Vec<String>> {
     let meta: Meta = reread::<Map<String, Value>, _>(&run.meta)?;
     Ok(meta.baseline)

@@ -1,12 +1,12 @@
-//! A run as one page.
+//! Report of a run on one page.
 
 use super::{Answer, Lab, LabError};
 use crate::report::Report;
 use crate::view::Model;
 
 impl Lab {
-    /// Everything that is known of a run: what its procedure makes of it, a model and that model's diagnosis. `model`: one of its
-    /// versions, the last that is neither idle nor only tried where left out.
+    /// Result of the procedure, a model version and its diagnosis. The default `model` is the last version that is
+    /// neither idle nor only tried.
     pub async fn report(&self, id: i64, model: Option<i64>) -> Answer<String> {
         let run = self.run(id).await?;
         let identification = match self.identification(id).await {
@@ -32,7 +32,7 @@ impl Lab {
     }
 }
 
-/// A version, the last that is neither idle nor only tried where none is named, and its forebears, the oldest first.
+/// A version and its ancestors, the oldest first. The default is the last version that is neither idle nor only tried.
 fn lineage(mut versions: Vec<Model>, model: Option<i64>) -> Vec<Model> {
     let last =
         versions.iter().rposition(|version| model.map_or(!version.idle && !version.tried, |id| version.id == id));

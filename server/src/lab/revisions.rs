@@ -1,4 +1,4 @@
-//! Model versions beside each other, on other runs, and on their way out and in.
+//! Model versions: comparison, evaluation on other runs, export and import.
 
 use super::models::blocking;
 use super::working::Subject as Turn;
@@ -9,11 +9,11 @@ use crate::view::{Comparison, Evaluation, ImportedModel, LiveMessage, ModelImpor
 use jointbench_model::export::{Format, ModelFile, export};
 use jointbench_model::{Fit, ModelSpec, Options, OwnEffect};
 
-/// What is kept of a version under which name.
+/// Cache key.
 const WORTH: &str = "worth";
 
 impl Lab {
-    /// `run`: where both are evaluated; the run of the first where left out.
+    /// `run`: the run for the evaluation; default: the run of the first version.
     pub async fn compare(&self, first: i64, second: i64, run: Option<i64>) -> Answer<Comparison> {
         let run = match run {
             Some(run) => run,
@@ -28,8 +28,8 @@ impl Lab {
         reread(&blocking(move || jointbench_model::compare(&first, &second, &table)).await?)
     }
 
-    /// The error outside the fit without each effect in turn. The order in which effects were added says nothing of it.
-    /// Kept; worked out for one version at a time, so that a page that is opened again does not have it done twice.
+    /// The validation error without each effect in turn; the order of addition has no influence. Cached, and computed
+    /// once for simultaneous requests.
     pub async fn worth(&self, model: i64) -> Answer<Vec<Worth>> {
         let _turn = self.inner.turns.of(Turn::Worth(model)).await;
         if let Some(kept) = self.inner.store.kept(Subject::Model(model), WORTH).await? {
@@ -61,8 +61,8 @@ impl Lab {
         blocking(move || Ok(effects.into_iter().map(said).collect())).await
     }
 
-    /// What an effect more would add to the prediction at each point of the version's residuals, all fitted again with it.
-    /// Kept, but for a user's effect, whose formula may change.
+    /// Change of the prediction at each point of the residuals if an effect is added and the model is fitted again.
+    /// Cached, except for users' effects, whose formula may change.
     pub async fn with_effect(&self, model: i64, effect: String) -> Answer<Vec<f64>> {
         let kept_as = format!("with {effect}");
         if let Some(kept) = self.inner.store.kept(Subject::Model(model), &kept_as).await? {
@@ -78,7 +78,7 @@ impl Lab {
         Ok(added)
     }
 
-    /// Users' effects of a fit, and the one that is asked for, where a user wrote it.
+    /// Users' effects of a fit, and the requested effect if a user wrote it.
     async fn own_with(&self, fit: &Fit, effect: &str) -> Answer<Vec<OwnEffect>> {
         let mut own = fit.own.clone();
         let theirs = self.own_effects(fit.kind).await?;
@@ -113,13 +113,13 @@ impl Lab {
         reread(&blocking(move || jointbench_model::evaluate(&fit, &table)).await?)
     }
 
-    /// With the run that it was fitted to.
+    /// The exported model and the run that it was fitted to.
     pub async fn export_model(&self, model: i64, format: Format) -> Answer<(i64, String)> {
         let record = self.inner.store.model(model).await?;
         Ok((record.run, export(&reread(&record.fit)?, format)?))
     }
 
-    /// Stores an exported model as a version of a run. Its numbers stay as they are; its errors are those on the run.
+    /// Stores an exported model as a version of a run. Its parameters remain; its errors are computed on the run.
     pub async fn import_model(&self, import: ModelImport, by: &str) -> Answer<ImportedModel> {
         let file: serde_json::Value = import.model.into();
         let kept = exported(file.clone())?;

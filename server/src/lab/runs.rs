@@ -1,4 +1,4 @@
-//! Runs: start, steer, look at.
+//! Runs: start, control, read.
 
 use super::{Answer, Lab, LabError, convert};
 use crate::bench::{BenchHandle, Status};
@@ -10,11 +10,11 @@ use serde_json::{Map, Value, json};
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// The end of a run is stored within this time, or the disk does not take it.
+/// Time limit to store the end of a run; exceeded if the disk accepts no data.
 const STORES: Duration = Duration::from_secs(2);
 
 impl Lab {
-    /// Plans, checks against the limits, and hands the plan to the thread of the bench.
+    /// Plans, checks the limits, and passes the plan to the thread of the bench.
     pub async fn start_run(
         &self,
         bench: &str,
@@ -61,12 +61,12 @@ impl Lab {
         self.run(run).await
     }
 
-    /// Returns when a run of this bench that is over, so that anybody may know of it, has given the bench back.
+    /// Waits until every ended run of this bench is stored and has released the bench.
     pub(super) async fn let_go(&self, bench: &BenchHandle) {
         let over: Vec<i64> =
             bench.status().runs.iter().filter(|(_, run)| run.state.is_final()).map(|(id, _)| *id).collect();
         let gone = |status: &Status| over.iter().all(|run| !status.runs.contains_key(run));
-        // One that cannot be stored keeps the bench, which is told to whoever claims it.
+        // A run that cannot be stored keeps the bench; the next claim reports this.
         drop(timeout(STORES, bench.watch().wait_for(gone)).await);
     }
 
@@ -90,7 +90,7 @@ impl Lab {
         Ok(RunList { total, runs, unclear: None })
     }
 
-    /// The runs that what is understood of a search finds. A key that is begun takes none away.
+    /// Runs that match the valid part of a search. An incomplete key does not filter.
     pub async fn runs_while_typing(&self, filter: &RunFilter) -> Answer<RunList> {
         let (understood, mut refused) = Search::understood(filter.search.as_deref().unwrap_or_default());
         let before = Search::before_key(&understood);
@@ -116,7 +116,7 @@ impl Lab {
         Ok(events.into_iter().map(convert::run_event).collect())
     }
 
-    /// A window of samples, `px` points wide.
+    /// A window of samples, at most `px` points.
     pub async fn samples(
         &self,
         id: i64,
@@ -139,7 +139,7 @@ impl Lab {
         Ok(Samples { time_s: window.time_s, channels: channels.collect(), exact: window.exact, rows: window.rows })
     }
 
-    /// The whole run with its facts, as the models take it.
+    /// The whole run with its metadata, as input of a model.
     pub async fn table(&self, id: i64) -> Answer<RunTable> {
         let (meta, record) = self.facts(id).await?;
         if record.rows == 0 {
@@ -149,7 +149,7 @@ impl Lab {
         Ok(RunTable::new(meta, trace)?)
     }
 
-    /// Runs of one joint together, as the models take them.
+    /// Several runs of one joint, as input of a model.
     pub(super) async fn tables(&self, runs: &[i64]) -> Answer<RunTable> {
         let mut tables = Vec::new();
         for (i, run) in runs.iter().enumerate() {

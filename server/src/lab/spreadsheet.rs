@@ -1,9 +1,11 @@
-//! Text that a spreadsheet would take for a formula. Whoever opens an export may not know where its names come from.
+//! Protection against formula injection: a spreadsheet may run text as a formula, and names can come from other
+//! persons.
 
 use jointbench_files::TableColumn;
 use jointbench_instrument::Channel;
 
-/// Text as a spreadsheet shows it and never computes it: an apostrophe before what begins a formula. A number stays one.
+/// Text that a spreadsheet shows and does not evaluate: adds an apostrophe before the start of a formula. Numbers
+/// remain.
 pub fn defused(text: String) -> String {
     let begins_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
     match begins_formula && text.parse::<f64>().is_err() {
@@ -12,7 +14,7 @@ pub fn defused(text: String) -> String {
     }
 }
 
-/// The same for the names and the texts of a table.
+/// The same for names and texts of a table.
 pub fn defused_columns(columns: Vec<(String, TableColumn)>) -> Vec<(String, TableColumn)> {
     let column = |column| match column {
         TableColumn::Words(words) => TableColumn::Words(words.into_iter().map(|word| word.map(defused)).collect()),
@@ -21,7 +23,7 @@ pub fn defused_columns(columns: Vec<(String, TableColumn)>) -> Vec<(String, Tabl
     columns.into_iter().map(|(name, values)| (defused(name), column(values))).collect()
 }
 
-/// The same for the names of channels.
+/// The same for names of channels.
 pub fn defused_channels(channels: Vec<Channel>) -> Vec<Channel> {
     channels.into_iter().map(|channel| Channel { name: defused(channel.name), ..channel }).collect()
 }

@@ -1,14 +1,14 @@
-//! Figures of a window of samples.
+//! Statistics of a window of samples.
 
 use super::{Answer, Lab};
 use crate::job::Job;
 use crate::view::ChannelStatistics;
 
-/// So many rows are in memory at a time, whatever the window.
+/// Limit of the rows in memory.
 pub(super) const ROWS_AT_ONCE: u64 = 1 << 18;
 
 impl Lab {
-    /// From every row with `from_s ≤ time ≤ to_s`: a picture's smallest and largest values give no mean.
+    /// Uses every row with `from_s ≤ time ≤ to_s`: the minima and maxima of a plot do not give a mean.
     pub async fn statistics(
         &self,
         id: i64,
@@ -44,7 +44,7 @@ impl Lab {
     }
 }
 
-/// Welford's running mean and squares about it: no cancellation where the mean is large.
+/// Welford's running mean and squares about it: no cancellation for a large mean.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Figures {
     pub n: u64,

@@ -1,4 +1,4 @@
-//! Tables that a page shows, as files. What is visible was chosen, binned and tried on the page, so the page says what it is.
+//! Export of tables from a page. The page selects, bins and computes the values, so it sends the table.
 
 use super::spreadsheet::defused_columns;
 use super::{Answer, Lab, LabError};
@@ -25,7 +25,7 @@ impl TableFormat {
 }
 
 impl Lab {
-    /// `spreadsheet_safe`: no text of a CSV becomes a formula.
+    /// `spreadsheet_safe`: no text of a CSV file is read as a formula.
     pub async fn write_table(&self, table: Table, format: TableFormat, spreadsheet_safe: bool) -> Answer<Vec<u8>> {
         let mut columns = columns(table)?;
         if spreadsheet_safe && format == TableFormat::Csv {

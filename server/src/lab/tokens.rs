@@ -1,5 +1,5 @@
-//! Who calls. Those tokens that the daemon was started with decide whether one is needed at all, and are never revoked here:
-//! whoever can start the daemon can always come in.
+//! Access tokens. The tokens at the start of the daemon decide whether a token is required, and cannot be revoked here:
+//! a person who can start the daemon has access anyway.
 
 use super::{Answer, Lab, LabError, names, reread};
 use crate::store::TokenRecord;
@@ -9,17 +9,17 @@ use sha2::{Digest, Sha256};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use tokio::sync::watch;
 
-/// Of a token that somebody thought of. One that is made here has more.
+/// For a token that a person chose. Generated tokens are longer.
 const SHORTEST_TOKEN: usize = 16;
 const FEWEST_CHARACTERS: usize = 6;
-/// So often it is kept that a token was used.
+/// Minimum interval between two records of a token's use.
 const USED_EVERY: SignedDuration = SignedDuration::from_secs(60);
-/// Names of who comes without a token, and of those tokens that the daemon was started with.
+/// Names of clients without a token, and of the tokens at the start.
 pub const LOCAL: &str = "local";
 const OPERATOR: &str = "operator";
 const OBSERVER: &str = "observer";
 
-/// Who sent a request.
+/// Sender of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Caller {
     pub access: Access,
@@ -29,23 +29,23 @@ pub struct Caller {
 }
 
 impl Caller {
-    /// Somebody on this computer, of whom no token is wanted.
+    /// A client on this computer, which needs no token.
     pub fn local() -> Self {
         Self { access: Access::Open, name: LOCAL.into(), token: None }
     }
 }
 
-/// Every token that opens the door.
+/// All valid tokens.
 #[derive(Debug)]
 pub struct Tokens {
     all: RwLock<Vec<Known>>,
-    /// Raised when one is revoked.
+    /// Notifies about a revoked token.
     revoked: watch::Sender<()>,
 }
 
 #[derive(Debug)]
 struct Known {
-    /// `None`: the daemon was started with it.
+    /// `None` for a token from the start of the daemon.
     id: Option<i64>,
     caller: Caller,
     made: Option<(String, String)>,
@@ -59,7 +59,7 @@ impl Default for Tokens {
 }
 
 impl Tokens {
-    /// Those that the daemon is started with.
+    /// The tokens from the start of the daemon.
     pub fn given(token: Option<&str>, read_token: Option<&str>) -> Self {
         let full = token.map(|secret| (OPERATOR, Access::Full, secret));
         let read = read_token.map(|secret| (OBSERVER, Access::Read, secret));
@@ -72,12 +72,12 @@ impl Tokens {
         Self { all: RwLock::new(full.into_iter().chain(read).map(known).collect()), ..Self::default() }
     }
 
-    /// Whether nobody comes in without one.
+    /// Whether every client needs a token.
     pub fn are_needed(&self) -> bool {
         self.read().iter().any(|known| known.id.is_none())
     }
 
-    /// Whose secret this is.
+    /// The owner of a secret.
     pub fn holder(&self, secret: &str) -> Option<Caller> {
         let token = Some(hash(secret));
         self.read().iter().map(|known| &known.caller).find(|caller| caller.token == token).cloned()
@@ -94,7 +94,7 @@ impl Tokens {
         Ok(())
     }
 
-    /// The token that came in, where that has to be kept.
+    /// The id of the token if its use must be stored.
     fn note_use(&self, caller: &Caller) -> Option<i64> {
         let now = Timestamp::now();
         let lately = |used: Option<Timestamp>| used.is_some_and(|used| now.duration_since(used) < USED_EVERY);
@@ -144,7 +144,7 @@ impl Lab {
         Ok(())
     }
 
-    /// Keeps that somebody came in with a token, without keeping anybody waiting.
+    /// Stores the use of a token in the background.
     pub fn came_in(&self, caller: &Caller) {
         let Some(id) = self.tokens().note_use(caller) else { return };
         let store = self.inner.store.clone();
@@ -180,7 +180,7 @@ impl Lab {
         Ok(MadeToken { token, secret })
     }
 
-    /// It opens nothing from now on; what listens with it is cut off.
+    /// Revokes a token; its open connections are closed.
     pub async fn revoke_token(&self, id: i64, by: &Caller) -> Answer<()> {
         let missing = || LabError::NotFound(format!("token {id} does not exist or is already revoked"));
         let token = self.list_tokens(by).into_iter().find(|token| token.id == Some(id)).ok_or_else(missing)?;
@@ -195,12 +195,12 @@ impl Lab {
         Ok(())
     }
 
-    /// Returns when the token of this caller opens nothing any more.
+    /// Returns when the token of this caller is revoked.
     pub async fn shut_out(&self, caller: &Caller) {
         let mut revoked = self.tokens().revoked.subscribe();
         let is_known = || self.tokens().read().iter().any(|known| known.caller.token == caller.token);
         while caller.token.is_none() || is_known() {
-            // An error says that the daemon ends.
+            // An error means that the daemon ends.
             if revoked.changed().await.is_err() {
                 return;
             }
@@ -208,7 +208,7 @@ impl Lab {
     }
 }
 
-/// Why a token is too easily found; `None` where it is not.
+/// Why a token is too easy to guess, or `None`.
 pub fn weakness(token: &str) -> Option<String> {
     let different = token.chars().collect::<std::collections::BTreeSet<_>>().len();
     let why = match token.chars().count() {
@@ -222,7 +222,7 @@ pub fn weakness(token: &str) -> Option<String> {
     Some(format!("{why}: generate one with `openssl rand -hex 24`"))
 }
 
-/// What is made here is long and random: nobody finds it by trying, and a plain hash keeps it.
+/// Generated tokens are long and random: they cannot be guessed, so an unsalted hash is sufficient.
 fn hash(secret: &str) -> [u8; 32] {
     Sha256::digest(secret.as_bytes()).into()
 }

@@ -1,5 +1,5 @@
-//! Run tables in. A file is read and checked in a process of its own, which lays its rows down in a file of known form; the
-//! daemon takes them from there into the store, a block at a time and in one transaction.
+//! Import of run tables. A separate process reads and checks a file and writes its rows to an intermediate file. The
+//! daemon stores these rows block by block in one transaction.
 
 use super::statistics::ROWS_AT_ONCE;
 use super::{Answer, Lab, LabError, UPLOADS};
@@ -18,29 +18,29 @@ use std::path::{Path, PathBuf};
 use tempfile::{NamedTempFile, TempPath};
 use tokio::sync::mpsc;
 
-/// In the provenance of an import: the run that holds the same samples.
+/// Provenance of an import: the run with the same samples.
 pub const COPY_OF: &str = "copy_of";
-/// In the provenance of an import: what its columns and facts contradict or lack, in sentences.
+/// Provenance of an import: data problems and missing metadata, as sentences.
 pub const ATTENTION: &str = "attention";
-/// In the provenance of an import: what was skipped or assumed on the way in, in one paragraph.
+/// Provenance of an import: skipped and assumed data, in one paragraph.
 pub const UNDERSTOOD: &str = "understood";
-/// Among the facts that leave with a run of a simulated bench, so that it does not come back as one of hardware.
+/// Exported metadata of a simulated run, so that an import does not show it as a hardware run.
 pub(super) const SIMULATED: &str = "simulated";
 
-/// A measured file with what is needed to read it.
+/// A measured file and the data needed to read it.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct ImportRequest {
-    /// To keep the run under; the file's name where empty.
+    /// Name of the run; default: name of the file.
     pub name: Option<String>,
-    /// Tells the form, and stands in messages.
+    /// Determines the format, and appears in messages.
     pub file_name: String,
-    /// Where the bytes lie.
+    /// Path of the data.
     pub file: PathBuf,
     pub meta: Option<String>,
     pub choices: Choices,
 }
 
-/// What was found in a file, but for its rows.
+/// Content of a file except for its rows.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Found {
     kind: String,
@@ -53,7 +53,7 @@ pub(super) struct Found {
 }
 
 impl Lab {
-    /// A file for what comes in, gone when the path is dropped.
+    /// A temporary file for an upload, deleted when the path is dropped.
     pub fn upload(&self) -> Answer<(File, TempPath)> {
         let made = match &self.inner.jobs {
             Some(jobs) => NamedTempFile::new_in(jobs.data().join(UPLOADS)),
@@ -63,7 +63,7 @@ impl Lab {
         Ok(made.map_err(unwritable)?.into_parts())
     }
 
-    /// Takes a file in as a run. It is read and checked whole before anything is kept, and kept in one transaction.
+    /// Imports a file as a run. The whole file is checked first, then stored in one transaction.
     pub async fn import(&self, request: ImportRequest, by: &str) -> Answer<Run> {
         let request = request.with_names()?;
         let name = request.name.clone().unwrap_or_else(|| request.file_name.clone());
@@ -80,7 +80,7 @@ impl Lab {
         self.keep(&name, source, found, &rows, by).await
     }
 
-    /// What a file holds and what is proposed for it; keeps nothing.
+    /// Content of a file and proposals for its import; stores nothing.
     pub async fn preview_file(&self, request: ImportRequest) -> Answer<Preview> {
         let request = request.with_names()?;
         let uploaded = self.inner.jobs.is_some();
@@ -135,7 +135,7 @@ impl Lab {
         self.run(run).await
     }
 
-    /// Reads and checks a file, and lays its rows down.
+    /// Reads and checks a file, and writes its rows to the intermediate file.
     pub(super) async fn read_here(&self, request: ImportRequest, rows: &Path, uploaded: bool) -> Answer<Found> {
         let (table, notes) = tokio::task::spawn_blocking(move || read(&request, uploaded))
             .await
@@ -149,7 +149,7 @@ impl Lab {
         Ok(Found { kind, meta, rows: trace.len(), channels: trace.channels().to_vec(), attention, understood, copy_of })
     }
 
-    /// The first run of the store that holds the same samples.
+    /// The first stored run with the same samples.
     async fn original_of(&self, kind: &str, trace: &Trace) -> Answer<Option<i64>> {
         let search = Some(format!("kind:{kind} rows={}", trace.len()));
         let (_, alike) = self.inner.store.runs(&RunFilter { limit: u32::MAX, search, ..RunFilter::default() }).await?;
@@ -191,7 +191,7 @@ fn unkept(fault: io::Error) -> LabError {
     LabError::Internal(format!("the rows of the file cannot be stored: {fault}"))
 }
 
-/// Block by block, column by column, each value as eight bytes, the lowest first.
+/// Writes block by block, column by column, each value as eight bytes, little endian.
 fn lay_down(trace: &Trace, file: &Path) -> io::Result<()> {
     let mut out = BufWriter::new(File::create(file)?);
     for first in (0..trace.len()).step_by(BLOCK_ROWS) {
@@ -204,7 +204,7 @@ fn lay_down(trace: &Trace, file: &Path) -> io::Result<()> {
     out.flush()
 }
 
-/// The blocks of such a file, read while the ones before are being stored.
+/// The blocks of the intermediate file; reading overlaps with storing.
 fn parts(file: &Path, channels: Vec<Channel>, rows: usize) -> mpsc::Receiver<io::Result<Trace>> {
     let (give, take) = mpsc::channel(1);
     let file = file.to_owned();

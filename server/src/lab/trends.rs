@@ -1,20 +1,20 @@
-//! What complete runs have found, over any number of them.
+//! Results of complete runs over time.
 
 use super::{Answer, Lab, LabError};
 use crate::store::{RunFilter, RunRecord, Search};
 use crate::view::{TrendRun, Trends};
 use jointbench_procedure::RunState;
 
-/// As many as a plot can tell apart.
+/// Limit of a plot.
 const MOST: u32 = 500;
-/// So many are worked out for one answer: whoever waits sees those that are known meanwhile.
+/// Limit of results that one request computes: the client shows the known ones in the meantime.
 const AT_ONCE: usize = 8;
-/// Stretches of a run whose middles give its mean temperature.
+/// Number of sections for the mean temperature of a run.
 const STRETCHES: usize = 200;
 
 impl Lab {
-    /// Of the newest complete runs that a search finds, the oldest first. What is not known yet is worked out, a few at a time:
-    /// `pending` are left for the next question.
+    /// Results of the newest complete runs that match a search, the oldest first. Computes some missing results;
+    /// `pending` counts those for later requests.
     pub async fn trends(&self, search: &str) -> Answer<Trends> {
         let (understood, _) = Search::understood(search);
         let filter = RunFilter {
@@ -54,9 +54,9 @@ impl Lab {
         Ok(Trends { runs, pending, left_out: total.saturating_sub(u64::from(MOST)) })
     }
 
-    /// Mean of the run's temperature [°C], from the middles of its stretches.
+    /// Mean temperature of the run [°C], from the midpoints of its sections.
     async fn temperature_of(&self, run: i64) -> Answer<Option<f64>> {
-        // A run of a list comes without its channels.
+        // The records of a list have no channels.
         let record = self.inner.store.run(run).await?;
         let Some(channel) = record.channels.iter().find(|channel| channel.unit() == Some("°C")) else {
             return Ok(None);

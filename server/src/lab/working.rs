@@ -1,4 +1,4 @@
-//! What is worked out of whole runs: in a process of its own where the lab is a daemon's, here where it is a command's.
+//! Computations on whole runs: in a separate process for a daemon, in this process for a command.
 
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
@@ -10,7 +10,7 @@ use std::time::Duration;
 use tokio::sync::OwnedMutexGuard;
 
 impl Lab {
-    /// The answer of a job, of the type that [`Lab::answer`] gives it.
+    /// The result of a job, of the type that [`Lab::answer`] returns.
     pub(super) async fn work_out<T: DeserializeOwned>(&self, job: Job) -> Answer<T> {
         parsed(&self.worked_out(job).await?)
     }
@@ -23,7 +23,7 @@ impl Lab {
         }
     }
 
-    /// Works a job out in this process. It only reads the store.
+    /// Computes a job in this process. It only reads the store.
     pub(crate) async fn answer(&self, job: Job) -> Answer<Vec<u8>> {
         match job {
             Job::Fit { runs, effects, excluded, offer } => self.fit_here(&runs, &effects, &excluded, offer).await,
@@ -59,7 +59,7 @@ impl Lab {
     }
 }
 
-/// A writer whose bytes are there when it is gone.
+/// A writer whose bytes remain available after it is dropped.
 struct Gathered(Arc<Mutex<Vec<u8>>>);
 
 impl std::io::Write for Gathered {
@@ -80,12 +80,11 @@ pub(super) fn parsed<T: DeserializeOwned>(json: &[u8]) -> Answer<T> {
     serde_json::from_slice(json).map_err(|fault| LabError::Internal(format!("an answer cannot be read: {fault}")))
 }
 
-/// How often and after which time the daemon itself asks again where too much is asked for at once: for ten minutes, as long
-/// as a computation may take.
+/// Number and interval of the daemon's own retries after `Busy`: ten minutes, as long as a computation may take.
 const TRIES: u32 = 120;
 const AGAIN: Duration = Duration::from_secs(5);
 
-/// For the daemon's own work, which no client waits for: asks again until there is room.
+/// For the daemon's own work, for which no client waits: retries until a process is free.
 pub(super) async fn patiently<T, F: Future<Output = Answer<T>>>(mut work: impl FnMut() -> F) -> Answer<T> {
     for _ in 1..TRIES {
         match work().await {
@@ -96,26 +95,26 @@ pub(super) async fn patiently<T, F: Future<Output = Answer<T>>>(mut work: impl F
     work().await
 }
 
-/// What only one computes at a time, so that whoever asks meanwhile finds it kept.
+/// Results that only one task computes at a time; other tasks wait and find it in the cache.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Subject {
-    /// The version of a run that has no parent.
+    /// The version of a run without a parent.
     First(i64),
     Diagnosis(i64),
     Residuals(i64),
     Worth(i64),
-    /// Figures of the runs of a bench.
+    /// Results of the runs of a bench.
     Earlier,
 }
 
-/// Whose turn it is, for each subject.
+/// One lock for each subject.
 #[derive(Debug, Default)]
 pub(super) struct Turns {
     on: Mutex<HashMap<Subject, Weak<tokio::sync::Mutex<()>>>>,
 }
 
 impl Turns {
-    /// Waits until nobody else has the turn of this subject.
+    /// Waits for the lock of this subject.
     pub async fn of(&self, subject: Subject) -> OwnedMutexGuard<()> {
         let turn = {
             let mut on = self.on.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,4 +1,4 @@
-//! Requests of one connection, each carried out in a task of its own.
+//! Requests of one connection, each executed in its own task.
 
 use super::body::{Arriving, Leaving};
 use super::seats::Seat;
@@ -34,8 +34,8 @@ impl Service<Request<Incoming>> for Answering {
     type Error = Infallible;
     type Future = Pin<Box<dyn Future<Output = Result<Answer, Infallible>> + Send>>;
 
-    /// Begins to carry the request out before this returns: a client that hangs up at once drops the future that is
-    /// returned here, not the request. Only what changes nothing ends with its client.
+    /// Starts the execution of the request before it returns. A client that disconnects drops only the returned future;
+    /// the request continues unless it is read-only.
     fn call(&self, request: Request<Incoming>) -> Self::Future {
         let progress = self.seat.progress.clone();
         progress.enter(Stage::Answer);
@@ -44,7 +44,7 @@ impl Service<Request<Incoming>> for Answering {
             return Box::pin(async { Ok(Problem::full().into_response().map(|body| Leaving::new(body, None))) });
         }
         let (is_safe, presence) = (request.method().is_safe(), Presence::default());
-        // From here on, not from the first poll: there may be none.
+        // Created here because the future may never be polled.
         let guard = presence.guard();
         let answer = Begun::new(is_safe, self.begin(request, demand, presence));
         Box::pin(async move {
@@ -76,11 +76,11 @@ impl Answering {
     }
 }
 
-/// A request on its way.
+/// A request in progress.
 enum Begun {
-    /// It ends with its client.
+    /// Read-only: ends with its client.
     Safe(AbortOnDropHandle<Response>),
-    /// It goes on to its end.
+    /// Continues to its end without its client.
     Changing(JoinHandle<Response>),
 }
 

@@ -1,4 +1,4 @@
-//! Bodies: one that comes has to keep coming, and the end of one that goes is noticed.
+//! Bodies: a request body must arrive in time, and the end of a response body is detected.
 
 use super::stage::{Progress, Stage};
 use super::{Demand, Limits};
@@ -11,14 +11,14 @@ use std::sync::Arc;
 use std::task::{Context, Poll};
 use tokio::time::{Sleep, sleep};
 
-/// The body of a request. It fails where its client pauses for too long, or takes too long altogether.
+/// Body of a request. It fails if its client pauses too long or exceeds the total time.
 pub struct Arriving {
     inner: Incoming,
     limits: Arc<Limits>,
     progress: Arc<Progress>,
     total: Option<Pin<Box<Sleep>>>,
     pause: Option<Pin<Box<Sleep>>>,
-    /// Since the pause began.
+    /// Bytes since the start of the pause timer.
     bytes: usize,
 }
 
@@ -36,7 +36,7 @@ impl Arriving {
         }
     }
 
-    /// Why no further byte is waited for.
+    /// The reason to stop waiting for further bytes.
     fn ended(&mut self, context: &mut Context<'_>) -> Option<&'static str> {
         self.progress.enter(Stage::Body);
         let pause = self.pause.get_or_insert_with(|| Box::pin(sleep(self.limits.body_pause)));
@@ -81,14 +81,14 @@ impl HttpBody for Arriving {
     }
 }
 
-/// The body of an answer. When it is through, its connection waits for the next request.
+/// Body of a response. After its end, the connection waits for the next request.
 pub struct Leaving {
     inner: Body,
     progress: Option<Arc<Progress>>,
 }
 
 impl Leaving {
-    /// `progress`: `None` where no further request follows.
+    /// `progress`: `None` if no further request follows.
     pub fn new(inner: Body, progress: Option<Arc<Progress>>) -> Self {
         Self { inner, progress }
     }

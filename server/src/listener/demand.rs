@@ -1,10 +1,10 @@
-//! What a request asks for, as far as a connection has to know it before the router does.
+//! Class of a request, which a connection must know before the router.
 
 use hyper::Method;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Demand {
-    /// Answered on the reserved connections too: is the daemon there, and the software stop.
+    /// Also answered on the reserved connections: health of the daemon and software stop.
     Vital,
     /// A file, which may take longer than other bodies.
     Upload,

@@ -1,23 +1,23 @@
-//! How long a connection may keep the daemon waiting, and how many there may be.
+//! Limits of the number of connections and of their waiting times.
 
 use std::time::Duration;
 
 #[derive(Debug, Clone)]
 pub struct Limits {
-    /// From the connection, or from the first byte of a further request, to the end of the request's head.
+    /// From the start of the connection, or the first byte of a further request, to the end of the request head.
     pub head: Duration,
     /// Between two requests of one connection.
     pub idle: Duration,
-    /// Within this time [`Limits::body_progress_bytes`] of a body must arrive, or its end.
+    /// In this time, [`Limits::body_progress_bytes`] or the end of a body must arrive.
     pub body_pause: Duration,
     pub body_progress_bytes: usize,
-    /// A whole body; an upload has no such limit, only the one above.
+    /// Limit of a whole body; not for an upload, which only has the limit above.
     pub body_total: Duration,
-    /// A client that accepts no byte of its answer for so long is disconnected.
+    /// A client that accepts no byte of its answer in this time is disconnected.
     pub write_stall: Duration,
-    /// All connections together.
+    /// All connections.
     pub connections: usize,
-    /// Of these only for requests that must always be answered ([`super::Demand::Vital`]).
+    /// Connections of these that are only for requests that must always be answered ([`super::Demand::Vital`]).
     pub reserved: usize,
 }
 
@@ -36,6 +36,6 @@ impl Default for Limits {
     }
 }
 
-/// The head of a request, and what is buffered of a connection in each direction.
+/// Size of a request head, and buffer of a connection in each direction.
 pub const HEAD_BYTES: usize = 32 << 10;
 pub const HEADERS: usize = 64;

@@ -1,7 +1,7 @@
 //! The accept loop: connections within limits, below the router.
 //!
-//! What is promised here: a request that has arrived is carried out, whatever its client does then; no client can keep
-//! another one out by being slow; [`Demand::Vital`] requests are answered when every other connection is taken.
+//! Guarantees: a request that has arrived is executed even if its client disconnects. A slow client cannot block other
+//! clients. [`Demand::Vital`] requests are answered even if all other connections are in use.
 
 mod answering;
 mod body;
@@ -29,12 +29,12 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::task::JoinSet;
 use wire::Wire;
 
-/// So often it is looked for clients that have taken longer than they may.
+/// Interval of the check for clients that exceed a time limit.
 const LOOK_EVERY: Duration = Duration::from_millis(250);
-/// Pause after the system has refused a connection, for want of files above all.
+/// Pause after the system has refused a connection, usually because of too many open files.
 const REFUSED_PAUSE: Duration = Duration::from_millis(50);
 
-/// What connections share.
+/// Shared data of the connections.
 #[derive(Clone)]
 struct Shared {
     router: Router,
@@ -81,7 +81,7 @@ async fn connection(shared: Shared, stream: TcpStream, peer: SocketAddr, seat: S
 }
 
 async fn greet(shared: Shared, stream: TcpStream, peer: SocketAddr, seat: Seat) {
-    // Small answers leave at once. A client that has hung up already makes this fail, and has sent something all the same.
+    // Sends small answers immediately. This fails if the client has already disconnected, but its request still counts.
     let _ = stream.set_nodelay(true);
     match &shared.tls {
         None => converse(&shared, stream, peer, seat).await,
@@ -100,7 +100,7 @@ where
     let wire = Wire::new(stream, seat.clone(), shared.limits.write_stall);
     let service = Answering { router: shared.router.clone(), peer, limits: shared.limits.clone(), seat };
     let served = http1::Builder::new()
-        // Our own clocks tell a head that is on its way from a connection at rest.
+        // The limits of this module distinguish a slow head from an idle connection.
         .header_read_timeout(None)
         .max_headers(limits::HEADERS)
         .max_buf_size(limits::HEAD_BYTES)

@@ -1,4 +1,4 @@
-//! How many connections there are. The last ones are reserved for requests that must always be answered.
+//! Number of connections. The last ones are reserved for requests that must always be answered.
 
 use super::stage::Progress;
 use super::{Demand, Limits};
@@ -27,7 +27,7 @@ struct Place {
 }
 
 impl Taken {
-    /// Closes the connection that has kept the daemon waiting for longest, among those that `may` be closed.
+    /// Among the connections that `may` be closed, closes the one that has waited longest for its client.
     fn close_oldest(&mut self, may: impl Fn(&Place) -> bool) -> bool {
         let waiting = self.places.iter().filter(|(_, place)| may(place));
         let oldest = waiting.filter_map(|(id, place)| Some((place.progress.waits_since()?, *id))).min();
@@ -48,8 +48,8 @@ impl Seats {
         Self { limits, all: Arc::default() }
     }
 
-    /// A seat for a new connection. Where all are taken, the client that keeps the daemon waiting for longest loses its own.
-    /// `None`: every one of them is being answered.
+    /// A seat for a new connection. If all are in use, it closes the connection that has waited longest for its client.
+    /// `None` if all of them are being answered.
     pub fn take(&self) -> Option<Seat> {
         let mut all = self.lock();
         if all.places.len() >= self.limits.connections && !all.close_oldest(|_| true) {
@@ -63,7 +63,7 @@ impl Seats {
         Some(Seat { id, seats: self.clone(), progress, close })
     }
 
-    /// Closes every connection whose client has taken longer than it may.
+    /// Closes every connection whose client exceeds a time limit.
     pub fn close_overdue(&self) {
         self.lock().places.retain(|_, place| {
             let overdue = place.progress.is_overdue(&self.limits);
@@ -83,19 +83,19 @@ impl Seats {
     }
 }
 
-/// The place of one connection; given back when it is dropped.
+/// The seat of one connection, released on drop.
 #[derive(Debug)]
 pub struct Seat {
     id: u64,
     seats: Seats,
     pub progress: Arc<Progress>,
-    /// Cancelled where the connection is to end.
+    /// Cancelled to close the connection.
     pub close: CancellationToken,
 }
 
 impl Seat {
-    /// Whether a request may be answered on this seat. One of the reserved seats becomes an ordinary one where that is
-    /// free, or where another client only waits on it.
+    /// Whether a request may be answered on this seat. A reserved seat becomes an ordinary one if an ordinary seat is
+    /// free or if another connection on one only waits for its client.
     pub fn admits(&self, demand: Demand) -> bool {
         let mut all = self.seats.lock();
         let id = self.id;

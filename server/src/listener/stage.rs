@@ -1,4 +1,4 @@
-//! Where a connection is between two requests, and since when it waits for its client.
+//! State of a connection, and the time since which it waits for its client.
 
 use super::Limits;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -6,15 +6,15 @@ use tokio::time::Instant;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// The head of a request is on its way, or the handshake of TLS before the first one.
+    /// A request head is arriving, or the TLS handshake before the first one.
     Head,
-    /// The body is on its way and nothing of it has come yet.
+    /// The body is expected and none of it has arrived.
     Body,
-    /// The daemon works on the answer or sends it.
+    /// The daemon computes or sends the answer.
     Answer,
     /// Between two requests.
     Idle,
-    /// A live stream: no requests any more.
+    /// A live stream, without further requests.
     Stream,
 }
 
@@ -26,7 +26,7 @@ pub struct Progress(Mutex<State>);
 struct State {
     stage: Stage,
     since: Instant,
-    /// Since when the client has accepted no byte of what is sent.
+    /// Time since which the client has accepted no byte.
     stalled: Option<Instant>,
 }
 
@@ -42,7 +42,7 @@ impl Progress {
         }
     }
 
-    /// The first byte after a pause begins a head; later ones belong to it.
+    /// The first byte after an idle time starts a head; later bytes belong to it.
     pub fn heard(&self) {
         if self.state().stage == Stage::Idle {
             self.enter(Stage::Head);
@@ -54,7 +54,7 @@ impl Progress {
         state.stalled = stalls.then(|| state.stalled.unwrap_or_else(Instant::now));
     }
 
-    /// Since when the client keeps this connection waiting. `None`: the daemon is at work, or it is a live stream.
+    /// Time since which the connection waits for its client. `None` if the daemon is working, or for a live stream.
     pub fn waits_since(&self) -> Option<Instant> {
         let state = self.state();
         match state.stage {
@@ -64,7 +64,7 @@ impl Progress {
         }
     }
 
-    /// The client has taken longer than it may. Bodies and answers have clocks of their own.
+    /// Whether the client exceeds a time limit. Bodies and answers have separate timers.
     pub fn is_overdue(&self, limits: &Limits) -> bool {
         let state = self.state();
         match state.stage {

@@ -1,4 +1,4 @@
-//! TLS, with certificate and key from files that may be exchanged while the daemon runs.
+//! TLS, with certificate and key files that can be replaced while the daemon runs.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError, RwLock};
@@ -10,17 +10,17 @@ use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer};
 use tokio_rustls::rustls::{self, ServerConfig};
 use tokio_rustls::server::TlsStream;
 
-/// So often it is looked whether the files have changed.
+/// Interval of the check for changed files.
 const LOOK_EVERY: Duration = Duration::from_secs(60);
 
-/// PEM files: the certificate with those between it and the authority, and its key.
+/// PEM files: the certificate with its intermediate certificates, and its key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TlsFiles {
     pub certificate: PathBuf,
     pub key: PathBuf,
 }
 
-/// The side of the daemon in every handshake. Cheap to clone.
+/// TLS configuration of the daemon. Cheap to clone.
 #[derive(Clone)]
 pub struct Tls {
     files: TlsFiles,
@@ -32,11 +32,11 @@ struct Loaded {
     written: Written,
 }
 
-/// When the files were last written, as far as that is known.
+/// Modification times of the files, if known.
 type Written = [Option<SystemTime>; 2];
 
 impl Tls {
-    /// Reads the files; says which one is wrong, and how.
+    /// Reads the files; an error names the file and the problem.
     pub fn open(files: TlsFiles) -> Result<Self, String> {
         let loaded = load(&files)?;
         Ok(Self { files, now: Arc::new(RwLock::new(loaded)) })
@@ -47,7 +47,7 @@ impl Tls {
         TlsAcceptor::from(config).accept(stream).await
     }
 
-    /// Takes exchanged files for new connections, for as long as it is awaited.
+    /// Loads replaced files for new connections, until it is dropped.
     pub async fn follow(&self) {
         loop {
             tokio::time::sleep(LOOK_EVERY).await;
@@ -65,7 +65,7 @@ impl Tls {
                 *self.now.write().unwrap_or_else(PoisonError::into_inner) = loaded;
                 tracing::info!(certificate = %self.files.certificate.display(), "new certificate loaded");
             }
-            // Certificate and key are rarely exchanged in one moment: the next look may find a pair.
+            // Certificate and key are rarely replaced at the same time: the next check may find a pair.
             Err(fault) => tracing::warn!(fault, "the new certificate is not used; the old one still is"),
         }
     }

@@ -1,4 +1,5 @@
-//! The bytes of one connection, watched: what comes begins a request, and what is not accepted in time ends it.
+//! The byte stream of one connection: input starts a request, and output that is not accepted in time ends the
+//! connection.
 
 use super::seats::Seat;
 use std::io;
@@ -9,8 +10,8 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::{Sleep, sleep};
 
-/// A stream, plain or TLS, that ends where its client accepts nothing for too long. It holds the seat of its connection,
-/// also after that has become a live stream.
+/// A plain or TLS stream that fails if its client accepts nothing for too long. It holds the seat of its connection,
+/// also for a live stream.
 pub struct Wire<S> {
     stream: S,
     seat: Arc<Seat>,
@@ -71,7 +72,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Wire<S> {
 
     fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
         match Pin::new(&mut self.stream).poll_flush(context) {
-            // A flush with nothing to send is no progress of the client.
+            // A flush without data is no progress of the client.
             Poll::Ready(Ok(())) => Poll::Ready(Ok(())),
             polled => self.timed(polled, context),
         }

@@ -5,8 +5,8 @@ use jointbench_instrument::Trace;
 /// u32 sequence, u32 dropped frames, u32 rows, u32 channels, f64 t0.
 pub const HEADER_BYTES: usize = 24;
 
-/// Little endian: the header, then one f32 column after the other. `time_s` is relative to t0, the first row's time: a
-/// f32 would lose the microseconds of a long run. What is not known is NaN.
+/// Little endian: the header, then one f32 column after the other. `time_s` is relative to t0, the time of the first
+/// row, because an f32 has too few digits for a long run. Unknown values are NaN.
 pub fn encode(sequence: u32, dropped: u32, rows: &Trace) -> Vec<u8> {
     let (count, width) = (rows.len(), rows.channels().len());
     let t0_s = rows.column("time_s").and_then(|time| time.first().copied()).unwrap_or(0.0);

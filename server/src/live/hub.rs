@@ -1,11 +1,11 @@
-//! From the bench threads to every client: best effort, never waiting.
+//! Distributes data of the bench threads to all clients: best effort, without waiting.
 
 use crate::view::LiveMessage;
 use jointbench_instrument::Trace;
 use std::sync::Arc;
 use tokio::sync::broadcast::{self, Receiver, Sender};
 
-/// A client that is this many pieces behind loses the oldest.
+/// A client that is this many pieces behind loses the oldest piece.
 const CAPACITY: usize = 1024;
 
 /// The newest rows of a run.
@@ -22,7 +22,7 @@ pub enum Piece {
     Rows(Arc<Rows>),
 }
 
-/// Where pieces are published and taken. Cheap to clone.
+/// Publishes pieces to subscribers. Cheap to clone.
 #[derive(Debug, Clone)]
 pub struct Hub {
     pieces: Sender<Piece>,
@@ -34,7 +34,7 @@ impl Hub {
     }
 
     pub fn tell(&self, message: LiveMessage) {
-        // An error only says that nobody listens.
+        // An error only means that there are no subscribers.
         let _ = self.pieces.send(Piece::Message(Arc::new(message)));
     }
 

@@ -1,4 +1,4 @@
-//! The live stream: what the benches do, to every client, as it happens.
+//! The live stream: sends the activity of the benches to every client in real time.
 
 pub mod frame;
 mod hub;
@@ -19,12 +19,12 @@ use tokio::time::{Instant, MissedTickBehavior, interval, interval_at, timeout};
 /// At most 30 frames a second.
 const FRAME_EVERY: Duration = Duration::from_millis(34);
 
-/// So often a client is asked whether it is still there, where nothing else is sent.
+/// Interval of pings to a client if nothing else is sent.
 const PING_EVERY: Duration = Duration::from_secs(20);
-/// A client that answers nothing for so long is gone; one that accepts nothing for so long, too.
+/// A client that answers or accepts nothing for this time is disconnected.
 const SILENCE: Duration = Duration::from_secs(60);
 
-/// Serves one client until it leaves.
+/// Serves one client until it disconnects.
 pub async fn serve(mut socket: WebSocket, lab: Lab) {
     let mut pieces = lab.hub().listen();
     let mut outbox = Outbox::default();
@@ -60,7 +60,7 @@ pub async fn serve(mut socket: WebSocket, lab: Lab) {
                 Err(RecvError::Lagged(pieces)) => outbox.lost(pieces),
                 Err(RecvError::Closed) => return,
             },
-            // A client has nothing to say; reading answers its pings and notices when it leaves.
+            // Clients send no messages; reading answers pings and detects a disconnection.
             heard = socket.recv() => match heard {
                 Some(Ok(_)) => heard_at = Instant::now(),
                 _ => return,
@@ -69,12 +69,12 @@ pub async fn serve(mut socket: WebSocket, lab: Lab) {
     }
 }
 
-/// Whether the client has taken it.
+/// Returns whether the client has accepted the message.
 async fn sent(socket: &mut WebSocket, message: Message) -> bool {
     matches!(timeout(SILENCE, socket.send(message)).await, Ok(Ok(())))
 }
 
-/// What came in while the client was being written to.
+/// Collects the pieces that arrived during a write.
 fn drain(pieces: &mut Receiver<Piece>, outbox: &mut Outbox) {
     use tokio::sync::broadcast::error::TryRecvError;
     loop {

@@ -1,11 +1,11 @@
-//! What one client has not got yet. Rows that wait are merged into one frame; what is too much is dropped, and counted.
+//! Queue of one client. Waiting rows are merged into one frame; excess data is dropped and counted.
 
 use super::frame;
 use super::hub::{Piece, Rows};
 use crate::view::{ChannelInfo, LiveMessage};
 use jointbench_instrument::{Channel, Trace};
 
-/// A frame that would be larger loses its oldest rows: a slow client sees less, not later.
+/// A larger frame loses its oldest rows: a slow client gets less data, but no older data.
 const LARGEST_FRAME_ROWS: usize = 8192;
 const LARGEST_QUEUE: usize = 512;
 
@@ -19,7 +19,7 @@ pub enum Frame {
 pub struct Outbox {
     texts: Vec<String>,
     waiting: Option<Trace>,
-    /// The run and channels that the client was told of last.
+    /// Run and channels of the last channel message to the client.
     told: Option<(i64, Vec<Channel>)>,
     sequence: u32,
     dropped: u32,
@@ -33,13 +33,13 @@ impl Outbox {
         }
     }
 
-    /// Pieces that the hub could not keep for this client.
+    /// Counts pieces that the hub has dropped for this client.
     pub fn lost(&mut self, pieces: u64) {
         self.dropped = self.dropped.saturating_add(pieces.min(u64::from(u32::MAX)) as u32);
     }
 
     pub fn text(&mut self, message: &LiveMessage) {
-        // What is lost here, REST still has.
+        // Messages that are dropped here are still available over REST.
         if self.texts.len() < LARGEST_QUEUE {
             self.texts.push(serde_json::to_string(message).expect("a live message is plain JSON"));
         } else {
@@ -51,7 +51,7 @@ impl Outbox {
         let channels = piece.rows.channels();
         let same = self.told.as_ref().is_some_and(|(run, told)| *run == piece.run && told == channels);
         if !same {
-            // Rows of the run before would be read with the wrong columns.
+            // The client would read rows of the previous run with the wrong columns.
             if self.waiting.take().is_some() {
                 self.lost(1);
             }
@@ -72,7 +72,7 @@ impl Outbox {
         }
     }
 
-    /// Everything that waits, as frames: text first.
+    /// All waiting data as frames: text first.
     pub fn take(&mut self) -> Vec<Frame> {
         let mut frames: Vec<Frame> = self.texts.drain(..).map(Frame::Text).collect();
         if let Some(rows) = self.waiting.take().filter(|rows| !rows.is_empty()) {

@@ -6,8 +6,8 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-/// Okabe and Ito, as the dashboard has them (`tokens.css`): told apart by every kind of colour vision, and on paper by their
-/// dashes.
+/// Okabe and Ito, as in the dashboard (`tokens.css`): distinguishable with every kind of colour vision, and in print by
+/// their dashes.
 const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -19,7 +19,7 @@ const COLOURS: [RGBColor; 7] = [
 ];
 /// Length and gap of the dashes [px].
 const DASHES: [(i32, i32); 4] = [(0, 0), (8, 4), (3, 3), (12, 3)];
-/// Width of what stands for a series in the legend [px].
+/// Width of a series sample in the legend [px].
 const SAMPLE: i32 = 30;
 const FONT: &str = "sans-serif";
 const WIDTH: u32 = 760;
@@ -29,7 +29,7 @@ type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Plane<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// `None` where the figure holds no point.
+/// `None` if the figure has no points.
 pub fn svg(figure: &Figure) -> Option<String> {
     let mut text = String::new();
     let polar = figure.form == FigureForm::Polar;
@@ -57,8 +57,8 @@ pub fn svg(figure: &Figure) -> Option<String> {
     Some(text)
 }
 
-/// Angle and radius as places in the plane. The middle is the lowest radius twice as low, so that what is negative stays
-/// where it is seen.
+/// Converts angle and radius to Cartesian coordinates. The centre is at twice the lowest radius, so that negative
+/// values remain visible.
 fn around(series: &FigureSeries, lowest: f64) -> FigureSeries {
     let radii = series.y.iter().map(|radius| radius - 2.0 * lowest);
     let place = |of: fn(f64) -> f64| series.x.iter().zip(radii.clone()).map(|(angle, r)| r * of(*angle)).collect();
@@ -125,7 +125,7 @@ fn draw(area: &Area, figure: &Figure, series: &[FigureSeries], (x, y): ((f64, f6
             mesh.x_desc(labelled(&figure.x)).y_desc(labelled(&figure.y)).draw()?;
         }
         FigureForm::Polar => {
-            // Places in the plane are no radii: the ring at radius 0 is what can be read off.
+            // Cartesian coordinates are no radii, so only the ring at radius 0 is labelled.
             mesh.x_desc(format!("{}, ring: 0", labelled(&figure.y))).x_labels(0).y_labels(0).draw()?;
             let zero = 2.0 * figure.series.iter().flat_map(|s| &s.y).fold(0.0_f64, |low, y| low.min(*y)).abs();
             let ring = (0..=180).map(|step| f64::from(step) * std::f64::consts::PI / 90.0);
@@ -161,7 +161,7 @@ fn labelled(axis: &crate::view::FigureAxis) -> String {
     if axis.unit.is_empty() { axis.label.clone() } else { format!("{} [{}]", axis.label, axis.unit) }
 }
 
-/// A tick of an axis of that length; what is nothing beside it is 0.
+/// A tick label of an axis with this span; negligible values are shown as 0.
 fn number(value: f64, span: f64) -> String {
     let size = value.abs();
     if size < 1e-9 * span {
@@ -206,7 +206,7 @@ fn points(chart: &mut Plane, series: &FigureSeries, colour: RGBColor) -> Drawn {
     Ok(())
 }
 
-/// Side by side where there are several series.
+/// Bars; several series are drawn next to each other.
 fn columns(chart: &mut Plane, series: &FigureSeries, colour: RGBColor, (place, count): (usize, usize)) -> Drawn {
     let slot = slot(series);
     let wide = 0.8 * slot / count as f64;

@@ -1,6 +1,6 @@
-//! A run as one page that can be sent and printed: what was done, what it shows, how well a model tells it.
+//! Report of a run on one page that can be sent and printed: steps, results and model.
 //!
-//! The page holds everything itself: no script, no font, no picture from elsewhere.
+//! The page is self-contained: it loads no scripts, fonts or images.
 
 mod figure;
 mod number;
@@ -15,18 +15,18 @@ pub use number::with_interval;
 use serde_json::{Map, Value};
 use std::collections::{BTreeSet, HashMap};
 
-/// What is told of a run.
+/// Content of a report.
 pub struct Report {
     pub run: Run,
-    /// What its journal notes: how well moments are known, what was made of its instruments.
+    /// Notes of its events: accuracy of times, state of instruments.
     pub notes: Vec<String>,
-    /// What its procedure makes of it.
+    /// Result of its procedure.
     pub identification: Option<Identification>,
-    /// The model version that is told of, with its forebears before it.
+    /// The selected model version, after its ancestors.
     pub versions: Vec<Model>,
-    /// Of that version.
+    /// Diagnosis of that version.
     pub diagnosis: Option<Diagnosis>,
-    /// What effects are called, by their ids.
+    /// Titles of the effects by id.
     pub titles: HashMap<String, String>,
 }
 
@@ -57,7 +57,7 @@ impl Report {
         .into_string()
     }
 
-    /// Where a run that came in as a file was measured nobody here has seen.
+    /// The origin of an imported run is unknown.
     fn badge(&self) -> Markup {
         let word = match (self.run.summary.simulated, self.file()) {
             (true, _) => "SIMULATED",
@@ -67,7 +67,7 @@ impl Report {
         html! { span.badge { (word) } }
     }
 
-    /// The file that the run came in as.
+    /// Name of the imported file.
     fn file(&self) -> Option<&str> {
         self.run.provenance.get("imported")?.get("file")?.as_str()
     }
@@ -150,7 +150,7 @@ impl Report {
         }
     }
 
-    /// By the labels of the form that they were chosen in.
+    /// Parameters with their titles and units from the procedure.
     fn settings(&self) -> Map<String, Value> {
         let schema = procedure(&self.run.summary.procedure).map_or(&[][..], |procedure| procedure.schema());
         let label = |name: &String| match schema.iter().find(|parameter| parameter.name == name) {
@@ -187,7 +187,7 @@ impl Report {
             (Verdict::MissingEffect, None) => "An effect is missing",
             (Verdict::UnexplainedStructure, None) => "Unexplained structure",
         };
-        // What columns suggest that contradict each other is no advice.
+        // A diagnosis with data problems is no basis for advice.
         let is_advice = found.undecided.is_none() || found.verdict == Verdict::Adequate;
         html! {
             h2 { "Diagnosis" }
@@ -255,7 +255,7 @@ fn pairs(values: &Map<String, Value>) -> Markup {
     }
 }
 
-/// `warm_up_s` as people read it: warm up [s].
+/// Title of a parameter: `warm_up_s` becomes warm up [s].
 fn title(name: &str) -> String {
     let quantity = quantity_of(name).unwrap_or(name).replace('_', " ");
     unit_of(name).map_or(quantity.clone(), |unit| format!("{quantity} [{unit}]"))

@@ -1,13 +1,13 @@
-//! Figures for paper: as many digits as the interval carries.
+//! Numbers for print: as many digits as the interval justifies.
 
 use jointbench_model::words;
 
-/// Whether a figure in this unit is said with a prefix.
+/// Whether this unit can have a prefix.
 fn takes_prefix(unit: &str) -> bool {
     ["N", "m", "A", "s", "V"].contains(&unit) || unit.starts_with("Nm") || unit.starts_with("rad")
 }
 
-/// `32.14 mNm` and `31.90 … 32.38`, in one unit and with two digits of the half-width.
+/// `32.14 mNm` and `31.90 … 32.38`: one unit, and two digits of the half-width.
 pub fn with_interval(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String, Option<String>) {
     let unit = if unit == "1" { "" } else { unit };
     let (factor, prefix) = if takes_prefix(unit) { words::prefix(value.abs()) } else { (1.0, "") };
@@ -17,7 +17,7 @@ pub fn with_interval(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String,
     (shown, ci95.map(|[low, high]| format!("{} … {}", text(low), text(high))))
 }
 
-/// As many digits as `spread` leaves sense in, and two of `spread` itself.
+/// Rounds to two digits of `spread`.
 fn digits(value: f64, spread: f64) -> String {
     if spread <= 0.0 || !spread.is_finite() {
         return if value == value.round() && value.abs() < 1e9 { format!("{value:.0}") } else { format!("{value:.4}") };

@@ -1,4 +1,4 @@
-//! Autopilots and their steps, which are only appended to.
+//! Autopilots and their steps. Steps are only appended.
 
 use super::runs::{json, now};
 use super::seal::AUTOPILOT_STEPS;
@@ -8,7 +8,7 @@ use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
 impl Store {
-    /// `state` is what it begins with.
+    /// `state` is the initial state.
     pub async fn create_autopilot(
         &self,
         bench: &str,
@@ -25,7 +25,7 @@ impl Store {
         Ok(inserted.last_insert_rowid())
     }
 
-    /// Appends a step, numbers it and tells when. `step` is an object.
+    /// Appends a step, sets its number and its time. `step` is an object.
     pub async fn append_autopilot_step(&self, autopilot: i64, mut step: Value) -> Result<Value, StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         let last: i64 =
@@ -59,7 +59,7 @@ impl Store {
         Ok(())
     }
 
-    /// Ends what a daemon left open when it ended.
+    /// Ends the autopilots that an ended daemon left open.
     pub async fn interrupt_open_autopilots(&self, state: &str, reason: &str) -> Result<u64, StoreError> {
         let ended =
             sqlx::query("UPDATE autopilots SET state = ?, reason = ?, finished_at = ? WHERE finished_at IS NULL")
@@ -76,7 +76,7 @@ impl Store {
         self.with_steps(&row.ok_or(StoreError::NoAutopilot(id))?).await
     }
 
-    /// All autopilots, newest first. A damaged one is left out, and the log names it.
+    /// All autopilots, newest first. A damaged one is omitted and logged.
     pub async fn autopilots(&self) -> Result<Vec<AutopilotRecord>, StoreError> {
         let rows = sqlx::query("SELECT * FROM autopilots ORDER BY id DESC").fetch_all(&self.readers).await?;
         let mut records = Vec::new();

@@ -1,4 +1,4 @@
-//! A copy of the store in one file, and the way back.
+//! Backup of the store into one file, and restore from it.
 
 use super::lock::FolderLock;
 use super::open::{FILE_NAME, file_to_read, to_read};
@@ -10,10 +10,10 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Writes all that is committed now to a file that must not exist, also while a run is on, and checks the copy.
+/// Writes all committed data to a new file, also during a run, and checks the copy.
 ///
 /// # Errors
-/// [`StoreError::Copy`] where the file is there already or cannot be written.
+/// [`StoreError::Copy`] if the file exists already or cannot be written.
 pub async fn backup(folder: &Path, file: &Path) -> Result<VerifyReport, StoreError> {
     let cannot = |what: String| StoreError::Copy { file: file.into(), what };
     if file.exists() {
@@ -27,11 +27,11 @@ pub async fn backup(folder: &Path, file: &Path) -> Result<VerifyReport, StoreErr
     verify_file(file).await
 }
 
-/// Puts a backup in the place of the store in a folder that no daemon has. What was there is moved into a folder beside it,
-/// whose path is returned. Every bench is blocked where changes are missing that the folder has held.
+/// Replaces the store by a backup, in a folder that no daemon uses. Moves the old store into a subfolder and returns
+/// the path of that subfolder. Blocks every bench if the backup lacks changes that the folder has held.
 ///
 /// # Errors
-/// [`StoreError::InUse`] where a daemon has the folder; [`StoreError::Damaged`] where the backup is not whole.
+/// [`StoreError::InUse`] if a daemon uses the folder; [`StoreError::Damaged`] if the backup is damaged.
 pub async fn restore(folder: &Path, file: &Path) -> Result<Option<PathBuf>, StoreError> {
     file_to_read(file).await?.close().await?;
     let report = verify_file(file).await?;
@@ -43,7 +43,7 @@ pub async fn restore(folder: &Path, file: &Path) -> Result<Option<PathBuf>, Stor
     let aside = move_aside(folder).and_then(|aside| put_in_place(folder, file).map(|()| aside));
     let aside = aside.map_err(|fault| StoreError::Unwritable { folder: folder.into(), what: fault.to_string() })?;
     drop(lock);
-    // Notices what the backup lacks.
+    // Opening detects the changes that the backup lacks.
     Store::open(folder).await?.close().await;
     Ok(aside)
 }

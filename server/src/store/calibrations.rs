@@ -1,4 +1,4 @@
-//! Whose result the next runs of a bench use.
+//! Calibrations: runs whose results the next runs of a bench use.
 
 use super::runs::now;
 use super::seal::CALIBRATIONS;
@@ -8,7 +8,7 @@ use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
 impl Store {
-    /// All entries of a bench, newest first. A damaged one applies no run, and who applied it says what is wrong with it.
+    /// All entries of a bench, newest first. A damaged entry applies no run; its `by` field holds the error.
     pub async fn calibrations(&self, bench: &str) -> Result<Vec<CalibrationRecord>, StoreError> {
         let query = "SELECT * FROM calibrations WHERE bench = ? ORDER BY id DESC";
         let rows = sqlx::query(query).bind(bench).fetch_all(&self.readers).await?;
@@ -22,7 +22,7 @@ impl Store {
         Ok(rows.iter().map(|row| record(row).unwrap_or_else(|fault| damaged(row, fault))).collect())
     }
 
-    /// The run that was applied to a bench last, where that holds.
+    /// The last run that was applied to a bench, or `None` if no calibration applies.
     pub async fn calibration(&self, bench: &str, procedure: &str) -> Result<Option<RunId>, StoreError> {
         let query = "SELECT * FROM calibrations WHERE bench = ? AND procedure = ? ORDER BY id DESC LIMIT 1";
         let newest = sqlx::query(query).bind(bench).bind(procedure).fetch_optional(&self.readers).await?;

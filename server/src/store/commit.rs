@@ -1,8 +1,8 @@
-//! The way in: rows, events and state of a run, together or not at all.
+//! Commits: rows, events and state of a run in one transaction.
 //!
-//! A commit of the recorder (2 s of a 250 Hz run are 500 rows) becomes one row of `tail`. When the tail and the new rows
-//! fill a block, or the run is over, they are packed again as blocks, one column each, and the tail goes, in the same
-//! transaction: whenever the power fails, every committed row is there once.
+//! A commit of the recorder (2 s of a 250 Hz run are 500 rows) becomes one row of `tail`. When the tail and the new
+//! rows fill a block, or the run ends, they are packed again as blocks, one column each. The same transaction deletes
+//! the tail, so each committed row exists exactly once after a power failure.
 
 use super::codec;
 use super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
@@ -18,7 +18,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
-/// Rows, events and state of a run that belong together.
+/// Rows, events and state of a run that are stored together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunCommit {
     pub run: RunId,
@@ -30,20 +30,20 @@ pub struct RunCommit {
 }
 
 impl Store {
-    /// Appends rows and events to a run and moves it to `state`. Durable when this returns.
+    /// Appends rows and events to a run and sets `state`. The data is durable when this returns.
     ///
-    /// Every commit with rows has the same channels, the first of them the time. A final state closes the run.
+    /// Every commit with rows has the same channels; the first channel is the time. A final state closes the run.
     pub async fn commit(&self, run: RunId, state: RunState, events: &[Event], rows: Trace) -> Result<(), StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         append(&mut writer, run, state, events, rows).await?;
         Ok(writer.commit().await?)
     }
 
-    /// Stores the next commits of runs, all of them or none. One that is there already is left alone: whoever does not know
-    /// whether it was stored hands it over again.
+    /// Stores the next commits of runs, all of them or none. A commit that is already stored is skipped, so a caller
+    /// can repeat the call when its outcome is unknown.
     ///
     /// # Errors
-    /// [`StoreError::CommitMissing`] where the one before is not there.
+    /// [`StoreError::CommitMissing`] if the previous commit is missing.
     pub async fn commit_all(&self, commits: &[&RunCommit]) -> Result<(), StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         for RunCommit { run, number, state, events, rows } in commits {
@@ -65,7 +65,7 @@ impl Store {
         Ok(writer.commit().await?)
     }
 
-    /// A run that comes whole and in parts, each with the same channels: all of it, or nothing.
+    /// Imports a run that arrives in parts with the same channels. All parts are stored, or none.
     pub async fn import_parts(
         &self,
         new: &NewRun,
@@ -82,7 +82,7 @@ impl Store {
         Ok(run)
     }
 
-    /// A run that comes whole, as a file: all of it, or nothing.
+    /// Imports a complete run, such as a file. All of it is stored, or nothing.
     pub async fn import(&self, new: &NewRun, events: &[Event], rows: Trace) -> Result<RunId, StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         let run = insert_run(&mut writer, new).await?;
@@ -92,7 +92,7 @@ impl Store {
     }
 }
 
-/// What [`Store::commit`] does, within a transaction.
+/// [`Store::commit`] within an open transaction.
 pub(super) async fn append(
     writer: &mut SqliteConnection,
     run: RunId,
@@ -139,7 +139,7 @@ async fn keep_rows(
 ) -> Result<(), StoreError> {
     let there = channels(writer, run).await?;
     if rows.is_empty() {
-        // A run that ends: what its tail holds becomes its last block.
+        // The run ends: the rows of the tail become its last block.
         rows = Trace::new(there);
     } else if there.is_empty() {
         insert_channels(writer, run, rows.channels()).await?;
@@ -161,7 +161,7 @@ async fn keep_rows(
 
     let full = if closes { rows.len() } else { rows.len() / BLOCK_ROWS * BLOCK_ROWS };
     let rows = Arc::new(rows);
-    // All blocks are packed on the blocking threads while the first of them are already being written.
+    // The blocking threads pack the blocks in parallel while the first blocks are written.
     let blocks: Vec<_> = (0..full)
         .step_by(BLOCK_ROWS)
         .map(|start| {
@@ -243,9 +243,9 @@ fn resolutions(rows: &Trace) -> Vec<Option<f64>> {
     rows.channels().iter().map(|channel| channel.resolution).collect()
 }
 
-/// A block of rows, ready to be written.
+/// A block of rows, packed for the database.
 struct PackedBlock {
-    /// In the trace that it was packed from.
+    /// Range in the trace that was packed.
     rows: Range<usize>,
     from_s: Option<f64>,
     to_s: Option<f64>,

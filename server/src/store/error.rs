@@ -1,4 +1,4 @@
-//! Why the store cannot do what it should, each with what to do next.
+//! Errors of the store. Each message includes the remedy.
 
 use jointbench_procedure::{RunId, RunState};
 use std::path::PathBuf;
@@ -63,7 +63,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// Of damage that SQLite itself found: in what of a run.
+    /// Adds run and table to the damage that SQLite itself found.
     pub(super) fn within(self, run: RunId, table: &str) -> Self {
         match self {
             StoreError::Damaged(what) => StoreError::Damaged(format!("table {table}, run {run}: {what}")),
@@ -71,7 +71,7 @@ impl StoreError {
         }
     }
 
-    /// The daemon cannot start as it was asked to.
+    /// Whether the daemon cannot start with this setup.
     pub fn is_setup(&self) -> bool {
         use StoreError as E;
         matches!(
@@ -86,12 +86,12 @@ impl StoreError {
         )
     }
 
-    /// Nothing is wrong with what was to be stored: the same may be stored later.
+    /// Whether a later retry with the same data may succeed.
     pub fn may_pass(&self) -> bool {
         matches!(self, StoreError::DiskFull | StoreError::Held | StoreError::Database(_))
     }
 
-    /// What was named is not there.
+    /// Whether the named object does not exist.
     pub fn is_not_found(&self) -> bool {
         use StoreError as E;
         matches!(
@@ -107,7 +107,7 @@ impl StoreError {
     }
 }
 
-/// SQLite's primary result codes: sqlite.org/rescode.html.
+/// Primary result codes of SQLite: sqlite.org/rescode.html.
 const SQLITE_BUSY: i32 = 5;
 const SQLITE_CORRUPT: i32 = 11;
 const SQLITE_FULL: i32 = 13;
@@ -118,12 +118,12 @@ impl From<sqlx::Error> for StoreError {
         if matches!(fault, sqlx::Error::PoolTimedOut) {
             return StoreError::Held;
         }
-        // A value that is not of its column's type, or text that is no UTF-8.
+        // A value of another type than its column, or text that is not UTF-8.
         if matches!(fault, sqlx::Error::ColumnDecode { .. } | sqlx::Error::Decode(_)) {
             return StoreError::Damaged(fault.to_string());
         }
         let code = fault.as_database_error().and_then(|fault| fault.code()?.parse::<i32>().ok());
-        // The extended code holds the primary one in its low byte.
+        // The low byte of the extended code is the primary code.
         match code.map(|code| code & 0xff) {
             Some(SQLITE_BUSY) => StoreError::Held,
             Some(SQLITE_FULL) => StoreError::DiskFull,

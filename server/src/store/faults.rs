@@ -1,4 +1,4 @@
-//! What was wrong with the instruments of a bench.
+//! Faults of the instruments of a bench.
 
 use super::seal::INSTRUMENT_FAULTS;
 use super::{Store, StoreError};
@@ -6,7 +6,7 @@ use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
 impl Store {
-    /// The newest faults of an instrument, newest first: when, and what. The text of a damaged one says that it is.
+    /// The newest faults of an instrument, newest first: time and text. The text of a damaged fault is the error.
     pub async fn faults(&self, bench: &str, instrument: &str, limit: u32) -> Result<Vec<(String, String)>, StoreError> {
         let query = "SELECT * FROM instrument_faults WHERE bench = ? AND instrument = ? ORDER BY id DESC LIMIT ?";
         let rows = sqlx::query(query).bind(bench).bind(instrument).bind(limit).fetch_all(&self.readers).await?;

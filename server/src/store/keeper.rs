@@ -1,5 +1,5 @@
-//! A task beside the writer: it marks the last durable change, and moves the write-ahead file into the database when a run
-//! has ended. No commit waits for it.
+//! A background task: it marks the last durable change, and checkpoints the write-ahead log after a run has ended. No
+//! commit waits for it.
 
 use super::mark::{Mark, MarkFile};
 use super::open::PATIENCE;
@@ -14,23 +14,23 @@ use tokio::sync::{Mutex, watch};
 use tokio::task::JoinHandle;
 use utoipa::ToSchema;
 
-/// The hook runs before its commit is on the disk: the change is looked for again after these pauses, twice as long each time.
+/// The hook runs before its commit is on the disk. The keeper checks after this pause and doubles it each time.
 const FIRST_PAUSE: Duration = Duration::from_millis(2);
-/// A transaction that has changed nothing that is counted is waited for no longer.
+/// Limit of the pause, for transactions that change nothing that is counted.
 const LONGEST_PAUSE: Duration = Duration::from_secs(4);
-/// A checkpoint that a reader or a writer was in the way of is tried again.
+/// Interval between attempts while a reader or a writer prevents the checkpoint.
 const RETRY: Duration = Duration::from_millis(250);
 
-/// What the writer's commits tell the keeper.
+/// Message of the writer's commits to the keeper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
-    /// So many transactions have been committed, or are about to be.
+    /// Number of transactions that are committed or about to be.
     Commits(u64),
     End,
 }
 
 impl Signal {
-    /// What one more transaction tells; an end stays one.
+    /// The signal after one more transaction; `End` remains.
     pub fn next(self) -> Signal {
         match self {
             Signal::Commits(count) => Signal::Commits(count + 1),
@@ -64,7 +64,7 @@ impl Keeper {
         Ok(Self { signals, task: Mutex::new(Some(task)) })
     }
 
-    /// The last one on the database: with it the write-ahead file goes.
+    /// Ends the task. Its connection is the last one: closing it removes the write-ahead log.
     pub async fn end(&self) {
         self.signals.send_replace(Signal::End);
         if let Some(task) = self.task.lock().await.take()
@@ -84,21 +84,20 @@ impl Drop for Keeper {
 }
 
 struct Work {
-    /// Only read from.
+    /// Only for reading.
     database: SqliteConnection,
     writer: SqlitePool,
     file: MarkFile,
     /// The last change that was marked.
     marked: i64,
-    /// Runs that had ended at the last look.
+    /// Number of runs that had ended at the last check.
     ended: i64,
-    /// Whether a checkpoint is due.
     is_due: bool,
 }
 
 impl Work {
     async fn go_on(mut self, mut signals: watch::Receiver<Signal>) {
-        // Before the next look, while a change may be on its way.
+        // Time until the next check, while a commit may be in progress.
         let mut pause = None;
         loop {
             tokio::select! {
@@ -114,7 +113,7 @@ impl Work {
             if let Err(fault) = self.turn().await {
                 tracing::warn!(%fault, "the last change was not marked");
             }
-            // What was found may be an earlier change than the one that was told: looks go on.
+            // The change that was found may be older than the signal: continue to check.
             pause = pause.map(|pause| pause * 2).filter(|pause| *pause <= LONGEST_PAUSE);
             if ends {
                 break;
@@ -127,7 +126,7 @@ impl Work {
 
     async fn turn(&mut self) -> Result<(), StoreError> {
         self.look().await?;
-        // On the writer's own connection: none of its transactions finds the database locked.
+        // Uses the writer's own connection, so that no transaction of it finds the database locked.
         if self.is_due
             && let Some(mut writer) = self.writer.try_acquire()
         {
@@ -136,7 +135,7 @@ impl Work {
         Ok(())
     }
 
-    /// Marks the last change. What a reader sees is on the disk.
+    /// Marks the last change. A change that a reader sees is on the disk.
     async fn look(&mut self) -> Result<(), StoreError> {
         let (store, changes, ended) = state(&mut self.database).await?;
         self.is_due |= ended > self.ended;
@@ -151,7 +150,7 @@ impl Work {
     }
 }
 
-/// Moves the write-ahead file into the database and empties it; `false` where a reader is in the way, who is not waited for.
+/// Moves the write-ahead log into the database and empties it. `false` if a reader is active.
 async fn checkpoint(writer: &mut SqliteConnection) -> Result<bool, StoreError> {
     sqlx::query("PRAGMA busy_timeout = 0").execute(&mut *writer).await?;
     let done = sqlx::query_as::<_, (i64, i64, i64)>("PRAGMA wal_checkpoint(TRUNCATE)").fetch_one(&mut *writer).await;
@@ -187,14 +186,14 @@ impl std::fmt::Display for Loss {
     }
 }
 
-/// What is missing, by the mark that was read before the database.
+/// The changes that are missing, according to a mark that was read before the database.
 pub async fn missing(database: &mut SqliteConnection, mark: Option<&Mark>) -> Result<Option<Loss>, StoreError> {
     let (store, changes, _) = state(database).await?;
     let ahead = mark.filter(|mark| mark.store == store && mark.changes > changes);
     Ok(ahead.map(|mark| Loss { first: changes + 1, last: mark.changes, noticed_at: None }))
 }
 
-/// Losses that were noticed at a start, oldest first.
+/// Losses that were detected when the store was opened, oldest first.
 pub async fn losses(database: &mut SqliteConnection) -> Result<Vec<Loss>, StoreError> {
     let rows: Vec<(i64, i64, String)> =
         sqlx::query_as("SELECT first, last, noticed_at FROM store_losses ORDER BY id").fetch_all(database).await?;
@@ -203,12 +202,11 @@ pub async fn losses(database: &mut SqliteConnection) -> Result<Vec<Loss>, StoreE
 }
 
 impl Store {
-    /// Losses that were noticed at a start, oldest first.
     pub async fn losses(&self) -> Result<Vec<Loss>, StoreError> {
         losses(&mut *self.readers.acquire().await?).await
     }
 
-    /// Blocks these benches, too, where changes were missing when the store was opened: what is left may not know them.
+    /// Blocks these benches too if changes were lost: the store may not know them.
     pub async fn block_where_missing(&self, benches: impl IntoIterator<Item = &str>) -> Result<(), StoreError> {
         let Some(loss) = &self.missing else { return Ok(()) };
         for bench in benches {
@@ -220,8 +218,8 @@ impl Store {
     }
 }
 
-/// To be called when the store is opened, before anything is written: says what is missing, keeps that, and blocks every
-/// bench, since a stop may be among it.
+/// Call it when the store is opened, before the first write. It logs and stores the missing changes and blocks every
+/// bench, because a stop may be missing.
 pub(super) async fn look_back(database: &mut SqliteConnection, folder: &Path) -> Result<Option<Loss>, StoreError> {
     let mark = Mark::read(folder);
     let (store, ..) = state(database).await?;
@@ -240,7 +238,7 @@ pub(super) async fn look_back(database: &mut SqliteConnection, folder: &Path) ->
         .bind(now())
         .execute(&mut *writer)
         .await?;
-    // No number is given twice.
+    // The numbers of lost changes are not used again.
     sqlx::query("UPDATE store_log SET changes = ?").bind(loss.last).execute(&mut *writer).await?;
     super::safety::block_all(&mut writer, &reason(&loss)).await?;
     writer.commit().await?;

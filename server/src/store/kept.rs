@@ -1,14 +1,14 @@
-//! What was worked out of a model version or of a complete run: once, then only read. Runs and fits never change.
+//! Cache of results of a model version or a complete run. Runs and fits never change, so each result is computed once.
 
 use super::seal::KEPT;
 use super::{Store, StoreError};
 use sqlx::{Row, SqliteConnection};
 
-/// Another release may work it out otherwise.
+/// Part of the key: another release may compute another result.
 const SOFTWARE: &str = env!("CARGO_PKG_VERSION");
 const LEVEL: i32 = 3;
 
-/// Of what it was worked out.
+/// Object that a result belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
     Model(i64),
@@ -25,17 +25,17 @@ impl Subject {
 }
 
 impl Store {
-    /// Keeps an answer as the API tells it.
+    /// Stores a result as the JSON of the API.
     pub async fn keep(&self, subject: Subject, what: &str, json: &[u8]) -> Result<(), StoreError> {
         self.keep_packed(subject, what, &packed(json)?).await
     }
 
-    /// The same, where it was [`packed`] before.
+    /// The same for data that is already [`packed`].
     pub async fn keep_packed(&self, subject: Subject, what: &str, packed: &[u8]) -> Result<(), StoreError> {
         keep(&mut *self.writer.acquire().await?, subject, what, packed).await
     }
 
-    /// `None` where it has to be worked out, also because what was kept is damaged.
+    /// `None` if the result must be computed, also if the cached one is damaged.
     pub async fn kept(&self, subject: Subject, what: &str) -> Result<Option<Vec<u8>>, StoreError> {
         let (subject, id) = subject.parts();
         let row = sqlx::query("SELECT * FROM kept WHERE subject = ? AND id = ? AND what = ? AND software = ?")
@@ -54,12 +54,12 @@ impl Store {
     }
 }
 
-/// An answer as it is kept.
+/// Compresses a result for the cache.
 pub fn packed(json: &[u8]) -> Result<Vec<u8>, StoreError> {
     zstd::encode_all(json, LEVEL).map_err(|fault| StoreError::Damaged(fault.to_string()))
 }
 
-/// The answer that was [`packed`].
+/// Reverses [`packed`].
 pub fn unpacked(packed: &[u8]) -> Result<Vec<u8>, StoreError> {
     zstd::decode_all(packed).map_err(|fault| StoreError::Damaged(fault.to_string()))
 }

@@ -1,23 +1,24 @@
 //! One daemon for each data folder.
 //!
-//! Two locks: a file `lock`, which names the process that has the folder, and the folder itself, which cannot be removed
-//! without the store. Never the database: closing any descriptor of it would drop the locks that SQLite has there.
+//! There are two locks. The file `lock` names the process that uses the folder. The folder itself is locked too,
+//! because it cannot be removed without the store. The database is never locked here: closing any descriptor of it
+//! would release the locks of SQLite.
 
 use super::StoreError;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::Path;
 
-/// The folder is held until this is released or dropped.
+/// Locks the folder until it is released or dropped.
 #[derive(Debug)]
 pub struct FolderLock {
     file: File,
-    /// `None` where the system cannot lock a folder.
+    /// `None` if the system cannot lock a folder.
     folder: Option<File>,
 }
 
 impl FolderLock {
-    /// Makes the folder where it is missing, and takes it.
+    /// Creates the folder if it is missing, and locks it.
     pub fn take(path: &Path) -> Result<Self, StoreError> {
         let unwritable = |fault: io::Error| StoreError::Unwritable { folder: path.into(), what: fault.to_string() };
         fs::create_dir_all(path).map_err(unwritable)?;
@@ -31,7 +32,7 @@ impl FolderLock {
         }
         let folder = match lock_folder(path) {
             Ok(folder) => folder,
-            // The holder's own file was removed.
+            // The holder's lock file was removed.
             Err(TryLockError::WouldBlock) => {
                 return Err(StoreError::InUse { folder: path.into(), holder: String::new() });
             }
@@ -42,7 +43,7 @@ impl FolderLock {
         Ok(Self { file, folder })
     }
 
-    /// Also while somebody holds the store.
+    /// Also works while clones of the store exist.
     pub fn release(&self) -> io::Result<()> {
         self.file.unlock()?;
         self.folder.as_ref().map_or(Ok(()), File::unlock)
@@ -55,7 +56,7 @@ fn lock_folder(path: &Path) -> Result<Option<File>, TryLockError> {
     match folder.try_lock() {
         Ok(()) => Ok(Some(folder)),
         Err(TryLockError::WouldBlock) => Err(TryLockError::WouldBlock),
-        // Some network file systems lock files only.
+        // Some network file systems lock only files.
         Err(TryLockError::Error(fault)) => {
             tracing::warn!(%fault, "the data folder itself cannot be locked: the file `lock` in it must stay");
             Ok(None)

@@ -1,7 +1,7 @@
-//! The file beside the database that holds the number of its last durable change.
+//! The mark: a file that holds the number of the last durable change of the database.
 //!
-//! It is written after the commit and without waiting for the disk, so it may be behind, never ahead: a database that holds
-//! fewer changes than the mark has lost some. A mark that is torn, or of another store, says nothing.
+//! The mark is written after the commit and without waiting for the disk. It may be behind the database, never ahead: a
+//! database with fewer changes than the mark has lost some. A mark that is incomplete or of another store is ignored.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, Write};
@@ -9,16 +9,16 @@ use std::path::Path;
 
 const FILE_NAME: &str = "jointbench.mark";
 
-/// `STORE CHANGES CHECKSUM`, always of the same length: an overwritten mark needs no room on the disk.
+/// `STORE CHANGES CHECKSUM`, always of the same length: overwriting needs no additional disk space.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mark {
-    /// Which store it is of.
+    /// Identifier of the store.
     pub store: String,
     pub changes: i64,
 }
 
 impl Mark {
-    /// `None` where there is none that can be read.
+    /// `None` if there is no readable mark.
     pub fn read(folder: &Path) -> Option<Mark> {
         let mut text = String::new();
         File::open(folder.join(FILE_NAME)).ok()?.take(256).read_to_string(&mut text).ok()?;
@@ -33,7 +33,7 @@ impl Mark {
     }
 }
 
-/// The file while the store is open.
+/// The mark file of an open store.
 #[derive(Debug)]
 pub struct MarkFile(File);
 

@@ -1,4 +1,4 @@
-//! The schema, step by step. What a store has applied is never edited.
+//! The migrations of the schema. An applied migration is never edited.
 
 use sqlx::SqlSafeStr;
 use sqlx::error::BoxDynError;
@@ -6,7 +6,7 @@ use sqlx::migrate::{Migration, MigrationSource, MigrationType};
 use std::future::{self, Future};
 use std::pin::Pin;
 
-/// Name and text of every file in `migrations/`, in order. Listed by hand: the macro that would do it compiles SQLite twice.
+/// Name and text of every file in `migrations/`, in order. The list is manual because the macro compiles SQLite twice.
 const FILES: [(&str, &str); 21] = [
     ("0001_runs.sql", include_str!("../../../migrations/0001_runs.sql")),
     ("0002_models.sql", include_str!("../../../migrations/0002_models.sql")),

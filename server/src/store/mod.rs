@@ -1,8 +1,8 @@
-//! What the daemon remembers: one SQLite file in the data folder.
+//! The store of the daemon: one SQLite file in the data folder.
 //!
-//! Rows, events and state of a run go in together, in one transaction that is on the disk when [`Store::commit`] returns.
-//! Samples lie in coded columns ([`codec`]) of [`BLOCK_ROWS`] rows with a min/max [`pyramid`]; until a block is full, the
-//! rows of each commit lie in the `tail` as they came. What was measured never changes: the schema's triggers refuse it.
+//! Rows, events and state of a run are stored in one transaction that is on the disk when [`Store::commit`] returns.
+//! Samples are stored as coded columns ([`codec`]) of [`BLOCK_ROWS`] rows with a min/max [`pyramid`]. Until a block is
+//! full, the rows of each commit are in the `tail`. Triggers of the schema refuse changes of measured data.
 
 mod autopilots;
 mod backup;
@@ -57,21 +57,21 @@ use std::sync::{Arc, RwLock};
 /// Rows of a full block.
 pub const BLOCK_ROWS: usize = 32_768;
 
-/// A handle to the store; clones share it. The data folder is let go with the last one.
+/// A handle to the store; clones share it. The last clone releases the data folder.
 #[derive(Debug, Clone)]
 pub struct Store {
     /// One connection: SQLite has one writer.
     writer: SqlitePool,
     /// Readers see the last commit and never wait for the writer.
     readers: SqlitePool,
-    /// Held for as long as the store is open: one daemon for each data folder. `None` where it only reads.
+    /// Lock of the data folder: one daemon for each. `None` if the store is read-only.
     lock: Option<Arc<FolderLock>>,
-    /// `None` where it only reads.
+    /// `None` if the store is read-only.
     keeper: Option<Arc<Keeper>>,
-    /// What was missing when it was opened.
+    /// Changes that were missing when the store was opened.
     missing: Option<Loss>,
-    /// What the last check has found.
+    /// Result of the last check.
     health: Arc<RwLock<StoreHealth>>,
-    /// Whether a mock bench has a full disk.
+    /// Whether a full disk is simulated.
     is_full: Arc<AtomicBool>,
 }

@@ -1,4 +1,4 @@
-//! Model versions, a tree that only grows, and the diagnoses of its nodes.
+//! Model versions, a tree that only grows, and the diagnoses of the versions.
 
 use super::runs::{exists, json, now};
 use super::seal::{DIAGNOSES, MODELS, whole};
@@ -34,12 +34,12 @@ fn record(row: &SqliteRow) -> Result<ModelRecord, StoreError> {
 }
 
 impl Store {
-    /// Keeps a fit as a version. What was added and removed is told from the parent's effects.
+    /// Stores a fit as a version. Added and removed effects follow from the effects of the parent.
     pub async fn save_model(&self, new: &NewModel) -> Result<ModelRecord, StoreError> {
         self.save_fitted(new, None, None).await
     }
 
-    /// The same together with what was worked out of it, packed and under its name, and its diagnosis: all of it or nothing.
+    /// The same together with a packed result under its name and the diagnosis, in one transaction.
     pub async fn save_fitted(
         &self,
         new: &NewModel,
@@ -59,7 +59,7 @@ impl Store {
         self.model(id).await
     }
 
-    /// The effects of the parent; none without one.
+    /// The effects of the parent; empty without a parent.
     async fn effects_before(&self, new: &NewModel) -> Result<Vec<String>, StoreError> {
         for run in std::iter::once(new.run).chain(new.more_runs.iter().copied()) {
             exists(&mut *self.readers.acquire().await?, run).await?;
@@ -74,7 +74,7 @@ impl Store {
         Ok(parent.effects)
     }
 
-    /// Makes a version that was only tried, or that is idle, one of the run's.
+    /// Keeps a version that was tried or is idle: it counts as a version of the run from now on.
     pub async fn keep_model(&self, id: i64, by: &str) -> Result<ModelRecord, StoreError> {
         self.model(id).await?;
         let keep = sqlx::query("INSERT OR IGNORE INTO models_kept (model, who, created_at) VALUES (?, ?, ?)");
@@ -87,7 +87,7 @@ impl Store {
         record(&row.ok_or(StoreError::NoModel(id))?)
     }
 
-    /// The last version of a kind that was fitted to another run of a bench, is not idle and not only tried.
+    /// The last version of a kind that was fitted to another run of a bench, without idle and tried versions.
     pub async fn last_model(&self, bench: &str, kind: &str, but: RunId) -> Result<Option<ModelRecord>, StoreError> {
         let asked = "SELECT model.* FROM models_told AS model JOIN runs ON runs.id = model.run \
             WHERE runs.bench = ? AND model.kind = ? AND model.run <> ? AND NOT idle AND NOT tried ORDER BY model.id DESC LIMIT 1";
@@ -95,7 +95,7 @@ impl Store {
         row.as_ref().map(record).transpose()
     }
 
-    /// All versions of a run, oldest first: parents before their children. A damaged one is left out, and the log names it.
+    /// All versions of a run, oldest first: parents before their children. A damaged one is omitted and logged.
     pub async fn models(&self, run: RunId) -> Result<Vec<ModelRecord>, StoreError> {
         exists(&mut *self.readers.acquire().await?, run).await?;
         let rows = sqlx::query("SELECT * FROM models_told WHERE run = ? ORDER BY id")
@@ -105,7 +105,7 @@ impl Store {
         Ok(whole(&rows, record))
     }
 
-    /// What was changed in the versions of a run, oldest first, without their fits.
+    /// The changes in the versions of a run, oldest first, without their fits.
     pub async fn versions(&self, run: RunId) -> Result<Vec<VersionRecord>, StoreError> {
         let query = "SELECT * FROM models WHERE run = ? ORDER BY id";
         let rows = sqlx::query(query).bind(run).fetch_all(&self.readers).await?;
@@ -135,7 +135,7 @@ impl Store {
         diagnosis_record(&row.ok_or(StoreError::NoDiagnosis(id))?)
     }
 
-    /// The diagnoses of a model version, oldest first. A damaged one is left out, and the log names it.
+    /// The diagnoses of a model version, oldest first. A damaged one is omitted and logged.
     pub async fn diagnoses(&self, model: i64) -> Result<Vec<DiagnosisRecord>, StoreError> {
         self.model(model).await?;
         let rows = sqlx::query("SELECT * FROM diagnoses WHERE model = ? ORDER BY id")

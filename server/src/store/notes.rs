@@ -1,4 +1,4 @@
-//! What people say about runs.
+//! Notes and tags of runs.
 
 use super::runs::{exists, now};
 use super::seal::NOTES;
@@ -8,7 +8,7 @@ use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
 impl Store {
-    /// In the order in which they were written. The text of a damaged one says what is wrong with it.
+    /// In the order of writing. The text of a damaged note is the error.
     pub async fn notes(&self, run: RunId) -> Result<Vec<NoteRecord>, StoreError> {
         let mut reader = self.readers.begin().await?;
         exists(&mut reader, run).await?;
@@ -23,7 +23,7 @@ impl Store {
         Ok(rows.iter().map(|row| record(row).unwrap_or_else(|fault| damaged(row, fault))).collect())
     }
 
-    /// Keeps a note, about a moment of the run where one is given.
+    /// Stores a note, with a time of the run if one is given.
     pub async fn save_note(&self, run: RunId, at_s: Option<f64>, text: &str) -> Result<NoteRecord, StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         exists(&mut writer, run).await?;
@@ -42,7 +42,7 @@ impl Store {
         record(&row)
     }
 
-    /// The run has these tags from now on, and no others.
+    /// Replaces the tags of a run.
     pub async fn set_tags(&self, run: RunId, tags: &[String]) -> Result<(), StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         exists(&mut writer, run).await?;

@@ -1,4 +1,4 @@
-//! Opening: one daemon for each data folder, one schema, settings that keep what was committed.
+//! Opening: one daemon for each data folder, one schema, durable commits.
 
 use super::full_disk::{give_back, limit};
 use super::keeper::{Keeper, Signal, Signals, look_back, losses};
@@ -13,19 +13,19 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, RwLock};
 use std::time::Duration;
 
-/// Marks the file as ours: "JBen".
+/// Identifies the file as a store of jointbench: "JBen".
 const APPLICATION_ID: i64 = 0x4a42_656e;
-/// Commits of the recorder stay under 1 ms in 99 of 100 cases with pages of this size.
+/// With pages of this size, 99 % of the recorder's commits need less than 1 ms.
 const PAGE_BYTES: u32 = 16_384;
 pub(super) const FILE_NAME: &str = "jointbench.db";
-/// Of each connection. Five of them must fit beside everything else in an address space of 1 GiB.
+/// For each connection. Five connections and all other memory must fit into an address space of 1 GiB.
 const MAPPED_BYTES: &str = "33554432";
 const READERS: u32 = 4;
-/// For a database that another program holds, and for the one connection that writes.
+/// Waiting time for a database that another program has locked, and for the one writer connection.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
 impl Store {
-    /// Opens the store in `folder`, which is made where it is missing.
+    /// Opens the store in `folder`. Creates the folder if it is missing.
     pub async fn open(folder: &Path) -> Result<Store, StoreError> {
         let lock = FolderLock::take(folder)?;
         let file = folder.join(FILE_NAME);
@@ -58,7 +58,7 @@ impl Store {
         Ok(Store { writer, readers, lock, keeper, health, missing, is_full })
     }
 
-    /// Opens the store beside the daemon that has it, to read: what was committed is there, and nothing can be written.
+    /// Opens the store read-only, also while a daemon uses it. All committed data is visible.
     pub async fn open_to_read(folder: &Path) -> Result<Store, StoreError> {
         let file = folder.join(FILE_NAME);
         let options = SqliteConnectOptions::new()
@@ -80,26 +80,26 @@ impl Store {
         })
     }
 
-    /// Whether a store was made in the folder.
+    /// Whether the folder contains a store.
     pub fn is_in(folder: &Path) -> bool {
         folder.join(FILE_NAME).is_file()
     }
 
-    /// Waits for what is under way and lets the file go. A store that is never closed loses nothing that was committed.
+    /// Waits for work in progress and closes the file. A store that is not closed keeps all committed data.
     pub async fn close(&self) {
         self.readers.close().await;
         self.writer.close().await;
         if let Some(keeper) = &self.keeper {
             keeper.end().await;
         }
-        // Clones of the store may live on, in requests for example: the folder is free all the same.
+        // Clones of the store may remain, for example in requests; the folder is released anyway.
         if let Some(Err(fault)) = self.lock.as_ref().map(|lock| lock.release()) {
             tracing::warn!(%fault, "the data folder stays locked until the process ends");
         }
     }
 }
 
-/// A connection that cannot write, also while a daemon has the folder.
+/// A read-only connection, also while a daemon uses the folder.
 pub(super) async fn to_read(folder: &Path) -> Result<SqliteConnection, StoreError> {
     if !Store::is_in(folder) {
         return Err(StoreError::NoStore { folder: folder.into() });
@@ -107,7 +107,7 @@ pub(super) async fn to_read(folder: &Path) -> Result<SqliteConnection, StoreErro
     file_to_read(&folder.join(FILE_NAME)).await
 }
 
-/// The same for a database that lies anywhere.
+/// The same for a database file at any path.
 pub(super) async fn file_to_read(file: &Path) -> Result<SqliteConnection, StoreError> {
     let options = SqliteConnectOptions::new().filename(file).read_only(true).busy_timeout(PATIENCE);
     let connected = options.disable_statement_logging().connect().await;
@@ -120,8 +120,8 @@ fn pool(most: u32) -> SqlitePoolOptions {
     SqlitePoolOptions::new().max_connections(most).idle_timeout(None).max_lifetime(None).acquire_timeout(PATIENCE)
 }
 
-/// The one connection that writes. On a full disk SQLite may end a transaction by itself; to sqlx it is still on then, and none
-/// could begin any more: such a connection is exchanged for another.
+/// The one writer connection. On a full disk SQLite may end a transaction by itself. sqlx does not notice this and
+/// could begin no other transaction, so such a connection is replaced.
 fn writer(is_full: Arc<AtomicBool>, signals: Signals) -> SqlitePoolOptions {
     let writer = pool(1).after_connect(move |connection, _| {
         let (full, signals) = (is_full.load(Ordering::Acquire), signals.clone());
@@ -136,7 +136,7 @@ fn writer(is_full: Arc<AtomicBool>, signals: Signals) -> SqlitePoolOptions {
     });
     writer.after_release(|connection, _| {
         Box::pin(async move {
-            // Behind the rollback of what was given up.
+            // Waits for the rollback of an abandoned transaction.
             connection.ping().await?;
             Ok(!connection.is_in_transaction())
         })
@@ -150,7 +150,7 @@ fn not_ours(fault: sqlx::Error, file: &Path) -> StoreError {
     }
 }
 
-/// A file that somebody else's program made is not touched.
+/// Refuses a file of another program.
 async fn check_ours(connection: &mut SqliteConnection, file: &Path) -> Result<(), StoreError> {
     let foreign = |fault: sqlx::Error| not_ours(fault, file);
     let mark: i64 = sqlx::query_scalar("PRAGMA application_id").fetch_one(&mut *connection).await.map_err(foreign)?;
@@ -172,7 +172,7 @@ async fn migrate(writer: &SqlitePool, file: &Path) -> Result<(), StoreError> {
         MigrateError::Execute(fault) => fault.into(),
         other => StoreError::Database(other.to_string()),
     })?;
-    // 0x4a42656e; a pragma takes no parameters.
+    // 0x4a42656e: a pragma accepts no parameters.
     sqlx::query("PRAGMA application_id = 1245865326").execute(writer).await?;
     Ok(())
 }

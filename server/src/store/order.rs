@@ -1,9 +1,9 @@
-//! The order of the list of runs.
+//! Sort order of the list of runs.
 
 use super::StoreError;
 use sqlx::{QueryBuilder, Sqlite};
 
-/// What runs can be ordered by, with what it is in the store; error and Coulomb friction are of the version that is told.
+/// Sort keys with their column. Error and Coulomb friction are those of the listed model version.
 const COLUMNS: [(&str, &str); 9] = [
     ("started", "id"),
     ("state", "state"),
@@ -23,8 +23,8 @@ const COLUMNS: [(&str, &str); 9] = [
     ),
 ];
 
-/// By which column, and whether the largest comes first. What has no value comes last either way, and among equals the newest
-/// first.
+/// Column, and whether the largest value is first. Missing values are last in both cases; equal values are sorted
+/// newest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Order {
     column: &'static str,

@@ -1,4 +1,4 @@
-//! Effects that users write: the latest version of each is what new models may hold.
+//! Effects that users write. New models use the latest version of each effect.
 
 use super::runs::{json, now};
 use super::seal::{OWN_EFFECTS, whole};
@@ -11,7 +11,7 @@ const LATEST: &str = "SELECT * FROM own_effects AS own \
                       WHERE version = (SELECT max(version) FROM own_effects WHERE kind = own.kind AND effect = own.effect)";
 
 impl Store {
-    /// By kind and id. A damaged one is left out, and the log names it.
+    /// Sorted by kind and id. A damaged one is omitted and logged.
     pub async fn own_effects(&self) -> Result<Vec<OwnEffectRecord>, StoreError> {
         let rows = sqlx::query(LATEST).fetch_all(&self.readers).await?;
         let mut records = whole(&rows, record);
@@ -19,7 +19,7 @@ impl Store {
         Ok(records)
     }
 
-    /// Keeps a definition as the next version of its id. What is there already stays as it is.
+    /// Stores a definition as the next version of its id. Existing versions do not change.
     pub async fn save_own_effect(
         &self,
         kind: &str,
@@ -55,7 +55,7 @@ impl Store {
         record(&row)
     }
 
-    /// Forgets an effect with all its versions; refused while a model uses it.
+    /// Deletes an effect with all its versions. Refused while a model uses it.
     pub async fn delete_own_effect(&self, kind: &str, effect: &str) -> Result<(), StoreError> {
         let user: Option<(i64,)> = sqlx::query_as(
             "SELECT models.id FROM models, json_each(IIF(json_valid(models.fit), models.fit, '{}'), '$.own') AS own \

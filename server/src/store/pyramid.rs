@@ -1,20 +1,20 @@
-//! A block from afar: smallest and largest value of bins of rows, so that a picture of any run costs the same and no
-//! spike of one sample is lost.
+//! Overview of a block: smallest and largest value of bins of rows. A plot of any run has the same cost, and a spike of
+//! one sample remains visible.
 
 use super::codec::{self, Broken};
 use super::view::Extremes;
 
-/// Rows of a fine bin, which is packed like samples are.
+/// Rows of a fine bin. Fine bins are packed like samples.
 pub const FINE_ROWS: usize = 64;
-/// Rows of a coarse bin, kept as plain doubles: a picture of a long run reads hundreds of these at once.
+/// Rows of a coarse bin. Coarse bins are plain doubles, because a plot of a long run reads hundreds of them.
 pub const COARSE_ROWS: usize = 1024;
 
-/// Smallest and largest of each bin of `width` rows.
+/// Smallest and largest value of each bin of `width` rows.
 pub fn extremes(values: &[f64], width: usize) -> Extremes {
     let bins = values.len().div_ceil(width);
     let mut found = Extremes { min: Vec::with_capacity(bins), max: Vec::with_capacity(bins) };
     for bin in values.chunks(width) {
-        // A comparison with NaN is false, so NaN is passed over.
+        // A comparison with NaN is false, so NaN is ignored.
         let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
         for value in bin {
             min = if *value < min { *value } else { min };
@@ -25,7 +25,7 @@ pub fn extremes(values: &[f64], width: usize) -> Extremes {
     found
 }
 
-/// Wider bins from narrow ones.
+/// Combines `times` bins into one.
 pub fn widen(fine: &Extremes, times: usize) -> Extremes {
     let mut wide = Extremes::default();
     for (min, max) in fine.min.chunks(times).zip(fine.max.chunks(times)) {
@@ -34,13 +34,13 @@ pub fn widen(fine: &Extremes, times: usize) -> Extremes {
     wide
 }
 
-/// All channels of a block, one behind the other: all smallest values, then all largest.
+/// All channels of a block in sequence; for each channel all minima, then all maxima.
 pub fn pack_coarse(channels: &[Extremes]) -> Vec<u8> {
     let values = channels.iter().flat_map(|channel| channel.min.iter().chain(&channel.max));
     values.flat_map(|value| value.to_le_bytes()).collect()
 }
 
-/// The channel at `place` of a block of `rows`.
+/// The channel at index `place` of a block of `rows`.
 pub fn unpack_coarse(packed: &[u8], rows: usize, place: usize) -> Result<Extremes, Broken> {
     let bins = rows.div_ceil(COARSE_ROWS);
     let bytes = packed.get(place * bins * 16..(place + 1) * bins * 16).ok_or(Broken)?;
@@ -49,7 +49,7 @@ pub fn unpack_coarse(packed: &[u8], rows: usize, place: usize) -> Result<Extreme
     Ok(Extremes { min: read(min), max: read(max) })
 }
 
-/// All channels of a block, each packed, with its length before it.
+/// All channels of a block, each packed and preceded by its length.
 pub fn pack_fine(channels: &[Extremes], resolutions: &[Option<f64>]) -> Vec<u8> {
     let columns: Vec<Vec<f64>> = channels.iter().map(|channel| [&channel.min[..], &channel.max].concat()).collect();
     pack_columns(&columns, resolutions)
@@ -63,7 +63,7 @@ pub fn unpack_fine(packed: &[u8], rows: usize, place: usize) -> Result<Extremes,
     Ok(Extremes { min: values, max })
 }
 
-/// Several columns in one piece: each with its length before it.
+/// Several columns in one byte string, each preceded by its length.
 pub fn pack_columns(columns: &[impl AsRef<[f64]>], resolutions: &[Option<f64>]) -> Vec<u8> {
     let mut piece = Vec::new();
     for (column, resolution) in columns.iter().zip(resolutions) {
@@ -74,7 +74,7 @@ pub fn pack_columns(columns: &[impl AsRef<[f64]>], resolutions: &[Option<f64>]) 
     piece
 }
 
-/// Fills `values` with the column at `place` of a piece of [`pack_columns`].
+/// Fills `values` with the column at index `place` of the result of [`pack_columns`].
 pub fn unpack_column(piece: &[u8], place: usize, values: &mut [f64]) -> Result<(), Broken> {
     let mut rest = piece;
     for at in 0.. {

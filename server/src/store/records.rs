@@ -1,4 +1,4 @@
-//! What goes into the store and comes out of it.
+//! Input and output types of the store.
 
 use super::Order;
 use jointbench_instrument::Channel;
@@ -6,11 +6,11 @@ use jointbench_procedure::{RunId, RunState, Safe};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// A run about to begin.
+/// A new run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NewRun {
     pub bench: String,
-    /// The procedure's id; `import` for a run that came as a file.
+    /// The procedure's id; `import` for an imported file.
     pub procedure: String,
     pub kind: String,
     pub simulated: bool,
@@ -31,7 +31,7 @@ pub struct RunRecord {
     pub state: RunState,
     pub safe: Option<Safe>,
     pub reason: Option<String>,
-    /// Moments are RFC 3339 in UTC.
+    /// Times are RFC 3339 in UTC.
     pub created_at: String,
     pub started_at: Option<String>,
     pub finished_at: Option<String>,
@@ -41,21 +41,21 @@ pub struct RunRecord {
     pub parameters: Map<String, Value>,
     pub provenance: Map<String, Value>,
     pub meta: Map<String, Value>,
-    /// Empty before the first row.
+    /// Empty before the first commit with rows.
     pub channels: Vec<Channel>,
     pub tags: Vec<String>,
-    /// The last one.
+    /// The last note.
     pub note: Option<String>,
-    /// What its procedure makes of it, where that was worked out.
+    /// Verdict of the procedure, if it was computed.
     pub verdict: Option<String>,
-    /// Figures of the last version, as the list tells them.
+    /// Values of the last model version, as in the list of runs.
     pub model: Option<Value>,
-    /// What is wrong with it, in a list: the other fields are what can be read.
+    /// Damage of the record, in a list. The other fields hold the readable data.
     pub damaged: Option<String>,
 }
 
 impl RunRecord {
-    /// Of a run that is known to be there, and nothing else.
+    /// For a run of which only the id is readable.
     pub(super) fn unreadable(id: RunId, damaged: String) -> Self {
         RunRecord {
             id,
@@ -89,16 +89,16 @@ impl RunRecord {
 pub struct RunFilter {
     pub limit: u32,
     pub offset: u32,
-    /// In the language of [`super::search`]; upper and lower case are one.
+    /// Query in the language of [`super::search`]; not case-sensitive.
     pub search: Option<String>,
     pub order: Order,
 }
 
-/// What somebody said about a run.
+/// A note on a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoteRecord {
     pub id: i64,
-    /// The moment that it is about, on the run's clock.
+    /// Time on the run's clock.
     pub at_s: Option<f64>,
     pub text: String,
     pub created_at: String,
@@ -107,11 +107,10 @@ pub struct NoteRecord {
 /// One entry of a run's journal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EventRecord {
-    /// From 1, without gaps.
+    /// Starts at 1, without gaps.
     pub sequence: u64,
     pub at_s: f64,
     pub kind: String,
-    /// Fields of the event.
     pub data: Map<String, Value>,
 }
 
@@ -120,19 +119,19 @@ pub struct EventRecord {
 pub struct OwnEffectRecord {
     pub kind: String,
     pub effect: String,
-    /// From 1.
+    /// Starts at 1.
     pub version: i64,
     pub definition: Value,
     pub created_at: String,
 }
 
-/// A fit to be kept as a version.
+/// A fit to be stored as a version.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewModel {
     pub run: RunId,
-    /// Further runs of the same joint that the fit looks at, in order.
+    /// Further runs of the same joint in the fit, in order.
     pub more_runs: Vec<RunId>,
-    /// Stretches that the fit does not look at.
+    /// Sections that are excluded from the fit.
     pub excluded: Value,
     pub parent: Option<i64>,
     pub kind: String,
@@ -144,7 +143,7 @@ pub struct NewModel {
     pub validation_rms: f64,
     pub noise_floor_rms: Option<f64>,
     pub options: Map<String, Value>,
-    /// Made to see what it would do: nobody's model until a person keeps it.
+    /// A trial: it is no version of the run until a person keeps it.
     pub tried: bool,
     pub by: String,
 }
@@ -158,7 +157,7 @@ pub struct ModelRecord {
     pub parent: Option<i64>,
     pub kind: String,
     pub effects: Vec<String>,
-    /// Effects that the parent does not have; all of them where there is none.
+    /// Effects that the parent does not have; all effects without a parent.
     pub added: Vec<String>,
     pub removed: Vec<String>,
     pub fit: Value,
@@ -173,7 +172,7 @@ pub struct ModelRecord {
     pub created_at: String,
 }
 
-/// What was changed in a model version, and by whom.
+/// The change in a model version and its author.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct VersionRecord {
     pub id: i64,
@@ -192,7 +191,7 @@ pub struct DiagnosisRecord {
     pub created_at: String,
 }
 
-/// A chain of runs and models that was asked for at once.
+/// A chain of runs and models from one request.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AutopilotRecord {
     pub id: i64,
@@ -205,20 +204,20 @@ pub struct AutopilotRecord {
     pub finished_at: Option<String>,
 }
 
-/// Why a bench must not move.
+/// Entry of the safety record of a bench.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SafetyRecord {
     pub blocked: bool,
-    /// By the software stop.
+    /// Whether the software stop caused it.
     pub stopped: bool,
     pub reason: String,
     pub run: Option<RunId>,
-    /// `None`: nobody, or nobody knows any more.
+    /// `None`: no person, or unknown.
     pub by: Option<String>,
     pub at: String,
 }
 
-/// Whose result the next runs of a bench use.
+/// Entry of the calibration record of a bench.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CalibrationRecord {
     pub id: i64,
@@ -228,7 +227,7 @@ pub struct CalibrationRecord {
     pub at: String,
 }
 
-/// A token that opens the door; of its secret there is only the hash.
+/// An access token; only the hash of its secret is stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TokenRecord {
     pub id: i64,
@@ -241,19 +240,19 @@ pub struct TokenRecord {
     pub used_at: Option<String>,
 }
 
-/// Samples of a window, drawn at a width.
+/// Samples of a window, reduced to a plot width.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
-    /// The first time of each point.
+    /// Time of the first row of each point.
     pub time_s: Vec<f64>,
     pub columns: Vec<ViewColumn>,
-    /// Every row is a point of its own.
+    /// Whether every row is one point.
     pub exact: bool,
     /// Rows in the window.
     pub rows: u64,
 }
 
-/// Smallest and largest value of each point. NaN only where all its rows are.
+/// Smallest and largest value of each point. NaN only if all its rows are NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ViewColumn {
     pub channel: Channel,
@@ -262,7 +261,7 @@ pub struct ViewColumn {
 }
 
 impl ModelRecord {
-    /// Every run that the fit looked at, its own first.
+    /// All runs of the fit, its own run first.
     pub fn runs(&self) -> Vec<RunId> {
         std::iter::once(self.run).chain(self.more_runs.iter().copied()).collect()
     }

@@ -12,7 +12,7 @@ use serde_json::{Map, Value};
 use sqlx::sqlite::SqliteRow;
 use sqlx::{QueryBuilder, Row, SqliteConnection};
 
-/// Runs as they are told, with their tags, their last note, what came of them and the last version of their model that is not idle and not only tried.
+/// Runs with their tags, last note and verdict, and the last model version that is not idle and not only tried.
 const TOLD: &str = "SELECT runs_told.*, \
     (SELECT json_group_array(tag) FROM (SELECT tag FROM tags WHERE run = runs_told.id ORDER BY tag)) AS tags, \
     (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict, \
@@ -23,12 +23,12 @@ const TOLD: &str = "SELECT runs_told.*, \
         FROM models_told WHERE run = runs_told.id AND NOT idle AND NOT tried AND json_valid(fit) ORDER BY id DESC LIMIT 1) AS model \
     FROM runs_told";
 
-/// Now, as it is written in the store.
+/// The current time in the format of the store.
 pub(super) fn now() -> String {
     format!("{:.3}", Timestamp::now())
 }
 
-/// A word of the store (`"safe_verified"`) as its type.
+/// Parses a word of the store (`"safe_verified"`).
 fn word<T: DeserializeOwned>(text: &str) -> Result<T, StoreError> {
     Ok(serde_json::from_value(Value::from(text))?)
 }
@@ -62,7 +62,7 @@ fn record(row: &SqliteRow, channels: Vec<Channel>) -> Result<RunRecord, StoreErr
     })
 }
 
-/// What can be read of a run that is damaged.
+/// The readable data of a damaged run.
 fn damaged(row: &SqliteRow, fault: StoreError) -> RunRecord {
     let text = |column| row.try_get(column).unwrap_or_default();
     let state = row.try_get::<&str, _>("state").map_err(StoreError::from).and_then(word);
@@ -88,19 +88,19 @@ pub(super) fn json<T: DeserializeOwned>(row: &SqliteRow, column: &str) -> Result
 }
 
 impl Store {
-    /// A run that is queued.
+    /// Creates a queued run.
     pub async fn create_run(&self, new: &NewRun) -> Result<RunId, StoreError> {
         insert_run(&mut *self.writer.acquire().await?, new).await
     }
 
-    /// What the procedure makes of a run that is over, in a word.
+    /// Stores the verdict of the procedure on an ended run.
     pub async fn keep_verdict(&self, run: RunId, verdict: &str) -> Result<(), StoreError> {
         let keep = sqlx::query("INSERT OR REPLACE INTO verdicts (run, verdict) VALUES (?, ?)");
         keep.bind(run).bind(verdict).execute(&self.writer).await?;
         Ok(())
     }
 
-    /// Runs of a bench that are over and of which no verdict is kept, newest first.
+    /// Ended runs without a stored verdict, newest first.
     pub async fn unjudged(&self, limit: u32) -> Result<Vec<RunId>, StoreError> {
         let query = "SELECT id FROM runs_told WHERE finished_at IS NOT NULL AND rows > 0 AND procedure <> 'import' \
             AND id NOT IN (SELECT run FROM verdicts) ORDER BY id DESC LIMIT ?";
@@ -119,8 +119,8 @@ impl Store {
         })
     }
 
-    /// A page of the runs that match, and how many match. The page's runs come without their channels. One that is damaged is
-    /// listed with what can be read of it.
+    /// A page of the matching runs, without their channels, and the number of all matches. A damaged run is listed with
+    /// its readable data.
     pub async fn runs(&self, filter: &RunFilter) -> Result<(u64, Vec<RunRecord>), StoreError> {
         let search = Search::parse(filter.search.as_deref().unwrap_or_default())?;
         match self.page(&search, filter).await {
@@ -142,7 +142,7 @@ impl Store {
         Ok((total as u64, rows.iter().map(listed).collect()))
     }
 
-    /// The same, newest first, where SQLite cannot read through the table: each run by its number.
+    /// The same, newest first, if SQLite cannot scan the table: reads each run by its id.
     pub(super) async fn one_by_one(
         &self,
         search: &Search,
@@ -168,8 +168,8 @@ impl Store {
         Ok((total, runs.into_iter().skip(filter.offset as usize).take(filter.limit as usize).collect()))
     }
 
-    /// Complete runs of the same bench and procedure before this one, newest first. A mock bench and a real one of the same
-    /// name are two. One that has to be `among` them is, however old it is.
+    /// Earlier complete runs of the same bench and procedure, newest first. A mock bench and a real bench of the same
+    /// name are different benches. The limit never removes the run `among`.
     pub async fn earlier(
         &self,
         run: RunId,
@@ -185,13 +185,13 @@ impl Store {
         Ok(found)
     }
 
-    /// The last run that went on with this one.
+    /// The last run that continued this one.
     pub async fn continued_by(&self, run: RunId) -> Result<Option<RunId>, StoreError> {
         let query = "SELECT MAX(id) FROM runs WHERE IIF(json_valid(meta), meta, '{}') ->> '$.continues.run' = ?";
         Ok(sqlx::query_scalar(query).bind(run).fetch_one(&self.readers).await?)
     }
 
-    /// The journal behind `after`, in order. The kind of a damaged entry is `damaged`.
+    /// The events after number `after`, in order. A damaged event has the kind `damaged`.
     pub async fn events(&self, run: RunId, after: u64) -> Result<Vec<EventRecord>, StoreError> {
         let mut reader = self.readers.begin().await?;
         exists(&mut reader, run).await?;
@@ -203,7 +203,7 @@ impl Store {
         Ok(rows.iter().map(|row| event(row).unwrap_or_else(|fault| damaged_event(row, fault))).collect())
     }
 
-    /// Says of a run that is over how it ended, how it was secured, and why, where its own last commit could not say so.
+    /// Stores end state, safe state and reason of a run whose last commit did not contain them.
     pub async fn end_run(
         &self,
         run: RunId,
@@ -232,9 +232,9 @@ impl Store {
         Ok(writer.commit().await?)
     }
 
-    /// Ends the runs that a daemon left open when it died, and returns them. Their committed samples stay readable.
+    /// Interrupts the runs that an earlier daemon left open, and returns them. Their committed samples remain.
     ///
-    /// The bench was not secured by this: do so, then [`Store::end_run`].
+    /// This does not secure the bench: secure it, then call [`Store::end_run`].
     pub async fn interrupt_open_runs(&self) -> Result<Vec<RunRecord>, StoreError> {
         let open: Vec<RunId> = sqlx::query_scalar("SELECT id FROM runs WHERE finished_at IS NULL ORDER BY id")
             .fetch_all(&self.writer)
@@ -260,7 +260,7 @@ impl Store {
         Ok(interrupted)
     }
 
-    /// Interrupts a run without touching its journal and its last rows.
+    /// Interrupts a run without changing its events and its last rows.
     async fn end_damaged(&self, run: RunId) -> Result<(), StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         let end = sqlx::query("UPDATE runs SET state = ?, finished_at = ? WHERE id = ?");
@@ -303,7 +303,7 @@ pub(super) async fn insert_run(writer: &mut SqliteConnection, new: &NewRun) -> R
     Ok(inserted.last_insert_rowid())
 }
 
-/// To be called at the end of each transaction that changes how far a run has come.
+/// Call it at the end of each transaction that changes the state of a run.
 pub(super) async fn seal_state(writer: &mut SqliteConnection, run: RunId) -> Result<(), StoreError> {
     let row = sqlx::query("SELECT id, state, safe, reason, started_at, finished_at, rows FROM runs WHERE id = ?")
         .bind(run)
@@ -314,8 +314,8 @@ pub(super) async fn seal_state(writer: &mut SqliteConnection, run: RunId) -> Res
     Ok(())
 }
 
-/// Appends to the journal; what an event says about safety is taken over into the run and the bench, and why a run ended
-/// into the run: whoever finds it over finds its reason.
+/// Appends events to the journal. Safety events also update the run and the bench, and the run keeps the reason of its
+/// end.
 pub(super) async fn insert_events(
     writer: &mut SqliteConnection,
     run: RunId,
@@ -351,7 +351,7 @@ pub(super) async fn insert_events(
     Ok(())
 }
 
-/// The first reason that is told stays.
+/// Keeps the first reason.
 async fn keep_reason(writer: &mut SqliteConnection, run: RunId, reason: Option<&str>) -> Result<(), StoreError> {
     let update = sqlx::query("UPDATE runs SET reason = COALESCE(reason, ?) WHERE id = ?");
     update.bind(reason).bind(run).execute(writer).await?;

@@ -1,4 +1,4 @@
-//! Which bench must not move until a person has looked at it.
+//! Benches that must not move until a person has checked them.
 
 use super::runs::now;
 use super::seal::BENCH_SAFETY;
@@ -8,9 +8,9 @@ use sqlx::sqlite::SqliteRow;
 use sqlx::{Row, SqliteConnection};
 
 impl Store {
-    /// Why the bench must not move, or `None`.
+    /// The reason why the bench must not move, or `None`.
     ///
-    /// Where the newest entry is damaged nobody knows whether it was a release: a block is entered behind it.
+    /// If the newest entry is damaged, a release cannot be confirmed: the bench is blocked again.
     pub async fn bench_block(&self, bench: &str) -> Result<Option<SafetyRecord>, StoreError> {
         let newest = match self.newest_entry(bench).await {
             Err(StoreError::Damaged(what)) => {
@@ -29,7 +29,7 @@ impl Store {
         row.as_ref().map(record).transpose()
     }
 
-    /// The newest entries of a bench, newest first. A damaged one is told as a block, with what is wrong with it for its reason.
+    /// The newest entries of a bench, newest first. A damaged entry is shown as a block with the error as its reason.
     pub async fn safety(&self, bench: &str, limit: u32) -> Result<Vec<SafetyRecord>, StoreError> {
         let query = "SELECT * FROM bench_safety WHERE bench = ? ORDER BY id DESC LIMIT ?";
         let rows = sqlx::query(query).bind(bench).bind(limit).fetch_all(&self.readers).await?;
@@ -44,7 +44,7 @@ impl Store {
         Ok(rows.iter().map(|row| record(row).unwrap_or_else(|fault| damaged(row, fault))).collect())
     }
 
-    /// Enters a block that began a while ago; one that is there already is left alone.
+    /// Stores a block with its original time. Skips a block that is already stored.
     pub async fn keep_block(&self, bench: &str, block: &SafetyRecord) -> Result<(), StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         let there: bool = sqlx::query_scalar(
@@ -61,7 +61,7 @@ impl Store {
         Ok(writer.commit().await?)
     }
 
-    /// Blocks every bench that the store knows, where a stop may be lost.
+    /// Blocks every known bench, because a stop may be lost.
     pub async fn block_benches(&self, reason: &str) -> Result<(), StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         block_all(&mut writer, reason).await?;
@@ -72,8 +72,8 @@ impl Store {
         enter(&mut *self.writer.acquire().await?, bench, Word::Block, run, reason, None).await
     }
 
-    /// A person has looked at the block that began at this moment; `reason` is what they say about it. `false`, and nothing
-    /// is lifted, where the stop was pressed again since.
+    /// Releases the block that began at `since`; `reason` is the statement of the person. Returns `false` and releases
+    /// nothing if the stop was pressed again since.
     pub async fn acknowledge_bench(
         &self,
         bench: &str,
@@ -161,12 +161,12 @@ async fn insert(writer: &mut SqliteConnection, bench: &str, record: &SafetyRecor
     Ok(())
 }
 
-/// Blocks a bench for a reason of the store's own.
+/// Blocks a bench for an internal reason of the store.
 pub(super) async fn block(writer: &mut SqliteConnection, bench: &str, reason: &str) -> Result<(), StoreError> {
     enter(writer, bench, Word::Block, None, reason, None).await
 }
 
-/// The same for every bench that the store knows.
+/// The same for every known bench.
 pub(super) async fn block_all(writer: &mut SqliteConnection, reason: &str) -> Result<(), StoreError> {
     let benches: Vec<String> =
         sqlx::query_scalar("SELECT bench FROM bench_safety UNION SELECT bench FROM runs WHERE procedure <> 'import'")
@@ -178,7 +178,7 @@ pub(super) async fn block_all(writer: &mut SqliteConnection, reason: &str) -> Re
     Ok(())
 }
 
-/// Keeps what securing has reached with the run, and blocks the bench where that is not known to be safe.
+/// Stores the safe state of the run, and blocks the bench unless it is known to be safe.
 pub(super) async fn keep_safe(writer: &mut SqliteConnection, run: RunId, safe: Safe) -> Result<(), StoreError> {
     let word = serde_json::to_value(safe)?;
     let bench: String = sqlx::query_scalar("UPDATE runs SET safe = ? WHERE id = ? RETURNING bench")

@@ -1,4 +1,4 @@
-//! Samples out, exactly as they went in.
+//! Reads samples, bit by bit as they were stored.
 
 use super::codec::{self, Broken};
 use super::pyramid;
@@ -13,8 +13,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 impl Store {
-    /// Rows of a run, from 0; the range may reach beyond its end. All channels where `names` is `None`, else those
-    /// named, in that order.
+    /// Rows of a run, counted from 0; the range may exceed the run. `names` selects channels and their order; `None`
+    /// selects all.
     pub async fn trace(&self, run: RunId, names: Option<&[String]>, rows: Range<u64>) -> Result<Trace, StoreError> {
         let mut reader = self.readers.begin().await?;
         let chosen = choose(&mut reader, run, names).await?;
@@ -23,7 +23,7 @@ impl Store {
     }
 }
 
-/// A channel with its place in the run.
+/// A channel with its index in the run.
 pub(super) type Chosen = (usize, Channel);
 
 pub(super) async fn choose(
@@ -51,7 +51,7 @@ pub(super) async fn read(
     let tail = Arc::new(tail(reader, run, rows.clone()).await?);
     let threads = std::thread::available_parallelism().map_or(1, usize::from).div_ceil(chosen.len().max(1));
     let mut columns = Vec::new();
-    // While one channel is unpacked on a blocking thread, the next is read.
+    // While one channel is unpacked on a blocking thread, the next one is read.
     for (place, _) in &chosen {
         let (place, rows, tail) = (*place, rows.clone(), tail.clone());
         let blocks = blocks(reader, run, place, &rows).await?;
@@ -86,12 +86,12 @@ async fn blocks(
     rows.await.map_err(|fault| StoreError::from(fault).within(run, "blocks"))
 }
 
-/// One channel's packed rows, in a block of its own or among the other channels of a commit.
+/// Packed rows of one channel, either a block or part of a commit with several channels.
 struct Piece<'a> {
     first_row: i64,
     rows: i64,
     data: &'a [u8],
-    /// Among the columns of `data`, where it holds several.
+    /// Index among the columns of `data`, if it holds several.
     place: Option<usize>,
 }
 
@@ -106,7 +106,7 @@ impl<'a> Piece<'a> {
         Piece { first_row: tail.first_row, rows: tail.rows, data: &tail.data, place: Some(place) }
     }
 
-    /// The rows of the piece that lie in the range, counted in the piece.
+    /// The rows of the piece in the range, relative to the start of the piece.
     fn within(&self, rows: &Range<i64>) -> Range<usize> {
         let in_piece = |row: i64| row.saturating_sub(self.first_row).clamp(0, self.rows) as usize;
         in_piece(rows.start)..in_piece(rows.end).max(in_piece(rows.start))
@@ -137,7 +137,7 @@ fn unpack(pieces: &[Piece<'_>], rows: &Range<i64>, threads: usize) -> Result<Vec
             rest = behind;
             shares.push((share, here));
         }
-        // The last share is this thread's own: with one thread, none is started.
+        // This thread unpacks the last share itself; with one share no thread is started.
         let own = shares.pop();
         let started: Vec<_> =
             shares.into_iter().map(|(share, values)| scope.spawn(move || unpack_share(share, rows, values))).collect();
@@ -158,17 +158,17 @@ fn unpack_share(share: &[Piece<'_>], rows: &Range<i64>, mut values: &mut [f64]) 
     Ok(())
 }
 
-/// The rows of one commit, all channels, before they are part of a block.
+/// The rows of one commit, all channels, before they become part of a block.
 #[derive(Debug)]
 pub(super) struct TailPiece {
     pub first_row: i64,
     pub rows: i64,
-    /// The time of its last row.
+    /// Time of the last row.
     pub to_s: Option<f64>,
     pub data: Vec<u8>,
 }
 
-/// The pieces of the tail that share a row with the range, in order.
+/// The pieces of the tail that overlap the range, in order.
 pub(super) async fn tail(
     reader: &mut SqliteConnection,
     run: RunId,

@@ -1,21 +1,23 @@
-//! Checksums of what is stored: CRC-32 over the columns of a row, written with it and compared at each read.
+//! Checksums of stored rows: a CRC-32 over the columns, written with the row and compared at each read.
 //!
-//! CRC-32 (ISO-HDLC, as in zlib and gzip) finds every error burst of up to 32 bits and every odd number of flipped bits in a
-//! block; of other damage it misses one case in 4·10⁹. Any tool can compute it again, and the crate was in the build already.
+//! CRC-32 (ISO-HDLC, as in zlib and gzip) detects every error burst of up to 32 bits and every odd number of flipped
+//! bits. It misses other damage in one of 4·10⁹ cases. Standard tools can compute it, and the build already contains
+//! the crate.
 //!
-//! Covered bytes: the name of the table, then each column in the order of [`Sealed::columns`] as one tag byte and its value:
-//! `0` NULL; `1` integer, `2` real, 8 bytes little endian; `3` text, `4` blob, with an 8-byte length before the bytes.
+//! Covered bytes: the name of the table, then each column in the order of [`Sealed::columns`]. A column is one tag byte
+//! and its value: `0` NULL; `1` integer, `2` real, 8 bytes little endian; `3` text, `4` blob, each with an 8-byte
+//! length first.
 
 use super::StoreError;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{Decode, Row, Sqlite, TypeInfo, ValueRef};
 
-/// Which columns of a table a checksum covers, and the columns that name a row to a person.
+/// The columns that a checksum covers, and the columns that identify a row in messages.
 #[derive(Debug)]
 pub struct Sealed {
     pub table: &'static str,
     pub columns: &'static [&'static str],
-    /// The column of the checksum.
+    /// Column of the checksum.
     pub checksum: &'static str,
     pub names: &'static [&'static str],
 }
@@ -24,13 +26,13 @@ const fn sealed(table: &'static str, columns: &'static [&'static str], names: &'
     Sealed { table, columns, checksum: "checksum", names }
 }
 
-/// What a run was started with.
+/// The constant data of a run.
 pub const RUNS: Sealed = sealed(
     "runs",
     &["bench", "procedure", "kind", "simulated", "created_at", "parameters", "provenance", "meta"],
     &["id"],
 );
-/// How far a run has come.
+/// The progress of a run.
 pub const RUN_STATES: Sealed = Sealed {
     checksum: "state_checksum",
     ..sealed("runs", &["id", "state", "safe", "reason", "started_at", "finished_at", "rows"], &["id"])
@@ -88,7 +90,7 @@ pub const AUTOPILOT_STEPS: Sealed =
     sealed("autopilot_steps", &["autopilot", "sequence", "step"], &["autopilot", "sequence"]);
 pub const KEPT: Sealed = sealed("kept", &["subject", "id", "what", "software", "packed"], &["subject", "id", "what"]);
 
-/// Every checksum that [`super::verify`] compares. What is only kept because it takes long is worked out anew instead.
+/// Every checksum that [`super::verify`] compares. The cache (`kept`) is excluded: its results are computed again.
 pub const ALL: [&Sealed; 17] = [
     &RUNS,
     &RUN_STATES,
@@ -109,7 +111,6 @@ pub const ALL: [&Sealed; 17] = [
     &AUTOPILOT_STEPS,
 ];
 
-/// A value as SQLite stores it.
 #[derive(Debug, Clone, Copy)]
 pub enum Cell<'a> {
     Null,
@@ -120,7 +121,7 @@ pub enum Cell<'a> {
 }
 
 impl Sealed {
-    /// The checksum of these values, given in the order of [`Self::columns`].
+    /// Checksum of the values, in the order of [`Self::columns`].
     pub fn seal(&self, cells: &[Cell<'_>]) -> i64 {
         debug_assert_eq!(cells.len(), self.columns.len(), "{}", self.table);
         let mut hasher = crc32fast::Hasher::new();
@@ -146,13 +147,13 @@ impl Sealed {
         i64::from(hasher.finalize())
     }
 
-    /// The checksum that a row should have.
+    /// The expected checksum of a row.
     pub fn of_row(&self, row: &SqliteRow) -> Result<i64, StoreError> {
         let cells = self.columns.iter().map(|column| cell(row, column)).collect::<Result<Vec<_>, _>>();
         Ok(self.seal(&cells.map_err(|fault| self.damaged(row, &fault.to_string()))?))
     }
 
-    /// Compares a row with its checksum; `false` where it has none, as rows of an older release.
+    /// Compares a row with its checksum; `false` if it has none (rows of an older release).
     ///
     /// # Errors
     /// [`StoreError::Damaged`] names run, table and row.
@@ -161,7 +162,7 @@ impl Sealed {
         if kept == self.of_row(row)? { Ok(true) } else { Err(self.damaged(row, "its checksum differs")) }
     }
 
-    /// That something is wrong with a row.
+    /// The error of a damaged row.
     pub fn damaged(&self, row: &SqliteRow, what: &str) -> StoreError {
         let name = |column: &&str| {
             let value = match cell(row, column) {
@@ -176,7 +177,7 @@ impl Sealed {
     }
 }
 
-/// Those rows that can be read: one that is damaged does not hide the others.
+/// The readable rows: a damaged row does not hide the others.
 pub fn whole<T>(rows: &[SqliteRow], record: impl Fn(&SqliteRow) -> Result<T, StoreError>) -> Vec<T> {
     let told = |row| record(row).inspect_err(|fault| tracing::error!(%fault, "a record is left out of a list")).ok();
     rows.iter().filter_map(told).collect()

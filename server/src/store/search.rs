@@ -1,8 +1,8 @@
 //! The query language of the list of runs.
 //!
-//! Terms with blanks between, all of which must hold: a word is looked for in bench, procedure, kind, state, reason, tags and
-//! notes; `key:value` in one field, whose beginning is enough where no run has just that; `rows>1000` and `duration>2min`
-//! compare; `-` before a term means that it must not hold; `"two words"` are one.
+//! Terms are separated by blanks, and all must match. A word matches in bench, procedure, kind, state, reason, tags and
+//! notes. `key:value` matches one field; a prefix is enough if no run has the exact value. `rows>1000` and
+//! `duration>2min` compare. `-` before a term negates it; `"two words"` are one term.
 
 use super::StoreError;
 use jointbench_instrument::Kind;
@@ -10,14 +10,14 @@ use jointbench_procedure::{RunState, Safe};
 use serde::de::{DeserializeOwned, IntoDeserializer, value};
 use sqlx::{QueryBuilder, Sqlite};
 
-/// Words of which the beginning is enough, with the column that they are in.
+/// Fields with their column; a prefix of the value is enough.
 const FIELDS: [(&str, &str); 5] =
     [("bench", "bench"), ("procedure", "procedure"), ("kind", "kind"), ("state", "state"), ("safe", "safe")];
-/// Numbers, with their column.
+/// Numeric fields with their column.
 const NUMBERS: [(&str, &str); 3] = [("id", "id"), ("rows", "rows"), ("duration", "duration_s")];
 const KEYS: &str =
     "bench: procedure: kind: state: safe: tag: note: simulated:yes after:2026-01-31 before: id> rows> duration>2min";
-/// How a duration may be written, in seconds; without one it is seconds.
+/// Units of a duration in seconds; the default is seconds.
 const DURATIONS: [(&str, f64); 4] = [("min", 60.0), ("h", 3600.0), ("m", 60.0), ("s", 1.0)];
 
 #[derive(Debug, Clone, PartialEq)]
@@ -27,12 +27,12 @@ enum Condition {
     Tag(String),
     Note(String),
     Simulated(bool),
-    /// A column, an operator of SQL, and what it is compared with.
+    /// Column, SQL operator and value.
     Number(&'static str, &'static str, f64),
     Day(&'static str, String),
 }
 
-/// What a search asks for: each condition, and whether it must not hold.
+/// Conditions of a search, each with a negation flag.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Search(Vec<(bool, Condition)>);
 
@@ -41,7 +41,7 @@ impl Search {
         Ok(Self(terms(text).iter().map(|term| read(term)).collect::<Result<_, _>>()?))
     }
 
-    /// The part of a search that is understood, and why the first of the other terms is not.
+    /// The valid part of a search, and the error of the first invalid term.
     pub fn understood(text: &str) -> (String, Option<StoreError>) {
         let (mut kept, mut refused) = (Vec::new(), None);
         for term in terms(text) {
@@ -53,7 +53,7 @@ impl Search {
         (kept.join(" "), refused)
     }
 
-    /// A search without its last word, where that word may become a key, and what the word may become.
+    /// A search without its last word if that word is the beginning of a key, and a message with the keys.
     pub fn before_key(text: &str) -> Option<(String, StoreError)> {
         let mut terms = terms(text);
         let term = terms.pop()?;
@@ -107,7 +107,7 @@ impl Condition {
             Condition::Number(column, operator, value) => {
                 query.push(*column).push(*operator).push_bind(*value);
             }
-            // Moments are written so that their order is that of their text.
+            // The text order of stored times is their time order.
             Condition::Day(operator, day) => {
                 query.push("created_at").push(*operator).push_bind(day.clone());
             }
@@ -120,7 +120,7 @@ fn push_note(query: &mut QueryBuilder<Sqlite>, word: &str) {
     query.push_bind(word.to_owned()).push(") > 0)");
 }
 
-/// A condition, and whether it must not hold.
+/// A condition with its negation flag.
 fn read(term: &str) -> Result<(bool, Condition), StoreError> {
     let (without, rest) = match term.strip_prefix('-') {
         Some(rest) if !rest.is_empty() => (true, rest),
@@ -149,7 +149,7 @@ fn condition(term: &str) -> Result<Condition, StoreError> {
     }
     let Some((key, value)) = term.split_once(':') else { return Ok(Condition::Word(term.to_owned())) };
     if let Some((_, column)) = FIELDS.iter().find(|(name, _)| *name == key) {
-        // As the pages call it.
+        // The dashboard uses `done` for this state.
         let value = if (key, value) == ("state", "done") { "completed" } else { value };
         match key {
             "kind" => known::<Kind>(value),
@@ -175,14 +175,14 @@ fn condition(term: &str) -> Result<Condition, StoreError> {
     }
 }
 
-/// Whether a word of a type begins like that; the fault names them all.
+/// Checks that a variant of the type begins with `word`; the error lists all variants.
 fn known<T: DeserializeOwned>(word: &str) -> Result<(), value::Error> {
     let Err(fault): Result<T, value::Error> = T::deserialize(word.into_deserializer()) else { return Ok(()) };
     let begins = fault.to_string().split_once("expected").is_some_and(|(_, all)| all.contains(&format!("`{word}")));
     if begins { Ok(()) } else { Err(fault) }
 }
 
-/// Split at blanks outside quotation marks, in lower case.
+/// Splits at blanks outside quotation marks, in lower case.
 fn terms(text: &str) -> Vec<String> {
     let (mut terms, mut term, mut quoted) = (Vec::new(), String::new(), false);
     for c in text.to_lowercase().chars() {

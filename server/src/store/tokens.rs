@@ -1,4 +1,4 @@
-//! Tokens that were made while the daemon ran. Of their secrets only hashes come here.
+//! Tokens that were created while the daemon ran. The store receives only hashes of their secrets.
 
 use super::runs::now;
 use super::seal::whole;
@@ -19,21 +19,21 @@ fn record(row: &SqliteRow) -> Result<TokenRecord, StoreError> {
 }
 
 impl Store {
-    /// Those that open something, oldest first. A damaged one opens nothing, and the log names it.
+    /// Valid tokens, oldest first. A damaged one gives no access and is logged.
     pub async fn tokens(&self) -> Result<Vec<TokenRecord>, StoreError> {
         let rows =
             sqlx::query("SELECT * FROM tokens WHERE revoked_at IS NULL ORDER BY id").fetch_all(&self.readers).await?;
         Ok(whole(&rows, record))
     }
 
-    /// Those that were made and revoked: when, what and by whom.
+    /// Created and revoked tokens: time, text and person.
     pub async fn told_of_tokens(&self) -> Result<Vec<(String, String, String)>, StoreError> {
         let query = "SELECT made_at, 'token ' || name || ' made', made_by FROM tokens \
             UNION ALL SELECT revoked_at, 'token ' || name || ' revoked', revoked_by FROM tokens WHERE revoked_at IS NOT NULL";
         Ok(sqlx::query_as(query).fetch_all(&self.readers).await?)
     }
 
-    /// In a transaction: the row comes before the commit, which may fail.
+    /// Uses a transaction: the row is returned before the commit, which may fail.
     pub async fn save_token(&self, name: &str, access: &str, hash: &[u8], by: &str) -> Result<TokenRecord, StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         let saved =

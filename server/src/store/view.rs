@@ -1,4 +1,4 @@
-//! A window of a run at the width of a picture: no more points than pixels, and never a hidden spike.
+//! A window of a run reduced to a plot width: no more points than pixels, and no hidden spikes.
 
 use super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
 use super::samples::{Chosen, choose, read, tail};
@@ -9,7 +9,7 @@ use sqlx::sqlite::SqliteRow;
 use sqlx::{Row, SqliteConnection};
 use std::ops::Range;
 
-/// Smallest and largest values of bins in a row.
+/// Smallest and largest values of consecutive bins.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Extremes {
     pub min: Vec<f64>,
@@ -17,7 +17,7 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// An empty bin, or one of NaN alone, comes as (∞, −∞) and is kept as NaN.
+    /// A bin that is empty or contains only NaN arrives as (∞, −∞) and is stored as NaN.
     pub fn push(&mut self, min: f64, max: f64) {
         let empty = min > max;
         self.min.push(if empty { f64::NAN } else { min });
@@ -26,10 +26,10 @@ impl Extremes {
 }
 
 impl Store {
-    /// Samples from `from_s` to `to_s`, both included, as at most `px` points with the smallest and largest value of each
-    /// channel. Where no more than `px` rows are in the window, the points are the rows.
+    /// Samples from `from_s` to `to_s`, both included, as at most `px` points with the smallest and largest value of
+    /// each channel. If the window has at most `px` rows, each row is a point.
     ///
-    /// Points are cut at bins of the [`pyramid`]: a point may hold rows of its neighbour, less than half a pixel.
+    /// Points end at bins of the [`pyramid`]: a point may contain rows of its neighbour, less than half a pixel.
     pub async fn view(
         &self,
         run: RunId,
@@ -44,7 +44,7 @@ impl Store {
             return Ok(View { time_s: Vec::new(), columns: Vec::new(), exact: true, rows: 0 });
         };
         let rows = window(&mut reader, run, &time, from_s, to_s).await?;
-        // The time goes first whatever was asked for: its smallest value is the point's place.
+        // The time is always the first column: its smallest value is the position of the point.
         chosen.insert(0, time);
         let count = (rows.end - rows.start).max(0) as usize;
         let exact = count <= px;
@@ -60,7 +60,7 @@ impl Store {
 }
 
 impl Store {
-    /// The rows of a run from `from_s` to `to_s`, both included; from its first, or to its last, where left out.
+    /// The rows of a run from `from_s` to `to_s`, both included. The defaults are its first and last row.
     pub async fn rows_between(
         &self,
         run: RunId,
@@ -87,7 +87,6 @@ async fn exactly(
         .collect())
 }
 
-/// The rows whose time lies in the window.
 async fn window(
     reader: &mut SqliteConnection,
     run: RunId,
@@ -106,7 +105,7 @@ async fn window(
     Ok(range)
 }
 
-/// The first row that is not `before`, found by the times of the pieces and then inside of one.
+/// The first row that is not `before`: first finds the piece by its times, then the row in it.
 async fn row_at(
     reader: &mut SqliteConnection,
     run: RunId,
@@ -127,19 +126,19 @@ async fn row_at(
     Ok(first + piece.columns()[0].partition_point(|time_s| before(*time_s)) as i64)
 }
 
-/// First row, rows, and time of the last row.
+/// First row, number of rows, and time of the last row.
 fn ends(span: &SqliteRow) -> Result<(i64, i64, Option<f64>), StoreError> {
     SPANS.check(span)?;
     Ok((span.try_get("first_row")?, span.try_get("rows")?, span.try_get("to_s")?))
 }
 
-/// The points of one channel while they are gathered.
+/// The points of one channel during accumulation.
 struct Points {
     min: Vec<f64>,
     max: Vec<f64>,
 }
 
-/// Which point a row belongs to.
+/// Maps rows to points.
 #[derive(Clone, Copy)]
 struct Grid {
     start: i64,
@@ -167,7 +166,7 @@ impl Points {
     }
 
     fn take(&mut self, point: usize, min: f64, max: f64) {
-        // A comparison with NaN is false: NaN is passed over.
+        // A comparison with NaN is false, so NaN is ignored.
         if min < self.min[point] {
             self.min[point] = min;
         }
@@ -176,7 +175,7 @@ impl Points {
         }
     }
 
-    /// Bins that start at `first_row`, each of `width` rows.
+    /// Adds bins from `first_row` on, each of `width` rows.
     fn take_bins(&mut self, grid: Grid, first_row: i64, width: usize, smallest: &[f64], largest: &[f64]) {
         let mut row = first_row;
         let mut point = grid.point(row);
@@ -221,7 +220,7 @@ async fn from_samples(
     Ok(finish(chosen, points))
 }
 
-/// A picture of many pixels is made of millions of rows: never all of them at once.
+/// A wide plot reads millions of rows: limits the rows in memory.
 const ROWS_AT_ONCE: usize = 1 << 16;
 const SPANS_AT_ONCE: i64 = 64;
 
@@ -253,7 +252,7 @@ async fn from_pyramid(
 ) -> Result<Vec<ViewColumn>, StoreError> {
     let grid = Grid::of(&rows, px);
     let mut points: Vec<Points> = chosen.iter().map(|_| Points::new(px)).collect();
-    // What lies before and behind the whole blocks: cut blocks and the tail, sample by sample.
+    // The rows before and after the whole blocks: partial blocks and the tail, sample by sample.
     let mut inner = rows.start..rows.start;
     loop {
         let from = if inner.is_empty() { rows.start } else { inner.end };
@@ -276,7 +275,7 @@ async fn from_pyramid(
     Ok(finish(chosen, points))
 }
 
-/// First row, rows and packed bins of the next whole blocks in a range.
+/// First row, number of rows and packed bins of the next whole blocks in a range.
 async fn spans(
     reader: &mut SqliteConnection,
     run: RunId,

@@ -1,4 +1,4 @@
-//! What to measure next, made with one call, and the autopilot.
+//! Recommended next runs, executed with one request, and autopilots.
 
 use crate::daemon::{BENCH, TestDaemon, settings};
 use crate::import::upload;
@@ -12,7 +12,7 @@ use std::thread::JoinHandle;
 use tokio::runtime::Runtime;
 use tungstenite::Message;
 
-/// Without load nothing shows what load does.
+/// A run without load cannot show load effects.
 fn no_load() -> Value {
     json!({"load_levels": 1, "repeats": 2, "fast_speeds": 4, "dwell_s": 0.6, "warm_up_s": 1.0, "top_speed_rad_s": 120.0})
 }
@@ -34,7 +34,7 @@ fn wait(daemon: &TestDaemon, id: i64) -> Value {
     daemon.wait_for(&format!("/api/v1/autopilots/{id}"), |a| a["state"] != "running")
 }
 
-/// Steps of an autopilot that the live stream tells until it says how it ended.
+/// Counts the autopilot steps in the live stream until the autopilot ends.
 fn listen(daemon: &TestDaemon) -> JoinHandle<usize> {
     let (mut socket, _) = tungstenite::connect(format!("ws://{}/api/v1/events", daemon.address())).unwrap();
     std::thread::spawn(move || {

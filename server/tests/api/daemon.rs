@@ -1,4 +1,4 @@
-//! A daemon for one test, on a free port and a folder of its own, and a client for it.
+//! A daemon for one test, with a free port and a temporary folder, and a client for it.
 
 use jointbench::config::BenchDescription;
 use jointbench::daemon::{Daemon, DaemonSettings, Network};
@@ -121,7 +121,7 @@ impl TestDaemon {
         request.send(body).unwrap()
     }
 
-    /// Waits until the run is over and how the bench was secured is known.
+    /// Waits until the run has ended and its safe state is known.
     pub fn wait_for_end(&self, run: i64) -> Value {
         self.wait_for(&format!("/api/v1/runs/{run}"), |run| !run["safe"].is_null())
     }

@@ -1,4 +1,4 @@
-//! How far runs are from each other.
+//! Differences between runs.
 
 use crate::daemon::TestDaemon;
 use crate::import::upload;
@@ -6,10 +6,10 @@ use serde_json::Value;
 use std::f64::consts::TAU;
 
 const META: &str = r#"{"kind": "friction", "torque_constant_nm_per_a": 0.04}"#;
-/// More current in the second run, forwards only.
+/// Additional current in the second run, only forwards.
 const MORE_A: f64 = 0.05;
 
-/// Slow strokes to and fro, each with an error of its own and quicker noise.
+/// Slow strokes in both directions, each with its own error, and faster noise.
 fn strokes(more_a: f64, mut seed: u64) -> String {
     let mut noise = move || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -34,7 +34,7 @@ fn numbers(list: &Value) -> Vec<f64> {
     list.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
 }
 
-/// Mean of a series, and the share of its bands that hold `truth`.
+/// Mean of a series, and the share of its bands that contain `truth`.
 fn held(series: &Value, truth: f64) -> (f64, f64) {
     let y = numbers(&series["y"]);
     let bands: Vec<Vec<f64>> = series["band"].as_array().unwrap().iter().map(numbers).collect();
@@ -61,15 +61,15 @@ fn a_difference_is_told_with_two_standard_errors() {
         let (mean, inside) = held(series, truth);
         assert!((mean - truth).abs() < 0.01 && inside > 0.8, "{way}: {mean}, {inside}");
     }
-    // By velocity the direction is in the axis.
+    // The sign of the velocity contains the direction.
     let (_, figures) = ask("&by=motor_velocity_rad_s");
     assert_eq!(figures[1]["series"].as_array().unwrap().len(), 1);
-    // Over time each place is seen once: what scatters within it is the noise.
+    // Over time, each place occurs once: the noise is the scatter within it.
     let (_, figures) = ask("");
     assert_eq!((figures.as_array().unwrap().len(), &figures[0]["name"]), (1, &"difference".into()));
     let mean = held(&figures[0]["series"][0], 0.0).0;
     assert!((mean - MORE_A / 2.0).abs() < 0.01, "{mean}");
-    // A short run has its own stretch of the time, and takes nothing from the other.
+    // A short run has its own time range and does not limit the other run.
     let short = add(strokes(0.0, 3).lines().take(1001).map(|line| format!("{line}\n")).collect());
     let (_, both) = ask(&format!(",{short}"));
     assert_eq!(both[0]["series"][0], figures[0]["series"][0]);
@@ -85,7 +85,7 @@ fn a_difference_is_told_with_two_standard_errors() {
     assert!(status == 400 && problem["detail"].as_str().unwrap().contains("others = x"), "{problem}");
 }
 
-/// The same under four loads, each of which takes much more current than the runs are from each other.
+/// The same under four loads. The current differs much more between loads than between runs.
 fn loaded(more_a: f64, seed: u64) -> String {
     let mut table = String::new();
     for (i, line) in strokes(more_a, seed).lines().enumerate() {

@@ -1,4 +1,4 @@
-//! A full disk under a run: a bad day of the mock bench by name, with SQLite's own refusal.
+//! A full disk during a run: simulated by the mock bench, with SQLite's own refusal.
 
 use crate::daemon::{BENCH, TestDaemon};
 use jointbench::config::BenchDescription;
@@ -6,12 +6,12 @@ use jointbench_devices::sim::{MockInstrument, PlannedTrouble, Trouble};
 use jointbench_devices::{Joint, MockSettings};
 use serde_json::Value;
 
-/// Of a minute.
+/// Takes a minute.
 const RUN: &str = r#"{"bench": "joint-a-mock", "procedure": "friction", "parameters":
     {"repeats": 2, "load_levels": 1, "dwell_s": 0.5, "warm_up_s": 1.0, "top_speed_rad_s": 60.0}}"#;
-/// In the middle of the strokes.
+/// During the strokes.
 const FULL_S: f64 = 30.0;
-/// Long after the run is over.
+/// After the end of the run.
 const HEALED_S: f64 = 42.0;
 
 #[test]

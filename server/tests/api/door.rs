@@ -1,4 +1,4 @@
-//! Who may come in.
+//! Access with tokens.
 
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon, refused, settings};
 use jointbench::listener::TlsFiles;

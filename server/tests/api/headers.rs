@@ -1,4 +1,4 @@
-//! What every answer says to a browser.
+//! Security headers of every answer.
 
 use crate::daemon::TestDaemon;
 

@@ -1,4 +1,4 @@
-//! Files in and out over HTTP.
+//! Import and export of files over HTTP.
 
 use crate::daemon::TestDaemon;
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! Computations in processes of their own: their limits, and who waits for them.
+//! Computations in separate processes: limits, and clients that disconnect.
 
 use crate::daemon::TestDaemon;
 use crate::import::upload;
@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 const META: &str = r#"{"kind": "friction", "torque_constant_nm_per_a": 0.04}"#;
-/// A fit to them takes much longer than a request that is only asked and given up.
+/// A fit to these rows takes much longer than an abandoned request.
 const MANY: usize = 120_000;
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Strokes to and fro at many speeds.
+/// Strokes in both directions at many speeds.
 fn table(rows: usize) -> String {
     let mut table = "time_s,motor_position_rad,motor_velocity_rad_s,motor_current_a\n".to_owned();
     for row in 0..rows {
@@ -35,7 +35,7 @@ fn model(run: i64) -> String {
     json!({"run": run, "effects": ["coulomb", "viscous"]}).to_string()
 }
 
-/// Asks for a fit and leaves.
+/// Requests a fit and disconnects.
 fn ask_and_leave(daemon: &TestDaemon, query: &str, run: i64) {
     let config = ureq::Agent::config_builder().timeout_global(Some(Duration::from_millis(300)));
     let agent = ureq::Agent::new_with_config(config.build());
@@ -44,7 +44,7 @@ fn ask_and_leave(daemon: &TestDaemon, query: &str, run: i64) {
     assert!(left.is_err(), "the fit was done before its client has left: make the run longer");
 }
 
-/// Processes that compute with the data of this daemon.
+/// Number of processes that compute with the data of this daemon.
 #[cfg(target_os = "linux")]
 fn computing(data: &Path) -> usize {
     let processes = std::fs::read_dir("/proc").unwrap().flatten().map(|process| process.path());

@@ -1,4 +1,4 @@
-//! What one client may take, and what is left for the others.
+//! Limits of one client, and service for the others.
 
 use crate::daemon::{BENCH, TestDaemon};
 use jointbench::listener::Limits;
@@ -20,7 +20,7 @@ fn begin(daemon: &TestDaemon, bytes: &str) -> TcpStream {
     wire
 }
 
-/// What comes until the daemon hangs up.
+/// Reads until the daemon closes the connection.
 fn rest(mut wire: TcpStream) -> String {
     let (mut bytes, mut piece) = (Vec::new(), [0; 65_536]);
     loop {
@@ -39,14 +39,14 @@ fn vital(daemon: &TestDaemon) {
     assert_eq!(status(daemon, &format!("POST {STOP}")), "200");
 }
 
-/// Over a connection of its own: one that waited between two requests may have been closed in favour of others.
+/// Uses a new connection: an idle one may have been closed in favour of others.
 fn status(daemon: &TestDaemon, asked: &str) -> String {
     let request = format!("{asked} HTTP/1.1\r\nhost: 127.0.0.1\r\nconnection: close\r\ncontent-length: 0\r\n\r\n");
     let answer = rest(begin(daemon, &request));
     answer.split(' ').nth(1).unwrap_or("nothing").to_owned()
 }
 
-/// A request that is never whole.
+/// An incomplete request.
 const HALF_HEAD: &str = "GET /api/v1/runs HTTP/1.1\r\nhost: 127.0.0.1\r\nx-slow: ";
 const HALF_BODY: &str =
     "POST /api/v1/runs HTTP/1.1\r\nhost: 127.0.0.1\r\ncontent-type: application/json\r\ncontent-length: 90\r\n\r\n{";
@@ -55,7 +55,7 @@ const HALF_BODY: &str =
 fn clients_that_stall_keep_nobody_out() {
     let daemon = TestDaemon::start();
     let most = Limits::default().connections;
-    // More than there are seats, of every kind: silent, in the head, in the body.
+    // More connections than seats, of every kind: silent, in the head, in the body.
     for stalled in ["", HALF_HEAD, HALF_BODY] {
         let _stalled: Vec<TcpStream> = (0..most + 20).map(|_| begin(&daemon, stalled)).collect();
         vital(&daemon);
@@ -75,7 +75,7 @@ fn a_client_that_is_too_slow_is_cut_off() {
     let refused = rest(begin(&daemon, HALF_BODY));
     assert!(refused.starts_with("HTTP/1.1 400"), "{refused}");
 
-    // It asks and asks, and never reads: more is written than the system keeps for it.
+    // This client sends requests and never reads: the answers exceed the buffers of the system.
     let mut deaf = begin(&daemon, "");
     let again = "GET /api/v1/openapi.json HTTP/1.1\r\nhost: 127.0.0.1\r\n\r\n".repeat(100);
     deaf.set_write_timeout(Some(PATIENCE)).unwrap();
@@ -112,7 +112,7 @@ fn health_and_stop_are_answered_when_every_ordinary_connection_is_taken() {
     assert_eq!(full.headers()["retry-after"], "1");
     vital(&daemon);
     drop(streams);
-    // The daemon hears of it a little later.
+    // The daemon detects the disconnection with a small delay.
     let asked = format!("GET /api/v1/bench/{BENCH}/safety");
     let again = || {
         std::thread::sleep(Duration::from_millis(10));

@@ -1,4 +1,4 @@
-//! What has happened, and who did it.
+//! The log of events and their authors.
 
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon};
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! The daemon on a real loopback port, as its callers meet it.
+//! Tests of the daemon on a real loopback port, as its clients use it.
 
 mod autopilots;
 mod calibrations;

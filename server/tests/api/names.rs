@@ -1,4 +1,4 @@
-//! Names that people give.
+//! Names that users enter.
 
 use crate::daemon::{BENCH, TestDaemon};
 use crate::import::upload;

@@ -1,4 +1,4 @@
-//! A user's effect from its first wrong character to a model that holds it.
+//! A user's effect, from the first wrong character to a model with it.
 
 use crate::daemon::TestDaemon;
 use crate::import::upload;
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 const META: &str = r#"{"kind": "friction", "torque_constant_nm_per_a": 0.1, "gear_ratio": 50,
     "baseline": ["load_transmission", "coulomb", "viscous"]}"#;
 
-/// Two repeats of speeds and loads with rubbing that grows with both; noise from a linear congruence.
+/// Two repeats of speeds and loads, with a rub that grows with both. The noise is a linear congruential sequence.
 pub fn rubbing_run(daemon: &TestDaemon, seed: u64) -> i64 {
     let mut table =
         String::from("time_s,motor_position_rad,motor_velocity_rad_s,motor_current_a,link_torque_nm,segment,repeat\n");

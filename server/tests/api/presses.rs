@@ -1,4 +1,4 @@
-//! What has arrived is carried out, whatever its client does then.
+//! A request that has arrived is executed, even if its client disconnects.
 
 use crate::daemon::{BENCH, TestDaemon};
 use serde_json::Value;
@@ -9,7 +9,7 @@ use std::time::Duration;
 
 const PRESSES: usize = 60;
 
-/// Sends a request and is gone, every second time without a farewell (RST).
+/// Sends a request and disconnects, with RST if `abruptly`.
 fn send_and_leave(daemon: &TestDaemon, path: &str, body: &str, abruptly: bool) {
     let host = daemon.address();
     let mut wire = TcpStream::connect(&host).unwrap();
@@ -21,7 +21,7 @@ fn send_and_leave(daemon: &TestDaemon, path: &str, body: &str, abruptly: bool) {
     }
 }
 
-/// What happened to the bench last is that it was stopped.
+/// Whether the last entry is a software stop.
 fn is_stopped(safety: &Value) -> bool {
     safety[0]["stopped"] == true && safety[0]["blocked"] == true
 }

@@ -1,4 +1,4 @@
-//! What cannot be answered is answered with a problem document that says what to do.
+//! Every refusal is a problem document with a remedy.
 
 use crate::daemon::TestDaemon;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -54,7 +54,7 @@ fn every_refusal_is_a_problem_document() {
     }
 }
 
-/// A client keeps its connection for the next request; whatever of a refused one is still on its way must not end it.
+/// A client reuses its connection: the rest of a refused request must not close it.
 #[test]
 fn a_refusal_leaves_the_connection_open() {
     let daemon = TestDaemon::start();

@@ -1,4 +1,4 @@
-//! What other users of the computer see of a daemon.
+//! Data of a daemon that other users of the computer can see.
 
 use crate::door::{FULL, READS};
 use std::io::{BufRead, BufReader};

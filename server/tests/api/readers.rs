@@ -1,10 +1,10 @@
-//! A token that only reads.
+//! Tests of a read-only token.
 
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon};
 use crate::door::{FULL, READS};
 use serde_json::Value;
 
-/// What it may ask for that is no GET, by operation.
+/// Its permitted operations other than GET.
 const MAY: [&str; 9] = [
     "check_effect",
     "diagnose",
@@ -24,7 +24,7 @@ fn daemon() -> TestDaemon {
     })
 }
 
-/// With a value in each place of the path.
+/// Fills each placeholder of the path with a value.
 fn filled(path: &str) -> String {
     path.replace("{bench}", BENCH).replace("{id}", "1").replace("{kind}", "friction").replace("{effect}", "rub")
 }
@@ -49,7 +49,7 @@ fn it_changes_nothing_whatever_it_sends_where() {
             }
         }
     }
-    // Whose model 1 is not there is not refused for its token.
+    // A missing model 1 is not a refusal of the token.
     may.sort();
     assert_eq!(may, MAY);
     for path in ["/api/v1/runs/1/tags/stop", "/api/v1/tokens/1/stop", "/api/v1/tokens/stop", "/stop"] {

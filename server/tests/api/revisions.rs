@@ -1,4 +1,4 @@
-//! Model versions beside each other, on other runs, out and in.
+//! Model versions: comparison, evaluation on other runs, export and import.
 
 use crate::daemon::TestDaemon;
 use crate::own_effects::{RUB, rub, rubbing_run};
@@ -130,7 +130,7 @@ fn what_is_exported_comes_in_again_unchanged() {
     assert!(problem["detail"].as_str().unwrap().contains("has the form other: expected is"), "{problem}");
 }
 
-/// Whoever takes a model in goes on from it: with its effects, which are those of this store from then on.
+/// An imported model can be extended: its effects are stored as effects of this store.
 #[test]
 fn an_imported_model_brings_its_own_effects_along() {
     let Two { daemon, better, .. } = two_versions();

@@ -1,4 +1,4 @@
-//! The life of a run on the mock bench, over HTTP.
+//! A run on the mock bench over HTTP, from start to end.
 
 use crate::calibrations::made;
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon, settings};
@@ -40,7 +40,7 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     assert_eq!((&samples["rows"], &samples["exact"]), (&rows.into(), &false.into()));
 
     let mut answer = daemon.get_raw(&format!("/api/v1/runs/{id}/report"));
-    // Its own styles, which the dashboard's policy would take from it, and nothing that runs.
+    // The report has inline styles, which the dashboard's policy would block, and no scripts.
     let policy = answer.headers()["content-security-policy"].to_str().unwrap().to_owned();
     assert!(policy.contains("style-src 'unsafe-inline'") && !policy.contains("script"), "{policy}");
     let page = answer.body_mut().read_to_string().unwrap();
@@ -136,7 +136,7 @@ fn a_joint_that_was_not_warmed_up_is_a_warning_of_its_result() {
     assert!(page.contains("not warmed up: "), "{page}");
 }
 
-/// Its end is kept a moment before its bench is free.
+/// The end of a run is stored shortly before its bench is free.
 #[test]
 fn whoever_sees_a_run_over_may_start_the_next() {
     let daemon = TestDaemon::start();
@@ -254,7 +254,7 @@ fn the_end_of_the_daemon_ends_a_run() {
 fn an_interrupted_run_is_ended_secured_and_not_started_again() {
     let data = tempfile::TempDir::new().unwrap();
     let runtime = Runtime::new().unwrap();
-    // What a daemon that was killed leaves behind: a run that is open.
+    // The state after a daemon was killed: an open run.
     let id = runtime.block_on(async {
         let store = Store::open(data.path()).await.unwrap();
         let new =

@@ -1,4 +1,4 @@
-//! What keeps a bench from moving until a person has done something about it.
+//! Conditions that block a bench until a person resolves them.
 
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon};
 use jointbench::config::BenchDescription;
@@ -7,7 +7,7 @@ use jointbench_devices::{Joint, MockSettings};
 use serde_json::Value;
 use std::time::{Duration, Instant};
 
-/// The torque sensor is pulled out in the middle of the run, and put back when the bench is at rest again.
+/// The torque sensor is disconnected during the run, and connected again when the bench is at rest.
 const PULLED_S: f64 = 3.0;
 const BACK_S: f64 = 40.0;
 

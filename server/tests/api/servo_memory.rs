@@ -34,7 +34,7 @@ fn all_variables_are_read_between_runs_and_none_during_one() {
     let run = daemon.wait_for_end(run["id"].as_i64().unwrap());
     assert_eq!(run["safe"], "safe_verified", "{run}");
 
-    // Written when the servo was armed.
+    // These variables are written when the servo is armed.
     let at = |address: u8| daemon.get(&format!("{PATH}?address={address}")).1["variables"][0].clone();
     assert_eq!((&at(0x04)["name"], &at(0x04)["value"]), (&json!("velgan"), &json!(8.0)));
     assert_eq!((&at(0x5C)["name"], &at(0x5C)["value"]), (&json!("(unused)"), &json!(0.0)));

@@ -1,4 +1,4 @@
-//! Exports that are opened in a spreadsheet.
+//! Exports for a spreadsheet.
 
 use crate::daemon::TestDaemon;
 use crate::import::upload;

@@ -1,4 +1,4 @@
-//! What a page shows, as a file.
+//! Export of the tables of a page.
 
 use crate::daemon::TestDaemon;
 use jointbench_files::{ReadOptions, read_bytes};

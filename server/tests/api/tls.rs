@@ -1,4 +1,4 @@
-//! The daemon by HTTPS.
+//! The daemon over HTTPS.
 
 use crate::daemon::TestDaemon;
 use crate::door::FULL;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 use tempfile::TempDir;
 use ureq::tls::{Certificate, RootCerts, TlsConfig};
 
-/// A certificate for loopback that nobody else has signed.
+/// A self-signed certificate for loopback.
 fn certificate(folder: &Path) -> TlsFiles {
     let made = rcgen::generate_simple_self_signed(["127.0.0.1".to_owned(), "localhost".to_owned()]).unwrap();
     let files = TlsFiles { certificate: folder.join("cert.pem"), key: folder.join("key.pem") };
@@ -74,7 +74,7 @@ fn the_command_line_reaches_it_with_the_certificate_and_a_token_from_a_file() {
     assert!(done.status.success(), "{said}");
     let strange = jointbench(&["runs", "--daemon", &url, "--token-file", token]).output().unwrap();
     assert_eq!(strange.status.code(), Some(2), "{}", String::from_utf8_lossy(&strange.stderr));
-    // Among the arguments it works, too, and is complained about.
+    // A token among the arguments also works, with a warning.
     let seen = jointbench(&["runs", "--daemon", &url, "--ca-file", ca, "--token", FULL]).output().unwrap();
     let said = String::from_utf8_lossy(&seen.stderr);
     assert!(seen.status.success() && said.contains("--token-file") && !said.contains(FULL), "{said}");

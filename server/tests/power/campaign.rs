@@ -1,4 +1,4 @@
-//! A campaign that says what was acknowledged, and the look at what is there afterwards.
+//! A campaign that reports its acknowledged steps, and the check of the store afterwards.
 
 use jointbench::store::{NewRun, RunFilter, Store, StoreError, verify};
 use jointbench_instrument::{Channel, Trace};
@@ -6,15 +6,15 @@ use jointbench_procedure::{Event, EventKind, RunState};
 use std::path::Path;
 use std::time::Duration;
 
-/// Where the campaign runs, and how many bytes SQLite may take.
+/// Folder of the campaign, and memory limit of SQLite in bytes.
 pub const FOLDER: &str = "JOINTBENCH_POWER_FOLDER";
 pub const LIMIT: &str = "JOINTBENCH_POWER_LIMIT";
-/// Steps of a campaign that are acknowledged: a run, its commits, three records, its end.
+/// Acknowledged steps of a campaign: a run, its commits, three records, its end.
 pub const STEPS: usize = 1 + COMMITS + 4 + 1;
 const COMMITS: usize = 8;
 /// The sixth commit fills a block.
 const ROWS: usize = 6_000;
-/// What fails is tried again, as the recorder does.
+/// A failed step is repeated, as in the recorder.
 const ATTEMPTS: usize = 3;
 const BENCH: &str = "joint-a";
 const SHORT_OF_MEMORY: Duration = Duration::from_secs(5);
@@ -27,7 +27,7 @@ pub fn make_empty(folder: &Path) {
     block_on(async { Store::open(folder).await.unwrap().close().await });
 }
 
-/// The child process: one campaign on the disk that it was started on.
+/// The child process: one campaign on the given disk.
 #[test]
 #[ignore = "started by the other tests, on a disk that fails"]
 fn runs_on_this_disk() {
@@ -36,7 +36,7 @@ fn runs_on_this_disk() {
         let Ok(store) = Store::open(Path::new(&folder)).await else { return };
         if let Ok(limit) = std::env::var(LIMIT) {
             limit_memory(&limit).await;
-            // Without memory connections are given up and waited for: what was acknowledged until then is looked at.
+            // Without memory, connections fail and block: the steps until then are checked.
             tokio::time::timeout(SHORT_OF_MEMORY, campaign(&store)).await.ok();
             std::process::exit(0);
         }
@@ -45,7 +45,7 @@ fn runs_on_this_disk() {
     });
 }
 
-/// The limit is one of the process.
+/// The limit applies to the whole process.
 async fn limit_memory(bytes: &str) {
     let Ok(memory) = sqlx::SqlitePool::connect("sqlite::memory:").await else { return };
     let limit = sqlx::AssertSqlSafe(format!("PRAGMA hard_heap_limit = {bytes}"));
@@ -92,7 +92,7 @@ fn rows(range: std::ops::Range<usize>) -> Trace {
     trace
 }
 
-/// What the child was told.
+/// The steps that the child had acknowledged.
 #[derive(Debug, Default)]
 pub struct Acknowledged {
     pub steps: usize,
@@ -125,12 +125,12 @@ impl Acknowledged {
     }
 }
 
-/// Everything acknowledged is there once; what was not is there whole, or not at all; nothing is damaged, and no loss is told.
+/// Acknowledged data exists once, other data completely or not at all. No data is damaged, and no loss is reported.
 pub fn check(folder: &Path, told: &Acknowledged, how: &str) {
     block_on(async {
         let store = Store::open(folder).await.unwrap_or_else(|fault| panic!("{how}: {fault}"));
         assert_eq!(store.losses().await.unwrap(), [], "{how}: {told:?}");
-        // One step more may have reached the disk before its answer was lost; each attempt at a run makes one.
+        // One more step may be on the disk without its answer. Each attempt to create a run creates one.
         let among = |found: usize, told: usize, more: usize| {
             assert!((told..=told + more).contains(&found), "{how}: {found} found, {told} acknowledged");
         };

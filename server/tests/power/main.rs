@@ -1,7 +1,7 @@
-//! Nothing acknowledged is lost, whatever the disk does: a whole campaign on a disk that fails at its n-th operation, or whose
-//! power is cut there, and then the store opened again on a sound one. The same with too little memory for SQLite.
+//! No acknowledged data is lost if the disk fails. A campaign runs on a disk that fails, or loses power, at its n-th
+//! operation. Then the store is opened on an intact disk. The same with too little memory for SQLite.
 //!
-//! `disk.c` is the disk. A part of the operations is tried; `JOINTBENCH_EVERY_FAILURE=1` tries every one.
+//! `disk.c` simulates the disk. The tests use a sample of the operations; `JOINTBENCH_EVERY_FAILURE=1` uses all.
 
 #![cfg(target_os = "linux")]
 
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
-/// So many operations of a campaign are tried for each kind of failure.
+/// Number of tested operations for each kind of failure.
 const TRIES: usize = 12;
 const SEEDS: [&str; 2] = ["1", "2"];
 
@@ -36,14 +36,14 @@ fn nothing_acknowledged_is_lost_when_the_power_fails() {
     }
 }
 
-/// SQLite counts what it allocates: beyond the limit each allocation fails.
+/// SQLite counts its allocations: beyond the limit each allocation fails.
 #[test]
 fn nothing_acknowledged_is_lost_when_memory_runs_out() {
     let disk = Disk::build();
     let tries = if every() { 100 } else { TRIES / 2 };
     let mut acknowledged = 0;
     for one in 0..tries {
-        // From what fails at once to what is enough.
+        // From a limit with immediate failure to a sufficient limit.
         let kib = 250.0 * 40_f64.powf(one as f64 / (tries - 1) as f64);
         acknowledged = disk.try_one(&[(LIMIT, &format!("{}", kib as u64 * 1024))]);
     }
@@ -55,10 +55,10 @@ fn every() -> bool {
 }
 
 struct Disk {
-    /// Holds the library, and a store without runs.
+    /// Folder of the library and of a store without runs.
     place: TempDir,
     library: PathBuf,
-    /// Operations of a campaign on which nothing fails.
+    /// Number of operations of a campaign without failure.
     operations: usize,
 }
 
@@ -86,7 +86,7 @@ impl Disk {
         (1..=self.operations).step_by(step)
     }
 
-    /// How many steps of the campaign were acknowledged. All of them have to be there.
+    /// Returns the number of acknowledged steps. All of them must be in the store.
     fn try_one(&self, settings: &[(&str, &str)]) -> usize {
         let folder = tempfile::tempdir_in(self.place.path()).unwrap();
         copy(&self.place.path().join("empty"), folder.path());

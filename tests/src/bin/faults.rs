@@ -1,4 +1,4 @@
-//! The long fault suite: the real program through random faults, and a table of what held.
+//! The long fault suite: the real program under random faults, with a table of the results.
 //!
 //! `cargo run -p jointbench-tests --bin faults -- --minutes 30 [--seed N] [--only stops|presses|deaths|history]`
 
@@ -11,13 +11,13 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 const USAGE: &str = "usage: faults [--minutes 30] [--seed N] [--only stops|presses|deaths|history]";
-/// What a run of 30 minutes tries; a shorter one tries its share of it.
+/// Scope of a run of 30 minutes; a shorter run has a proportional scope.
 const FULL_MINUTES: f64 = 30.0;
 const PRESSES_OF_EACH_TROUBLE: f64 = 50.0;
 const HANG_UPS: f64 = 60.0;
 const DEATHS_OF_EACH_KIND: f64 = 5.0;
 const OPERATIONS: f64 = 2000.0;
-/// A control silence of two ticks is allowed.
+/// Two control ticks of silence are allowed.
 const MOST_SILENCE_TICKS: f64 = 2.0;
 
 struct Arguments {
@@ -78,7 +78,7 @@ fn play(arguments: &Arguments) -> Vec<Outcome> {
     outcomes
 }
 
-/// The promised times, which a machine without other work keeps.
+/// Checks the guaranteed times, which apply to a machine without other load.
 fn hold_to(mut outcome: Outcome, bound: Duration) -> Outcome {
     let late = outcome.slowest_stop.filter(|stop| *stop > bound);
     outcome.broken.extend(late.map(|stop| format!("the slowest stop took {stop:?}, promised are {bound:?}")));

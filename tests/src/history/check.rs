@@ -1,4 +1,4 @@
-//! What must hold behind a history: everything acknowledged is there once, everything else whole or absent.
+//! Check after a history: acknowledged data exists once, other data completely or not at all.
 
 use super::operation::{Kind, Operation};
 use super::{History, all_runs, safety};
@@ -20,7 +20,7 @@ pub(super) fn check(lab: &Lab, history: &History, outcome: &mut Outcome) {
     check_words(&client, history, outcome);
 }
 
-/// `found` times in the store.
+/// Compares the number of occurrences in the store with the expectation.
 fn check_count(operation: &Operation, found: usize, what: &str, outcome: &mut Outcome) {
     let client = &operation.client;
     match found {
@@ -68,7 +68,7 @@ fn check_imports(runs: &[Value], history: &History, outcome: &mut Outcome) {
     }
 }
 
-/// A token is listed if and only if it opens the door; one that was revoked does neither.
+/// A token is listed if and only if it gives access; a revoked one does neither.
 fn check_tokens(client: &Client, history: &History, outcome: &mut Outcome) {
     let listed = client.get("/tokens");
     let count = |name: &str| listed.as_array().map_or(0, |all| all.iter().filter(|one| one["name"] == name).count());
@@ -114,7 +114,7 @@ fn check_calibrations(client: &Client, history: &History, outcome: &mut Outcome)
     }
 }
 
-/// Notes and tags, each on a run that only its client writes to.
+/// Notes and tags, each on a run that only its client changes.
 fn check_words(client: &Client, history: &History, outcome: &mut Outcome) {
     let mut tagged: BTreeMap<i64, Vec<&Operation>> = BTreeMap::new();
     for one in &history.operations {
@@ -130,7 +130,7 @@ fn check_words(client: &Client, history: &History, outcome: &mut Outcome) {
     }
     for (run, operations) in tagged {
         let last = operations.iter().rposition(|one| one.acknowledged().is_some());
-        // What was never answered may have been carried out at any time since.
+        // An unanswered request may have been executed at any later time.
         let unknown = operations.iter().filter(|one| one.possible() && one.acknowledged().is_none());
         let may_be: Vec<&str> =
             last.map(|last| operations[last]).iter().chain(unknown).filter_map(|one| tag(one)).collect();

@@ -1,4 +1,4 @@
-//! Clients: each does one thing after the other, with a token and a run of its own.
+//! Clients: each executes operations in sequence, with its own token and run.
 
 use super::operation::{Kind, Operation};
 use crate::client::{Client, Outcome, Request};
@@ -11,14 +11,14 @@ use serde_json::json;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// So many clients in a hundred leave before they are answered, and so many of these in the middle of their request.
+/// Percentage of clients that disconnect before the answer, and percentage of these during their request.
 const HANG_UP_PERCENT: u32 = 20;
 const BROKEN_OFF_PERCENT: u32 = 30;
-/// Between two operations.
+/// Pause between two operations.
 const PAUSE_MS: std::ops::Range<u64> = 0..600;
-/// A client waits so long before it tries a server again that does not listen.
+/// Waiting time before the next attempt if the server does not listen.
 const AWAY: Duration = Duration::from_millis(50);
-/// Of the table that each client annotates.
+/// Rows of the table that each client annotates.
 const OWN_ROWS: usize = 50;
 
 pub struct Actor {
@@ -27,13 +27,13 @@ pub struct Actor {
     random: ChaCha8Rng,
     own_run: i64,
     started: Option<i64>,
-    /// Number, name and secret of tokens that this client has made.
+    /// Number, name and secret of the tokens that this client has created.
     tokens: Vec<(i64, String, String)>,
     count: usize,
 }
 
 impl Actor {
-    /// With a token and a run, made while all is well.
+    /// Creates a token and a run while no fault is active.
     pub fn new(operator: &Client, round: u64, number: u64, seed: u64) -> Self {
         let name = format!("client {round}-{number}");
         let made = operator.post("/tokens", &json!({ "name": name, "access": "full" }));
@@ -47,7 +47,7 @@ impl Actor {
         Self { name, client, random, own_run, started: None, tokens: Vec::new(), count: 0 }
     }
 
-    /// Until nothing is left to do.
+    /// Executes operations until none is left.
     pub fn play(mut self, left: &AtomicUsize) -> Vec<Operation> {
         let mut done = Vec::new();
         while left.load(Ordering::Acquire) > 0 {
@@ -57,7 +57,7 @@ impl Actor {
             if outcome == Outcome::NotSent && !matches!(kind, Kind::Revoke { .. }) {
                 std::thread::sleep(AWAY);
             } else {
-                // Others may have taken the last one meanwhile.
+                // Another client may have executed the last one in the meantime.
                 let _ = left.fetch_update(Ordering::AcqRel, Ordering::Acquire, |left| left.checked_sub(1));
             }
             self.learn(&kind, &outcome);
@@ -131,7 +131,7 @@ impl Actor {
         (Kind::Note { run: self.own_run, text }, request)
     }
 
-    /// What the next operations build on.
+    /// Stores results that later operations need.
     fn learn(&mut self, kind: &Kind, outcome: &Outcome) {
         let Some(told) = outcome.acknowledged() else { return };
         match kind {

@@ -1,5 +1,5 @@
-//! Histories in the manner of Jepsen: clients that work at the same time and hang up at random moments, a nemesis that kills,
-//! stalls and locks, and a checker that knows what was acknowledged.
+//! Histories in the manner of Jepsen: simultaneous clients that disconnect at random, a nemesis that kills, stalls and
+//! locks, and a checker that knows the acknowledged operations.
 
 mod check;
 mod clients;
@@ -20,23 +20,23 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 const CLIENTS: u64 = 6;
-/// The safety record tells its newest hundred entries: a round makes fewer.
+/// The safety record lists its newest hundred entries; a round creates fewer.
 pub const OPERATIONS_OF_A_ROUND: usize = 200;
-/// What was left open is stored within this time.
+/// Time limit to store open data.
 const SETTLES: Duration = Duration::from_secs(120);
 
-/// What clients and nemesis did.
+/// Actions of clients and nemesis.
 struct History {
     operations: Vec<Operation>,
-    /// When both server and worker were killed, in Unix time.
+    /// Unix times at which both server and worker were killed.
     both_killed_s: Vec<f64>,
     faults: usize,
 }
 
-/// SIGTERM of a daemon whose bench is at rest.
+/// Time limit after SIGTERM of a daemon whose bench is at rest.
 const ENDS: Duration = Duration::from_secs(30);
 
-/// Rounds of [`OPERATIONS_OF_A_ROUND`] on one store, each checked at its end.
+/// Rounds of [`OPERATIONS_OF_A_ROUND`] on one store, with a check at the end of each round.
 pub fn histories(operations: usize, seed: u64, say: &dyn Fn(&str)) -> Outcome {
     let mut lab = Lab::new(None);
     lab.start();
@@ -68,7 +68,7 @@ fn play(lab: &mut Lab, actors: Vec<Actor>, seed: u64) -> History {
     History { operations, both_killed_s: nemesis.both_killed_s, faults: nemesis.faults }
 }
 
-/// Everything is well again: what was left open comes to its end, and the store is read anew.
+/// No fault is active: open operations complete, and the store is opened again.
 fn settle(lab: &mut Lab, outcome: &mut Outcome) {
     lab.client().post(&format!("/bench/{BENCH}/stop"), &json!({}));
     let is_quiet = || {
@@ -82,7 +82,6 @@ fn settle(lab: &mut Lab, outcome: &mut Outcome) {
     lab.start();
 }
 
-/// Every run of the store.
 fn all_runs(client: &Client) -> Vec<serde_json::Value> {
     const PAGE: usize = 500;
     let mut all = Vec::new();

@@ -1,4 +1,4 @@
-//! Kills, stalls and locks, at random.
+//! Random kills, stalls and locks.
 
 use crate::lab::Lab;
 use crate::trouble::Held;
@@ -10,9 +10,9 @@ use std::time::Duration;
 
 const PEACE_MS: std::ops::Range<u64> = 200..1500;
 const STALLED_MS: std::ops::Range<u64> = 500..3000;
-/// Around the patience of the database, 5 s.
+/// Near the lock timeout of the database, 5 s.
 const HELD_MS: std::ops::Range<u64> = 500..7000;
-/// SIGTERM in mid-run.
+/// Time limit after SIGTERM during a run.
 const ENDS: Duration = Duration::from_secs(60);
 
 pub struct Nemesis {
@@ -26,7 +26,7 @@ impl Nemesis {
         Self { random, faults: 0, both_killed_s: Vec::new() }
     }
 
-    /// One fault behind a moment of peace. The server runs when it is over.
+    /// One fault after a pause without faults. The server runs afterwards.
     pub fn strike(&mut self, lab: &mut Lab) {
         self.sleep(PEACE_MS);
         self.faults += 1;

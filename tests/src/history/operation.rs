@@ -1,4 +1,4 @@
-//! One operation of one client, and what became of it.
+//! One operation of one client, and its outcome.
 
 use crate::client::Outcome;
 use serde_json::Value;
@@ -7,7 +7,7 @@ use serde_json::Value;
 pub enum Kind {
     Start,
     Stop,
-    /// With a reason that nobody else gives.
+    /// With a unique reason.
     Acknowledge {
         reason: String,
     },
@@ -21,7 +21,7 @@ pub enum Kind {
         secret: String,
     },
     Calibrate,
-    /// Of the client's own run.
+    /// A note on the client's own run.
     Note {
         run: i64,
         text: String,
@@ -44,7 +44,7 @@ pub struct Operation {
     /// Unix time.
     pub sent_s: f64,
     pub ended_s: f64,
-    /// [`Outcome::Unknown`] where the client hung up behind the whole request, [`Outcome::NotSent`] where it did before.
+    /// [`Outcome::Unknown`] if the client disconnected after the whole request, [`Outcome::NotSent`] if before.
     pub outcome: Outcome,
 }
 
@@ -53,7 +53,7 @@ impl Operation {
         self.outcome.acknowledged()
     }
 
-    /// It may have been carried out.
+    /// Whether it may have been executed.
     pub fn possible(&self) -> bool {
         !self.outcome.refused()
     }

@@ -10,9 +10,9 @@ use jiff::Timestamp;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// The clocks of client and server are one, and times are told to the microsecond.
+/// Client and server use the same clock, and times have a resolution of one microsecond.
 const CLOSE_S: f64 = 0.001;
-/// A reset that was never answered may be carried out so long after it was sent: a held database is waited for.
+/// A reset without an answer may be executed this long after it was sent, because it waits for a locked database.
 const LINGERS_S: f64 = 30.0;
 
 pub(super) fn check(client: &Client, history: &History, outcome: &mut Outcome) {
@@ -23,7 +23,7 @@ pub(super) fn check(client: &Client, history: &History, outcome: &mut Outcome) {
     check_blocked(history, outcome);
 }
 
-/// Taken, but not yet stored when it was answered, and both who knew of it were killed since.
+/// The stop was acknowledged before it was stored, and then both processes that knew it were killed.
 fn died_with_its_witnesses(stop: &Operation, history: &History) -> bool {
     let stored = stop.acknowledged().is_some_and(|bench| bench["blocked"]["stored"] == true);
     !stored && history.both_killed_s.iter().any(|killed_s| *killed_s > stop.sent_s)
@@ -63,7 +63,7 @@ fn check_resets(entries: &[Value], history: &History, outcome: &mut Outcome) {
         match found {
             0 if one.acknowledged().is_some() => outcome.lost(format!("the reset {reason}")),
             0 => {}
-            // Refused, and recorded all the same: the stop that was reset is, another that was pressed meanwhile holds.
+            // Refused but recorded: the reset applies to the earlier stop, and a later stop remains active.
             1 if one.possible() || matches!(one.outcome, Answered { status: 409, .. }) => {}
             1 => outcome.half_done(format!("the reset {reason} is recorded, and was refused: {:?}", one.outcome)),
             more => outcome.doubled(format!("the reset {reason} is recorded {more} times")),
@@ -71,7 +71,7 @@ fn check_resets(entries: &[Value], history: &History, outcome: &mut Outcome) {
     }
 }
 
-/// No run is taken between a stop that was acknowledged and the next reset.
+/// No run is accepted between an acknowledged stop and the next reset.
 fn check_blocked(history: &History, outcome: &mut Outcome) {
     let all = &history.operations;
     let resets = || all.iter().filter(|one| matches!(one.kind, Kind::Acknowledge { .. }) && one.possible());

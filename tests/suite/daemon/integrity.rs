@@ -1,4 +1,4 @@
-//! What is stored stays what it was, or it is said.
+//! Stored data does not change, or the change is reported.
 
 use super::bench;
 use crate::program::{Daemon, run, stderr, stdout};
@@ -29,7 +29,7 @@ fn one_daemon_has_the_folder_until_its_terminal_is_closed() {
     assert_eq!(health["store"]["damaged"], serde_json::json!([]), "{health}");
     let hung_up = Command::new("kill").args(["-HUP", &health["process"].to_string()]).status();
     assert!(hung_up.expect("kill is there").success());
-    // Only an orderly end takes the write-ahead file away.
+    // Only an orderly end removes the write-ahead log.
     let until = Instant::now() + Duration::from_secs(30);
     while data.join("jointbench.db-wal").exists() {
         assert!(Instant::now() < until, "the daemon ends when its terminal does");
@@ -52,7 +52,7 @@ fn a_changed_byte_is_named_and_hides_no_other_run() {
         let imported = run(&["import", table.to_str().expect("UTF-8"), "--data", to_data]);
         assert_eq!(imported.status.code(), Some(0), "{}", stderr(&imported));
     }
-    // The end of an import may be in the write-ahead file only. A restored copy is one whole file.
+    // The end of an import may be only in the write-ahead log. A restored copy is one complete file.
     let copy = folder.path().join("lab.db");
     let copy = copy.to_str().expect("UTF-8");
     let data = folder.path().join("restored");
@@ -65,7 +65,7 @@ fn a_changed_byte_is_named_and_hides_no_other_run() {
 
     let file = data.join("jointbench.db");
     let mut bytes = std::fs::read(&file).expect("the database is there");
-    // Wherever it is: a page that is no longer used may hold it too.
+    // At every occurrence: an unused page may contain it, too.
     let places: Vec<usize> = (0..bytes.len() - 6).filter(|at| &bytes[*at..at + 6] == b"0.0641").collect();
     assert!(!places.is_empty(), "the fact is in the file");
     places.iter().for_each(|at| bytes[at + 5] = b'9');

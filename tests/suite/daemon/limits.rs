@@ -1,4 +1,4 @@
-//! A daemon in an address space of 1 GiB, and clients who want more of it than there is.
+//! A daemon in an address space of 1 GiB, and clients that request more memory.
 
 use super::bench;
 use crate::program::Daemon;
@@ -12,12 +12,12 @@ use std::time::Duration;
 mod bombs;
 
 const GIB_IN_KIB: u64 = 1 << 20;
-/// A run that takes long enough to be diagnosed that many wait for it.
+/// Rows of a run with a slow diagnosis, so that many requests wait.
 const ROWS: usize = 2_000_000;
 const READERS: usize = 200;
 const DIAGNOSES: usize = 50;
 const EXPORTS: usize = 8;
-/// Whoever waits longer for a diagnosis hangs up, and tries no more.
+/// Time limit of a client, without a second attempt.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 fn limited(folder: &Path) -> Daemon {
@@ -43,7 +43,7 @@ fn upload(daemon: &Daemon, name: &str, file: &[u8]) -> (u16, Value) {
     (answer.status().as_u16(), answer.body_mut().read_json().unwrap_or_default())
 }
 
-/// The same process answers, and has no file of an upload left.
+/// The same process answers, and no uploaded file remains.
 fn is_well(daemon: &Daemon, data: &Path, after: &str) {
     assert_eq!(daemon.get("/health")["process"], daemon.process(), "after {after}");
     let left = std::fs::read_dir(data.join("uploads")).expect("the folder is there").count();
@@ -90,7 +90,7 @@ fn nor_do_many_who_want_much_of_a_long_run() {
         for _ in 0..EXPORTS {
             scope.spawn(|| {
                 let asked = agent(PATIENCE).get(format!("{}/api/v1/runs/{run}/export?format=csv", daemon.base));
-                // Some wait for others, and may wait too long.
+                // Some requests wait for others and may exceed their time limit.
                 asked
                     .call()
                     .ok()
@@ -118,7 +118,7 @@ fn nor_do_many_who_want_much_of_a_long_run() {
     assert!(took < Duration::from_secs(10), "it took {took:?} to end");
 }
 
-/// Opens the live stream, and never takes anything of it.
+/// Opens the live stream and never reads from it.
 fn deaf_reader(daemon: &Daemon) -> TcpStream {
     let address = daemon.base.trim_start_matches("http://");
     let mut stream = TcpStream::connect(address).expect("the daemon listens");

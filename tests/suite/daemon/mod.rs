@@ -1,4 +1,4 @@
-//! The daemon on a bad day, through REST.
+//! Faults of the daemon, tested through REST.
 
 mod integrity;
 #[cfg(unix)]
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// A mock bench that takes its time, so that something can happen in mid-run.
+/// A slow mock bench, so that faults can occur during a run.
 fn bench(folder: &Path, joint: &str, pace: f64) -> PathBuf {
     let config = folder.join("bench.toml");
     let text = format!(
@@ -57,19 +57,19 @@ fn check_kill_9(joint: &str, procedure: &str) {
     assert_eq!(after["safe"], "safe_verified", "the bench was secured at the start: {after}");
     assert!(rows(&after) >= rows(&before), "{} rows were acknowledged, {} are left", rows(&before), rows(&after));
 
-    // Every committed sample once: as many as the run says, at rising times.
+    // Every committed sample exists once: the reported number, at rising times.
     let samples = daemon.get_text(&format!("{path}/export?format=csv"));
     let times: Vec<f64> = samples.lines().skip(1).filter_map(|row| row.split(',').next()?.parse().ok()).collect();
     assert_eq!(times.len() as i64, rows(&after));
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "a sample is there twice or out of order");
 
-    // The journal tells the same story without a gap.
+    // The events agree with this, without a gap.
     let events = daemon.get(&format!("{path}/events"));
     let numbers: Vec<i64> =
         events.as_array().expect("events").iter().filter_map(|event| event["sequence"].as_i64()).collect();
     assert!(!numbers.is_empty() && numbers.windows(2).all(|pair| pair[1] == pair[0] + 1), "{numbers:?}");
 
-    // Nothing restarts by itself, and the next run may start.
+    // No run restarts by itself, and the next run can start.
     assert_eq!(daemon.get("/bench")[0]["run"], Value::Null);
     assert_eq!(daemon.get("/runs")["total"], 1);
     let next = start(&daemon, procedure);

@@ -1,5 +1,5 @@
-//! The fault suite, in short: the same scenarios as `cargo run -p jointbench-tests --bin faults`, with fixed seeds. Times are held
-//! only to what a busy machine keeps.
+//! The short fault suite: the scenarios of `cargo run -p jointbench-tests --bin faults` with fixed seeds. The time
+//! limits are for a busy machine.
 
 use jointbench_tests::outcome::{Outcome, table};
 use jointbench_tests::trouble::Trouble;
@@ -13,10 +13,10 @@ const SEED: u64 = 33;
 const PRESSES: usize = 5;
 const HANG_UPS: usize = 15;
 const OPERATIONS: usize = 200;
-/// On a machine that has other things to do.
+/// On a busy machine.
 const SLOWEST_STOP: Duration = Duration::from_secs(5);
 
-/// One scenario at a time: each wants the machine for itself.
+/// Runs one scenario at a time: each needs the whole machine.
 fn alone() -> MutexGuard<'static, ()> {
     static ALONE: Mutex<()> = Mutex::new(());
     ALONE.lock().unwrap_or_else(PoisonError::into_inner)

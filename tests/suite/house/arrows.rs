@@ -1,9 +1,9 @@
-//! Arrows point down. The table is the drawing in ARCHITECTURE.md.
+//! Dependencies point downwards. The table corresponds to the drawing in ARCHITECTURE.md.
 
 use super::{METADATA, normal_dependencies, packages};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Each crate of the house, its folder, and the crates of the house that it may lean on.
+/// Each crate of the workspace, its folder, and the crates of the workspace that it may depend on.
 const HOUSE: [(&str, &str, &[&str]); 7] = [
     ("jointbench-instrument", "drivers/instrument", &[]),
     ("jointbench-devices", "drivers/devices", &["jointbench-instrument"]),
@@ -25,7 +25,7 @@ const HOUSE: [(&str, &str, &[&str]); 7] = [
     ),
 ];
 
-/// Libraries that only the named crates may reach, even through others.
+/// Libraries that only the named crates may use, directly or indirectly.
 const CONFINED: [(&str, &[&str]); 5] = [
     ("tokio", &["jointbench"]),
     ("axum", &["jointbench"]),
@@ -82,7 +82,7 @@ fn what_is_absent_stays_absent() {
     }
 }
 
-/// The mock bench and the models must be able to disagree: neither may see the other.
+/// The mock bench and the models must be independent: neither may depend on the other.
 #[test]
 fn the_mock_bench_and_the_models_share_no_code() {
     let ids = house_ids();

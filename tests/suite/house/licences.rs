@@ -1,9 +1,9 @@
-//! Every library that is built in may be given away with the product.
+//! The licence of every included library permits distribution with the product.
 
 use super::packages;
 
-/// SPDX ids that the product may contain. MPL-2.0 is file-wise copyleft: used unchanged (serialport). CDLA-Permissive-2.0 is for
-/// data: the list of public authorities (webpki-roots).
+/// SPDX ids that the product may contain. MPL-2.0 is file-wise copyleft: used unchanged (serialport).
+/// CDLA-Permissive-2.0 is for data: the list of public certificate authorities (webpki-roots).
 const ALLOWED: [&str; 15] = [
     "MIT",
     "Apache-2.0",
@@ -22,7 +22,7 @@ const ALLOWED: [&str; 15] = [
     "CDLA-Permissive-2.0",
 ];
 
-/// Whether an SPDX expression can be met: one side of every OR, both sides of every AND.
+/// Whether an SPDX expression is satisfied: one side of every OR, both sides of every AND.
 fn is_met(expression: &str) -> bool {
     let expression = expression.replace('/', " OR ");
     let expression = expression.trim();
@@ -38,7 +38,7 @@ fn is_met(expression: &str) -> bool {
     }
 }
 
-/// Splits at the first separator that stands outside brackets.
+/// Splits at the first separator outside of brackets.
 fn split_outside<'a>(text: &'a str, separator: &str) -> Option<(&'a str, &'a str)> {
     let mut depth = 0;
     for (i, c) in text.char_indices() {

@@ -1,4 +1,4 @@
-//! The house keeps its shape: which crate may lean on which, what is absent where, licences, file sizes, and the English of its texts.
+//! Rules of the workspace: dependencies, confined libraries, licences, file sizes, and the English of its texts.
 
 mod arrows;
 mod licences;
@@ -11,9 +11,9 @@ use serde_json::Value;
 use std::process::Command;
 use std::sync::LazyLock;
 
-/// What cargo resolved for this workspace. Needs no network: everything was fetched to build the tests.
+/// The packages that cargo resolved for this workspace. Needs no network: the build has downloaded all of them.
 static METADATA: LazyLock<Value> = LazyLock::new(|| {
-    // Libraries of other platforms are not on this machine: only what this one builds can be asked for offline.
+    // Libraries of other platforms are not on this machine, so the offline request is limited to the host platform.
     let version = Command::new("rustc").arg("-vV").output().expect("rustc runs").stdout;
     let version = String::from_utf8_lossy(&version).into_owned();
     let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("rustc names its host");
@@ -31,7 +31,7 @@ fn packages() -> impl Iterator<Item = (&'static str, &'static Value)> {
     METADATA["packages"].as_array().expect("packages").iter().map(|p| (p["id"].as_str().expect("id"), p))
 }
 
-/// Ids of what a package needs to be built and run, without its tests.
+/// Ids of the packages that a package needs for build and execution, without its tests.
 fn normal_dependencies(id: &str) -> Vec<&'static str> {
     let nodes = METADATA["resolve"]["nodes"].as_array().expect("nodes");
     let node = nodes.iter().find(|n| n["id"] == id).expect("a node for every package");

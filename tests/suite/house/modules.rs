@@ -1,14 +1,15 @@
-//! Arrows inside the model crate: no circle between the modules of a folder, and stages lean only on earlier ones.
+//! Dependencies inside the model crate: no cycle between the modules of a folder, and stages depend only on earlier
+//! ones.
 
 use super::root;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 type ModulePath = Vec<String>;
-/// For each module of a folder those of the same folder that it leans on, with an example of who does.
+/// For each module of a folder, the modules of the same folder that it depends on, with an example of a user.
 type Arrows = BTreeMap<String, BTreeMap<String, String>>;
 
-/// The pipeline, as ARCHITECTURE.md draws it: a stage leans on those before it, never on one behind it.
+/// The pipeline as in ARCHITECTURE.md: a stage depends only on earlier stages.
 const PIPELINE: [&str; 9] = [
     "signal",
     "effect",
@@ -18,7 +19,7 @@ const PIPELINE: [&str; 9] = [
     "residual_analysis",
     "selection",
     "diagnosis",
-    // Leans on neither selection nor diagnosis: it imagines runs of a model that is given.
+    // Depends on neither selection nor diagnosis: it simulates runs of a given model.
     "experiment_design",
 ];
 
@@ -84,7 +85,7 @@ fn code(source: &str) -> String {
     source.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
 }
 
-/// Arrows between the modules of each folder; what lies in a subfolder counts for it.
+/// Dependencies between the modules of each folder; the content of a subfolder counts for it.
 fn arrows_of(sources: &BTreeMap<ModulePath, String>) -> BTreeMap<ModulePath, Arrows> {
     let root = &sources[&Vec::new()];
     let exported: Vec<ModulePath> = statements(root, "pub use ").flat_map(|tree| leaves(&tree)).collect();
@@ -103,7 +104,7 @@ fn arrows_of(sources: &BTreeMap<ModulePath, String>) -> BTreeMap<ModulePath, Arr
     all
 }
 
-/// Paths below `crate` that a source names, in `use` and in place.
+/// Paths below `crate` in a source, in `use` statements and in expressions.
 fn references(text: &str) -> Vec<ModulePath> {
     let used = statements(text, "use crate").flat_map(|tree| leaves(&format!("crate{tree}")));
     let in_place = text.split("crate::").skip(1).map(|rest| {
@@ -132,12 +133,12 @@ fn leaves(tree: &str) -> Vec<ModulePath> {
         }
     }
     let parts = parts.iter().filter(|part| !part.is_empty());
-    // What `trim_end_matches` took too many of closes the last part.
+    // `trim_end_matches` also removed braces of the last part: add them again.
     let closed = parts.map(|p| p.clone() + &"}".repeat(p.matches('{').count() - p.matches('}').count()));
     closed.flat_map(|part| leaves(&part)).map(|leaf| [before.clone(), leaf].concat()).collect()
 }
 
-/// The module that a path leads into: the longest that there is, or the one that the root exports the name from.
+/// The module of a path: the longest existing module path, or the module that the root exports the name from.
 fn module_of(path: &[String], sources: &BTreeMap<ModulePath, String>, exported: &[ModulePath]) -> ModulePath {
     let longest = (1..=path.len()).rev().map(|n| path[..n].to_vec()).find(|module| sources.contains_key(module));
     longest.unwrap_or_else(|| {

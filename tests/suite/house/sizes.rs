@@ -1,4 +1,4 @@
-//! Files stay small enough to be read in one go.
+//! Limits of file sizes, for readability.
 
 use super::root;
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! A kept model on other runs, and the files that are named for it: what is not as it was is said.
+//! A stored model on other runs, and files that are given with it: differences are reported.
 
 use super::own::{done, run_in, write_run};
 use crate::program::{stderr, stdout};
@@ -28,7 +28,7 @@ fn what_another_run_lacks_is_said() {
     assert!(told.starts_with("on run.csv: error ") && !told.contains("note"), "{told}");
     assert!(told.contains("steady-state means, 80 %") && told.contains("(7200 samples)"), "{told}");
 
-    // The fifth column is the link's torque.
+    // The fifth column is the link torque.
     let table = std::fs::read_to_string(folder.join("run.csv")).expect("a table");
     let without = |line: &str| {
         let fields = line.split(',').enumerate().filter(|(i, _)| *i != 4).map(|(_, field)| field);
@@ -153,7 +153,7 @@ fn the_library_is_listed() {
 fn advice_names_the_axis_of_the_summary_as_a_formula_does() {
     let folder = tempfile::tempdir().expect("a folder");
     write_run(folder.path());
-    // A bump over the speed is no effect of the library, and the rub is over speed and load.
+    // A bump over the speed is not an effect of the library; the rub depends on speed and load.
     let table = std::fs::read_to_string(folder.path().join("run.csv")).expect("a table");
     let bumped = table.lines().enumerate().map(|(i, line)| {
         let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();

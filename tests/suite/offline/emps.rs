@@ -14,7 +14,7 @@ fn the_published_parameters_lie_in_the_intervals_and_the_errors_are_no_larger() 
     let (Some(train), Some(pulses)) = (shared("data/emps-train"), shared("data/emps-pulses")) else { return };
     let other = pulses.join("run.csv").display().to_string();
     let said = json("fit", &train, &["--evaluate", &other]);
-    // The published fit has no columns for the error of formulas, and takes all samples alike.
+    // The published fit has no columns for formula errors, and weights all samples equally.
     for (effect, published, budget) in [
         ("inertia", 95.1089, 0.015),
         ("viscous", 203.5034, 0.04),

@@ -1,4 +1,4 @@
-//! `diagnose --maps`: the error drawn over each quantity, where the verdict looks for it too.
+//! `diagnose --maps`: the residual over each quantity that the verdict uses.
 
 use super::json;
 use super::own::{run_in, write_run};
@@ -19,7 +19,7 @@ fn the_error_is_drawn_over_each_quantity_and_only_where_it_is_asked_for() {
     assert!(told(&[]).get("maps").is_none());
 }
 
-/// Pressure of a step, which goes up and down without the load and the speed.
+/// Pressure of a step, independent of load and speed.
 fn pressure_pa(segment: u64) -> f64 {
     1e5 + 2e4 * (segment.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 61) as f64
 }
@@ -37,7 +37,7 @@ fn an_axis_that_the_verdict_names_by_direction_is_not_called_flat() {
             let velocity: f64 = fields[2].parse().expect("a velocity");
             let current: f64 = fields[3].parse().expect("a current");
             let pressure_pa = pressure_pa(fields[5].parse().expect("a segment"));
-            // More friction in the middle: over the pressure alone both directions cancel.
+            // More friction at medium pressure: over the pressure alone, the two directions cancel.
             let rub = 0.1 * velocity.signum() * f64::from(u8::from((1.5e5..1.9e5).contains(&pressure_pa)));
             fields[3] = format!("{}", current + rub);
             fields.push(pressure_pa.to_string());

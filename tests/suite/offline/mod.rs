@@ -12,7 +12,7 @@ use crate::program::{jointbench, stderr};
 use serde_json::Value;
 use std::path::Path;
 
-/// What a command with `--json` prints.
+/// Output of a command with `--json`.
 fn json(verb: &str, folder: &Path, more: &[&str]) -> Value {
     let table = ["run.csv", "run.csv.gz"].map(|name| folder.join(name)).into_iter().find(|path| path.exists());
     let table = table.expect("a run table");

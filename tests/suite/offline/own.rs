@@ -1,4 +1,4 @@
-//! Effects and models of one's own on the command line.
+//! Users' effects and models on the command line.
 
 use crate::program::{Daemon, jointbench, stderr, stdout};
 use serde_json::Value;
@@ -19,7 +19,7 @@ parameters = [
 ]
 "#;
 
-/// A run of speeds and loads with rubbing, in a folder of its own.
+/// Writes a run of speeds and loads with a rub to a folder.
 pub fn write_run(folder: &Path) {
     let mut table =
         String::from("time_s,motor_position_rad,motor_velocity_rad_s,motor_current_a,link_torque_nm,segment,repeat\n");
@@ -88,7 +88,7 @@ fn a_caret_stands_below_the_mistake() {
     let seconds = RUB.replace("[rad/s]", "[s]");
     let said = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--own", &seconds]));
     assert!(said.contains("tanh takes a plain number, but this is in 1/s²") && said.contains("^^"), "{said}");
-    // In a joint that slides this would be right; the run is of one that turns.
+    // The unit is valid for a sliding joint; this joint rotates.
     let metres = RUB.replace("[rad/s]", "[m/s]");
     let said = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--own", &metres]));
     assert!(said.contains("note: effect rub: tanh takes a plain number, but this is in 1/m"), "{said}");
@@ -184,7 +184,7 @@ fn a_model_that_went_out_comes_into_the_store_again() {
     assert_eq!(daemon.get("/models/4")["fit"]["terms"], file["fit"]["terms"]);
 }
 
-/// All that the contract says of an effect, and how its residual looks.
+/// All data of an effect, and the shape of its residual.
 #[test]
 fn an_effect_tells_all_of_itself() {
     let said = done(Path::new("."), &["effects", "load_linear"]);

@@ -1,4 +1,4 @@
-//! The practice cases with a hidden effect, judged as `hidden-effects/README.md` says.
+//! The practice cases with a hidden effect, evaluated by the rules of `hidden-effects/README.md`.
 
 use super::{effects, json};
 use crate::program::run;
@@ -14,7 +14,7 @@ fn groups(answer: &Value) -> Vec<Vec<&str>> {
     answer["accept"].as_array().expect("groups").iter().map(effects).collect()
 }
 
-/// Checks one case and says what is wrong with it.
+/// Checks one case and returns the problem.
 fn judge(folder: &Path) -> Result<(), String> {
     let answer = read(&folder.join("answer.json"));
     let meta = read(&folder.join("meta.json"));
@@ -44,7 +44,7 @@ fn judge(folder: &Path) -> Result<(), String> {
     if is_right { Ok(()) } else { Err(told) }
 }
 
-/// Nothing is missing in either run; one of them has no repeats.
+/// No effect is missing in either run; one of the runs has no repeats.
 #[test]
 fn a_verdict_that_decides_nothing_says_so_and_ends_with_3() {
     let Some(case) = shared("hidden-effects/friction-none") else { return };

@@ -1,4 +1,4 @@
-//! Malformed files are refused where they are wrong, and leave nothing behind.
+//! Malformed files are refused with the position of the error, and leave no data behind.
 
 use crate::program::{jointbench, run, stderr, stdout};
 
@@ -42,7 +42,7 @@ fn the_place_of_the_fault_is_named() {
         assert_eq!(output.status.code(), Some(2), "{what}: {said}");
         assert!(said.contains(&format!("{what}.csv")) && said.contains(line) && said.contains(words), "{what}: {said}");
     }
-    // The store knows of no run.
+    // The store contains no run.
     let output = run(&["export", "1", "--format", "csv", "--data", &data.display().to_string()]);
     assert_ne!(output.status.code(), Some(0), "{}", stdout(&output));
 }

@@ -1,4 +1,4 @@
-//! What is imported comes out again unchanged.
+//! Exported data is identical to the imported data.
 
 use crate::program::{jointbench, stderr};
 use crate::shared::shared;
@@ -23,11 +23,11 @@ fn nothing_is_made_where_nothing_is() {
         jointbench().args(["export", "1", "--format", "csv", "--data"]).arg(&data).output().expect("it starts");
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("no store in") && !data.exists(), "{}", stderr(&output));
-    // An address that is given is where it goes, whatever the folder holds.
+    // An explicit address has priority over a folder.
     let nowhere = ["export", "1", "--format", "csv", "--daemon", "127.0.0.1:9", "--data"];
     let output = jointbench().args(nowhere).arg(&data).output().expect("it starts");
     assert!(stderr(&output).contains("no daemon answers at http://127.0.0.1:9"), "{}", stderr(&output));
-    // One of the environment is not, where a folder is named.
+    // An address from the environment has no priority over an explicit folder.
     let mut command = jointbench();
     command.env("JOINTBENCH_URL", "http://127.0.0.1:9").args(["export", "1", "--format", "csv", "--data"]).arg(&data);
     let output = command.output().expect("it starts");

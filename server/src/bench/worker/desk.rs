@@ -1,4 +1,4 @@
-//! What the threads of a worker share: the block, the way to the run that is on, the outbox.
+//! Shared state of the threads of a worker: block, control of the active run, outbox.
 
 use super::outbox::Outbox;
 use crate::bench::wire::Report;
@@ -44,25 +44,25 @@ impl Desk {
         }
     }
 
-    /// What the server has not said to be stored.
+    /// The block, if the server has not confirmed its storage.
     pub fn unstored_block(&self) -> Option<SafetyRecord> {
         let state = self.lock();
         state.block.clone().filter(|_| !state.block_is_stored)
     }
 
-    /// A stop that was pressed behind the look of the person who lifts the block stays.
+    /// A later stop, which the person has not seen, remains.
     pub fn release(&self, until: &str) {
         self.lock().block.take_if(|block| block.at.as_str() <= until);
     }
 
-    /// The software stop, in this order: nothing starts any more, what is on ends. Whether a run was there to end.
+    /// Software stop: first blocks new runs, then ends the active run. Returns whether a run was active.
     pub fn stop(&self, block: SafetyRecord) -> bool {
         let by = block.by.clone();
         self.set_block(block);
         self.control(Demand { control: Control::EStop, by })
     }
 
-    /// From here on the run can be controlled, also before it begins.
+    /// Creates the control channel of a run, also before its start.
     pub fn expect(&self, run: RunId) -> Receiver<Demand> {
         let (sender, receiver) = mpsc::channel();
         self.outbox.set_hurry(false);
@@ -74,7 +74,7 @@ impl Desk {
         self.lock().run = None;
     }
 
-    /// Whether a run was there to hear it.
+    /// Returns whether a run received the demand.
     pub fn control(&self, demand: Demand) -> bool {
         if !matches!(demand.control, Control::Pause | Control::Resume) {
             self.outbox.set_hurry(true);
@@ -82,7 +82,7 @@ impl Desk {
         self.lock().run.as_ref().is_some_and(|(_, run)| run.send(demand).is_ok())
     }
 
-    /// Nobody stores anything any more: the run that is on ends, none begins.
+    /// Storage is lost: ends the active run, and no other run starts.
     pub fn server_is_gone(&self) {
         self.lock().server_is_gone = true;
         self.control(Control::StorageLost.into());
@@ -92,7 +92,7 @@ impl Desk {
         self.lock().server_is_gone
     }
 
-    /// Tells the server what day the mock bench's disk has, where that has changed.
+    /// Reports a change of the mock bench's simulated full disk.
     pub fn tell_disk(&self, mock: Option<&MockBench>) {
         let full = mock.is_some_and(MockBench::disk_is_full);
         if self.disk_is_full.swap(full, Ordering::AcqRel) != full {

@@ -1,9 +1,9 @@
-//! The worker of a bench: a process of its own that holds the instruments, so that nothing that happens to the server part of
-//! the daemon (a fit that takes all memory, a disk that stands, a panic) reaches them.
+//! The worker of a bench: a separate process that owns the instruments. Faults in the server part of the daemon (a fit
+//! without memory, a blocked disk, a panic) do not affect the instruments.
 //!
-//! Four threads: the owner runs the engine, `orders` listens to the server and carries the software stop out at once, `reports`
-//! says what is to be stored and shown, and `presses` keeps a press of the stop in a file until it is stored. Where the server is
-//! gone, the run that is on is ended, the bench secured, and what the store has not got is left in the data folder.
+//! Four threads: the owner runs the engine. `orders` receives messages and executes the software stop immediately.
+//! `reports` sends data to store and show. `presses` keeps a software stop in a file until it is stored. Without a
+//! server, the worker ends the active run, secures the bench and writes unstored data to the data folder.
 
 mod desk;
 mod outbox;
@@ -26,7 +26,7 @@ use std::io::{self, Read};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
 
-/// What the owner of the bench is asked for, one after the other.
+/// Commands to the owner of the bench, executed in sequence.
 enum Command {
     Run { run: RunId, plan: Box<Plan>, controls: Receiver<Demand> },
     Secure,
@@ -35,10 +35,10 @@ enum Command {
     Quit,
 }
 
-/// Serves a bench until the server wants no more, or is gone. Standard input and output belong to the server.
+/// Serves a bench until the server quits or is gone. Standard input and output belong to the server.
 ///
 /// # Errors
-/// Where there is no server to serve, or no thread.
+/// If there is no server, or a thread cannot be started.
 pub fn serve() -> io::Result<()> {
     let mut orders = io::stdin();
     let Some(Order::Open(setup)) = wire::receive(&mut orders)? else {
@@ -53,7 +53,7 @@ pub fn serve() -> io::Result<()> {
     seat::end_when_told(desk.clone(), commands.clone())?;
     let (listening, presses) = (desk.clone(), PressFiles::start(&data, &name)?);
     std::thread::Builder::new().name("orders".into()).spawn(move || listen(orders, &listening, &presses, &commands))?;
-    // Held to the very end: whoever waits for it finds what is left here.
+    // Held until the end: the next worker then finds the file of this one.
     let seat = seat::take(&data, &name);
     match &seat {
         Ok(_) => Owner::new(description, desk.clone()).serve(&to_do),
@@ -64,7 +64,7 @@ pub fn serve() -> io::Result<()> {
     if reports.join().is_err() {
         tracing::error!("the thread of the reports has panicked");
     }
-    // The server closes its end when it has stored what it can.
+    // The server closes its end after it has stored all that it can.
     while !desk.is_alone() && to_do.recv().is_ok() {}
     leftovers::leave(&data, &name, desk.unstored_block(), &desk.outbox.unstored());
     drop(seat);
@@ -83,7 +83,7 @@ fn listen(mut orders: impl Read, desk: &Desk, presses: &PressFiles, commands: &S
         }
     }
     desk.server_is_gone();
-    // An error says that the owner has ended already.
+    // An error means that the owner has already ended.
     let _ = commands.send(Command::Quit);
 }
 
@@ -119,6 +119,6 @@ fn obey(order: Order, desk: &Desk, presses: &PressFiles, commands: &Sender<Comma
         }
         Order::Open(_) => return tracing::error!("a bench is opened once"),
     };
-    // An error says that the owner has ended already.
+    // An error means that the owner has already ended.
     let _ = commands.send(command);
 }

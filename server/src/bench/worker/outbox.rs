@@ -1,5 +1,5 @@
-//! What the worker has to say, and what of it is not yet durable: the bounded queue between control and storage. The thread
-//! that owns the bench only ever puts something down here.
+//! Bounded queue between control and storage: reports to send, and entries that are not yet durable. The thread that
+//! owns the bench only adds to it.
 
 use crate::bench::wire::{self, Entry, Report};
 use crate::store::RunCommit;
@@ -8,9 +8,9 @@ use std::io::Write;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
-/// So much may wait to be stored: eight minutes of 17 channels at 1 kHz.
+/// Limit of unstored data: eight minutes of 17 channels at 1 kHz.
 pub const MOST_BYTES: usize = 64 << 20;
-/// Pictures of rows that nobody fetched are worth nothing: so many wait at most.
+/// Limit of waiting live data: old live data is useless.
 const MOST_LIVE: usize = 64;
 
 pub struct Outbox {
@@ -20,20 +20,20 @@ pub struct Outbox {
 
 #[derive(Default)]
 struct State {
-    /// In the order in which it is said.
+    /// Unsent reports in order.
     unsaid: VecDeque<Report>,
-    /// Said or not, but not durable.
+    /// Entries that are not durable, sent or not.
     unstored: VecDeque<Arc<Entry>>,
     unstored_bytes: usize,
     last_number: u64,
-    /// Why nothing can be stored.
+    /// The storage fault.
     fault: Option<String>,
-    /// The run that is on is to end: nobody may be kept waiting.
+    /// The active run shall end: do not wait for the store.
     hurry: bool,
     closed: bool,
 }
 
-/// What of a run waits to be stored.
+/// Data of a run that is not yet stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Backlog {
     pub rows: usize,
@@ -41,7 +41,7 @@ pub struct Backlog {
 }
 
 impl Outbox {
-    /// Starts the thread that says everything.
+    /// Starts the thread that sends the reports.
     pub fn start(to: impl Write + Send + 'static) -> std::io::Result<(Arc<Self>, JoinHandle<()>)> {
         let outbox = Arc::new(Self { state: Mutex::default(), changed: Condvar::new() });
         let said = outbox.clone();
@@ -60,7 +60,7 @@ impl Outbox {
         self.changed.notify_all();
     }
 
-    /// Takes over what is to be stored. Never waits.
+    /// Adds a commit to store. Never blocks.
     pub fn keep(&self, commit: RunCommit) {
         let mut inner = self.lock();
         inner.last_number += 1;
@@ -76,7 +76,7 @@ impl Outbox {
         Backlog { rows: state.unstored.iter().map(|entry| entry.commit.rows.len()).sum(), bytes: state.unstored_bytes }
     }
 
-    /// Everything up to this number is durable.
+    /// Removes the entries up to this number, which are durable.
     pub fn stored(&self, number: u64) {
         let mut state = self.lock();
         while state.unstored.front().is_some_and(|entry| entry.number <= number) {
@@ -95,26 +95,26 @@ impl Outbox {
         self.lock().fault.clone()
     }
 
-    /// Whether the run that is on is to end: from then on nobody waits for the store.
+    /// Sets whether the active run shall end; if so, no thread waits for the store.
     pub fn set_hurry(&self, hurry: bool) {
         self.lock().hurry = hurry;
         self.changed.notify_all();
     }
 
-    /// For a bench whose time stands while it waits: returns when the store has caught up, or the run is to end.
+    /// For a stepped bench clock: returns when all entries are stored, or when the run shall end.
     pub fn let_the_store_catch_up(&self) {
         let far_ahead =
             |state: &mut State| !state.unstored.is_empty() && !state.hurry && state.fault.is_none() && !state.closed;
         drop(self.changed.wait_while(self.lock(), far_ahead).unwrap_or_else(PoisonError::into_inner));
     }
 
-    /// Says what is left, and nothing after it.
+    /// Sends the waiting reports, then ends.
     pub fn close(&self) {
         self.lock().closed = true;
         self.changed.notify_all();
     }
 
-    /// What the store has not got.
+    /// Entries that are not stored.
     pub fn unstored(&self) -> Vec<Arc<Entry>> {
         self.lock().unstored.iter().cloned().collect()
     }
@@ -137,7 +137,7 @@ impl Outbox {
     }
 }
 
-/// In memory, and about so many on the way.
+/// Size in memory, and approximate size of the message.
 fn bytes(entry: &Entry) -> usize {
     let rows = &entry.commit.rows;
     rows.len() * rows.channels().len() * size_of::<f64>()

@@ -1,4 +1,4 @@
-//! The thread that owns a bench. An ordinary loop: one command after the other, a run is one command.
+//! The thread that owns a bench. It executes commands in sequence; a run is one command.
 
 use super::Command;
 use super::desk::Desk;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-/// Between runs the clock of a mock bench is moved so often: its bad day may be over.
+/// Step of a mock bench's clock between runs: a simulated fault may end.
 const IDLE_EVERY: Duration = Duration::from_secs(1);
 
 pub(super) struct Owner {
@@ -25,7 +25,6 @@ pub(super) struct Owner {
 }
 
 impl Owner {
-    /// Opens the instruments.
     pub fn new(description: BenchDescription, desk: Arc<Desk>) -> Self {
         let opened = open(&description);
         Self { description, desk, opened }
@@ -33,7 +32,7 @@ impl Owner {
 
     pub fn serve(mut self, commands: &Receiver<Command>) {
         self.tell_opened();
-        // Whoever was here before may have been killed: nothing is known of the bench until it is secured.
+        // An earlier worker may have been killed: the state of the bench is unknown until it is secured.
         self.secure();
         loop {
             match commands.recv_timeout(IDLE_EVERY) {
@@ -55,7 +54,7 @@ impl Owner {
         }
     }
 
-    /// Moves the clock of a mock bench, which nobody else does between runs.
+    /// Advances the clock of a mock bench between runs.
     fn let_time_pass(&self) {
         let Some(mock) = &self.opened.mock else { return };
         let clock = mock.clock();
@@ -83,7 +82,7 @@ impl Owner {
         if self.opened.bench.is_some() {
             self.recover(wanting);
         } else {
-            // The ports of a half-open bench are let go before they are opened again.
+            // The ports of a partly open bench must be closed before they are opened again.
             self.opened = Opened::default();
             self.opened = open(&self.description);
         }
@@ -91,7 +90,7 @@ impl Owner {
         self.secure();
     }
 
-    /// Asks instruments again that a run has found wanting.
+    /// Reconnects instruments that had a fault in a run.
     fn recover(&mut self, wanting: &[String]) {
         let Opened { bench: Some(bench), instruments, .. } = &mut self.opened else { return };
         for instrument in instruments.iter_mut().filter(|one| wanting.contains(&one.name)) {
@@ -106,7 +105,7 @@ impl Owner {
         }
     }
 
-    /// The memory of the joint's servo. Nothing is commanded.
+    /// Reads the memory of the joint's servo. Sends no motion commands.
     fn read_memory(&mut self, ranges: &[(u8, u8)]) -> MemoryRead {
         let Some(bench) = &mut self.opened.bench else { return MemoryRead::Failed("the bench is not open".into()) };
         let Some(memory) = bench.joint.servo_memory() else { return MemoryRead::None };
@@ -118,7 +117,7 @@ impl Owner {
 
     fn run(&mut self, run: RunId, plan: &Plan, controls: &Receiver<Demand>) {
         let Opened { bench: Some(bench), mock, .. } = &mut self.opened else {
-            // The lab opens a bench before it starts a run; a bench that went away in between has no instruments to move.
+            // The lab opens a bench before a run. A bench that has disconnected since has no instruments to command.
             tracing::error!(run.id = run, "run started on a bench that is not open");
             return not_begun(&self.desk, run);
         };
@@ -134,7 +133,7 @@ impl Owner {
 
     fn secure(&mut self) {
         let report = match &mut self.opened.bench {
-            // A bench that is merely not plugged in is secured when it is opened.
+            // A disconnected bench is secured when it is opened.
             None => Report::Secured { safe: Safe::UnsafeUnknown, notes: Vec::new() },
             Some(bench) => {
                 let secured = jointbench_procedure::secure(bench);
@@ -153,7 +152,7 @@ fn not_begun(desk: &Desk, run: RunId) {
     desk.outbox.say(Report::NotBegun { run });
 }
 
-/// Answers for a bench that another worker holds.
+/// Answers for a bench that another worker owns.
 pub(super) fn serve_nothing(description: &BenchDescription, desk: &Desk, commands: &Receiver<Command>, why: &str) {
     let say = || {
         let instruments: Vec<view::Instrument> = vec![unreached(description, why.to_owned())];

@@ -1,5 +1,5 @@
-//! A press of the software stop on its way to the store: a small file in the data folder until the store has it. A press
-//! survives that server and worker are both killed, also while another program holds the database.
+//! A software stop before it is stored: a small file in the data folder. The stop survives the loss of both server and
+//! worker, also while another program locks the database.
 
 use crate::bench::leftovers;
 use crate::store::SafetyRecord;
@@ -11,11 +11,11 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 enum News {
     Pressed(SafetyRecord),
-    /// The press of this moment.
+    /// Time of the stored stop.
     Stored(String),
 }
 
-/// Hands the work to a thread of its own: a disk that stands delays no order.
+/// Uses a separate thread, so that a blocked disk does not delay orders.
 #[derive(Clone)]
 pub(super) struct PressFiles {
     news: Sender<News>,
@@ -53,7 +53,7 @@ fn keep(heard: &Receiver<News>, data: &Path, bench: &str) {
                 files.extend(leftovers::leave(data, bench, Some(block), &[]).map(|path| (at, path)));
             }
             News::Stored(at) => {
-                // A file that stays is stored once more by the next start, which changes nothing.
+                // The next start stores a remaining file again, which has no effect.
                 if let Some(path) = files.remove(&at)
                     && let Err(fault) = fs::remove_file(&path)
                 {

@@ -1,4 +1,4 @@
-//! Hands what a run brings to the outbox. Nothing here waits while the bench's time goes on.
+//! Passes the data of a run to the outbox. It waits only if the bench clock is stepped.
 
 use super::desk::Desk;
 use super::outbox::MOST_BYTES;
@@ -9,13 +9,13 @@ use jointbench_procedure::{Commit, Live, Recorder, RecorderFault, RunId};
 
 pub(super) struct OutboxRecorder<'a> {
     desk: &'a Desk,
-    /// Its disk may have a bad day, which is the store's.
+    /// Its simulated full disk applies to the store.
     mock: Option<&'a MockBench>,
-    /// The bench's time stands while nobody waits for it.
+    /// The bench clock is stepped: its time does not advance during a wait.
     stepped: bool,
     run: RunId,
     commits: u64,
-    /// Rows that found no room.
+    /// Rows that did not fit into the queue.
     dropped: usize,
 }
 
@@ -37,7 +37,7 @@ impl Recorder for OutboxRecorder<'_> {
         let backlog = outbox.backlog();
         let is_full = backlog.bytes >= MOST_BYTES;
         if is_full {
-            // How the run ends is kept all the same: it is small.
+            // States and events are still stored: they are small.
             self.dropped += rows.take().len();
         }
         self.commits += 1;

@@ -1,4 +1,4 @@
-//! One worker for each bench of a data folder, and how it stands among the processes of the machine.
+//! Lock, process priority and signals of a worker: one worker for each bench of a data folder.
 
 use super::Command;
 use super::desk::Desk;
@@ -10,12 +10,12 @@ use std::sync::Arc;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-/// The worker of a daemon that was killed secures its bench first.
+/// Waiting time for the worker of a killed daemon, which first secures its bench.
 const PATIENCE: Duration = Duration::from_secs(20);
 const FOLDER: &str = "workers";
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
-/// Returns when no other worker holds the bench; held until it is dropped. `Err` says who does.
+/// Waits until no other worker owns the bench. The file is the lock. `Err` names the owner.
 pub(super) fn take(data: &Path, bench: &str) -> Result<File, String> {
     let path = data.join(FOLDER).join(format!("{}.lock", file_name(bench)));
     let unwritable =
@@ -37,7 +37,7 @@ pub(super) fn take(data: &Path, bench: &str) -> Result<File, String> {
     }
 }
 
-/// Returns when no worker of an earlier daemon is at work in the data folder, or after a while.
+/// Waits until no worker of an earlier daemon uses the data folder, or until a timeout.
 pub fn wait_until_gone(data: &Path) {
     let Ok(seats) = fs::read_dir(data.join(FOLDER)) else { return };
     let give_up = Instant::now() + PATIENCE;
@@ -49,13 +49,14 @@ pub fn wait_until_gone(data: &Path) {
     }
 }
 
-/// The name of a bench as that of a file.
+/// The name of a bench as a file name.
 pub fn file_name(bench: &str) -> String {
     percent_encoding::utf8_percent_encode(bench, percent_encoding::NON_ALPHANUMERIC).to_string()
 }
 
-/// Control goes before fits and requests, where the system allows it: in real time by the real-time policy, which threads
-/// started later inherit. A simulation that runs as fast as it can would take a core with it, and is only preferred.
+/// Gives control priority over fits and requests, if the system allows it. A bench in real time gets the real-time policy,
+/// which threads started later inherit. A simulation at full speed only gets a higher priority, because it would occupy a
+/// core with that policy.
 pub(super) fn raise_priority(is_real_time: bool) {
     #[cfg(unix)]
     {
@@ -73,7 +74,7 @@ pub(super) fn raise_priority(is_real_time: bool) {
     }
 }
 
-/// Told to end by itself, a worker ends as if its server had gone.
+/// On a termination signal the worker ends as if its server were gone.
 pub(super) fn end_when_told(desk: Arc<Desk>, commands: Sender<Command>) -> io::Result<()> {
     #[cfg(unix)]
     {
@@ -83,7 +84,7 @@ pub(super) fn end_when_told(desk: Arc<Desk>, commands: Sender<Command>) -> io::R
             for signal in &mut signals {
                 tracing::warn!(signal, "worker shutdown requested: securing the bench");
                 desk.control(Control::Quit.into());
-                // An error says that the owner has ended already.
+                // An error means that the owner has already ended.
                 let _ = commands.send(Command::Quit);
             }
         })?;

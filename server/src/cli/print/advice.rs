@@ -1,15 +1,15 @@
-//! What a person could do next.
+//! Prints the next possible actions.
 
 use crate::view::command;
 use jointbench_instrument::Motion;
 use jointbench_model::{Experiment, Fit, Verdict, formula, words};
 
-/// What columns suggest that contradict each other is no advice.
+/// Columns with data problems are no basis for advice.
 pub fn is_any(undecided: Option<&String>, verdict: Verdict) -> bool {
     undecided.is_none() || verdict == Verdict::Adequate
 }
 
-/// What the library lacks, the user may know: over the axes that the summary has named.
+/// Suggests an own formula over the axes of the summary, because the user may know an effect that the library lacks.
 pub fn own_formula(columns: &[String], fit: &Fit) {
     let named: Vec<String> = columns.iter().filter_map(|column| formula::in_formula(fit.kind, column)).collect();
     if named.is_empty() {
@@ -26,7 +26,7 @@ pub fn own_formula(columns: &[String], fit: &Fit) {
     }
 }
 
-/// As a command, so that it can be typed.
+/// Printed as a command, so that a user can copy it.
 pub fn next_run(experiment: Option<&Experiment>) {
     let Some(experiment) = experiment else { return };
     println!();

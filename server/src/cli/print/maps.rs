@@ -1,14 +1,14 @@
-//! Residual maps, as a person reads them.
+//! Prints residual maps for a person.
 
 use jointbench_instrument::Kind;
 use jointbench_model::{AxisMap, MapBin, MapCell, PairMap, ResidualMaps, words};
 
-/// Characters of the largest mean, to either side.
+/// Length of the largest mean in characters, on each side.
 const REACH: f64 = 20.0;
-/// A quantity of which a function would take less off the squared error is named and not drawn.
+/// Axes that explain a smaller share of the squared error are named and not drawn.
 const DRAWN_SHARE: f64 = 0.01;
 
-/// `named`: what the summary calls an axis is drawn, whatever it takes by itself.
+/// Axes in `named`, those of the summary, are always drawn.
 pub fn print(maps: &ResidualMaps, named: &[String], kind: Kind) {
     let mut axes: Vec<(&AxisMap, Option<&PairMap>)> =
         maps.axes.iter().map(|a| (a, maps.in_each_direction(a))).collect();
@@ -47,12 +47,12 @@ pub fn print(maps: &ResidualMaps, named: &[String], kind: Kind) {
     }
 }
 
-/// What any function of an axis would take, as the verdict asks it: both directions alike, or each for itself.
+/// Explained share with the criterion of the verdict: common to both directions, or by direction.
 fn telling((axis, sides): &(&AxisMap, Option<&PairMap>)) -> f64 {
     sides.map_or(axis.removable_share, |pair| pair.removable_share.max(axis.removable_share))
 }
 
-/// The map by direction, where one direction hides from the other what shows.
+/// The map by direction, if the directions mask each other's structure.
 fn told_apart<'m>((axis, sides): &(&AxisMap, Option<&'m PairMap>)) -> Option<&'m PairMap> {
     sides.filter(|pair| pair.removable_share - axis.removable_share >= DRAWN_SHARE)
 }
@@ -70,7 +70,7 @@ fn title(of: &(&AxisMap, Option<&PairMap>)) -> String {
     )
 }
 
-/// A cell of a map by direction as a line of its axis.
+/// Converts a cell of a map by direction to a bin of its axis.
 fn bin(pair: &PairMap, cell: &MapCell) -> MapBin {
     let [from, to] = pair.x_bins[cell.x];
     let (mean, half_width, rows) = (cell.mean, cell.half_width, cell.rows);

@@ -1,4 +1,4 @@
-//! Effects that are not in a model, as a person reads them.
+//! Prints the effects that are not in a model.
 
 use jointbench_model::{Invisible, LeftOut, Silent, words};
 
@@ -14,7 +14,7 @@ pub fn print(silent: &[Silent], hidden: &[Invisible], left_out: &[LeftOut], unit
     }
 }
 
-/// Effects for each reason, in the order of the first of each.
+/// Groups the effects by reason, in the order of first occurrence.
 fn alike(hidden: &[Invisible]) -> Vec<(&str, Vec<&str>)> {
     let mut alike: Vec<(&str, Vec<&str>)> = Vec::new();
     for one in hidden {

@@ -1,4 +1,4 @@
-//! A column as bit patterns, for values that no step explains.
+//! A column as bit patterns, for values that are no multiples of a step.
 
 use super::planes::{Planes, zigzag};
 use super::{BITS, Broken, Reader};

@@ -1,12 +1,12 @@
-//! A column as whole counts of one step. Values that are no count stand beside, with their row.
+//! A column as integer counts of one step. Other values are stored separately with their row.
 
 use super::planes::{CHUNK, Planes, Unpacked, unzigzag, zigzag};
 use super::{Broken, COUNTS, Reader, Scale};
 
-/// A column with more exceptions than one row in so many is not made of counts.
+/// A column with more than one exception per this number of rows is not stored as counts.
 const ROWS_PER_EXCEPTION: usize = 24;
 
-/// `None` where the scale does not reproduce the column.
+/// `None` if the scale does not reproduce the column.
 pub fn pack(values: &[f64], scale: Scale) -> Option<Vec<u8>> {
     let inverse = scale.inverse();
     let mut counts = vec![0i64; values.len()];
@@ -15,7 +15,7 @@ pub fn pack(values: &[f64], scale: Scale) -> Option<Vec<u8>> {
         *count = scale.count(*value, inverse);
         exact &= scale.value(*count).to_bits() == value.to_bits();
     }
-    // A count beyond the rounding range is as good as any other where it gives the value back.
+    // A count beyond the rounding range is accepted if it reproduces the value.
     let (corrections, exceptions) = if exact { (Vec::new(), Vec::new()) } else { repair(values, scale, &mut counts)? };
 
     let (kind, factor) = match scale {
@@ -43,7 +43,7 @@ pub fn pack(values: &[f64], scale: Scale) -> Option<Vec<u8>> {
 
 type Repair = (Vec<u8>, Vec<(u32, u64)>);
 
-/// Corrections of the last places for all rows (empty where none is needed), and the rows that are no count at all.
+/// Corrections of the last places for all rows (empty if not needed), and the rows that are no counts.
 fn repair(values: &[f64], scale: Scale, counts: &mut [i64]) -> Option<Repair> {
     let inverse = scale.inverse();
     let most = values.len() / ROWS_PER_EXCEPTION;
@@ -97,7 +97,7 @@ fn fill(planes: &Unpacked<'_>, first: i64, values: &mut [f64], value: impl Fn(i6
     let mut count = first;
     let mut counts = [0i64; CHUNK];
     planes.each(values, |differences, values| {
-        // Two loops: the sums depend on each other, the values do not.
+        // Two loops: only the sums depend on each other, so the second loop can be vectorized.
         for (sum, difference) in counts.iter_mut().zip(differences) {
             count = count.wrapping_add(*difference);
             *sum = count;

@@ -1,14 +1,14 @@
-//! How a column of samples is packed: whole counts of the sensor where they reproduce every value bit by bit, the bits
-//! themselves where not; first differences, bytes of one weight together, zstd level 1.
+//! Compression of a column of samples: sensor counts if they reproduce every value bit by bit, otherwise the bit
+//! patterns. Then first differences, byte planes and zstd level 1.
 //!
 //! ```text
 //! byte 0     0 constant | 1 counts | 2 bits
 //! constant   the value's bits, u64
 //! counts     scale kind u8, corrected u8, width u8, factor f64, first i64, exceptions u32 × (row u32, bits u64), planes
 //! bits       width u8, first u64, planes
-//! planes     zstd of `width` planes of one byte for each row, lowest first; one plane of corrections where corrected
+//! planes     zstd of `width` planes of one byte for each row, lowest first; then one plane of corrections if corrected
 //! ```
-//! All little endian. A difference is stored zigzag: 0, −1, 1, −2 … as 0, 1, 2, 3 …
+//! All values are little endian. A difference is stored as zigzag: 0, −1, 1, −2 … as 0, 1, 2, 3 …
 
 mod bits;
 mod counts;
@@ -26,9 +26,9 @@ const BITS: u8 = 2;
 #[error("a block of samples cannot be unpacked")]
 pub struct Broken;
 
-/// Packs a column. `resolution` is the sensor's step where it is known; a wrong one costs space, never a bit.
+/// Packs a column. `resolution` is the known step of the sensor; a wrong value costs space, but loses no data.
 ///
-/// About 10 ns for each value.
+/// Takes about 10 ns for each value.
 pub fn pack(values: &[f64], resolution: Option<f64>) -> Vec<u8> {
     if let Some((first, rest)) = values.split_first()
         && rest.iter().all(|value| value.to_bits() == first.to_bits())
@@ -41,9 +41,9 @@ pub fn pack(values: &[f64], resolution: Option<f64>) -> Vec<u8> {
         .unwrap_or_else(|| bits::pack(values))
 }
 
-/// Fills `values` with a packed column of as many rows.
+/// Unpacks a column into `values`, which has its number of rows.
 ///
-/// About 2 ns for each value.
+/// Takes about 2 ns for each value.
 pub fn unpack(packed: &[u8], values: &mut [f64]) -> Result<(), Broken> {
     let mut rest = Reader(packed);
     match rest.byte()? {
@@ -57,7 +57,7 @@ pub fn unpack(packed: &[u8], values: &mut [f64]) -> Result<(), Broken> {
     }
 }
 
-/// What is left of a packed column.
+/// The remaining bytes of a packed column.
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// A walk of the sensor's counts: small differences, far from zero.
+    /// A random walk of sensor counts: small differences, far from zero.
     fn walk(rows: usize) -> Vec<i64> {
         let step = |row: usize| (row as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23) % 41;
         (0..rows)
@@ -145,7 +145,7 @@ mod tests {
             .collect()
     }
 
-    /// What it is, the resolution that is told, and the value of a count.
+    /// Name, given resolution, and value of a count.
     type Case = (&'static str, Option<f64>, fn(i64) -> f64);
 
     #[test]

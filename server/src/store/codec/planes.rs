@@ -1,14 +1,14 @@
-//! Bytes of one weight together: where differences are small, all planes but the lowest are zeros, which zstd takes for
-//! nothing, and the lowest holds the noise, which is what a sensor's sample really says.
+//! Byte planes: one plane for each byte of the differences. For small differences all planes but the lowest are zeros,
+//! which zstd compresses to almost nothing. The lowest plane holds the noise of the sensor.
 
 use super::Broken;
 use std::cell::RefCell;
 
-/// Fast, and within a few per cent of what higher levels reach on noise.
+/// Fast; on noise the result is within a few per cent of higher levels.
 const LEVEL: i32 = 1;
 
 thread_local! {
-    /// zstd's working memory is larger than a column: made once for each thread.
+    /// The working memory of zstd is larger than a column, so each thread creates it once.
     static COMPRESSOR: RefCell<Option<zstd::bulk::Compressor<'static>>> = const { RefCell::new(None) };
     static DECOMPRESSOR: RefCell<(Option<zstd::bulk::Decompressor<'static>>, Vec<u8>)> =
         const { RefCell::new((None, Vec::new())) };
@@ -24,7 +24,7 @@ pub fn unzigzag(word: u64) -> i64 {
     ((word >> 1) as i64) ^ -((word & 1) as i64)
 }
 
-/// `width` planes of one byte for each row, then what else goes along.
+/// `width` planes of one byte for each row, then extra bytes.
 pub struct Planes {
     width: usize,
     bytes: Vec<u8>,
@@ -49,7 +49,7 @@ impl Planes {
         self.width as u8
     }
 
-    /// Appends the packed planes and, behind them, `extra`.
+    /// Appends the packed planes, followed by `extra`.
     pub fn compress(mut self, extra: &[u8], packed: &mut Vec<u8>) {
         self.bytes.extend_from_slice(extra);
         let start = packed.len();
@@ -62,7 +62,7 @@ impl Planes {
         packed.truncate(start + size);
     }
 
-    /// Hands the planes to `read`; they lie in memory that the next column of this thread takes.
+    /// Passes the planes to `read`. They are in memory that the next column of this thread reuses.
     pub fn decompress<T>(
         packed: &[u8],
         rows: usize,
@@ -87,30 +87,30 @@ impl Planes {
     }
 }
 
-/// Planes on their way back.
+/// Planes during decompression.
 pub struct Unpacked<'a> {
     rows: usize,
     width: usize,
     bytes: &'a [u8],
 }
 
-/// Rows whose words are put together at a time: they stay in the nearest cache.
+/// Rows that are assembled at a time: they fit into the first-level cache.
 pub const CHUNK: usize = 256;
 
 impl Unpacked<'_> {
-    /// What went along behind the planes.
+    /// The bytes after the planes.
     pub fn extra(&self) -> &[u8] {
         &self.bytes[self.rows * self.width..]
     }
 
-    /// Hands over the differences of some rows, with the place for their values; all rows in order.
+    /// Passes the differences of consecutive rows and the slice for their values to `take`.
     #[inline(always)]
     pub fn each(&self, values: &mut [f64], mut take: impl FnMut(&[i64], &mut [f64])) {
         let mut differences = [0i64; CHUNK];
         for (chunk, values) in values.chunks_mut(CHUNK).enumerate() {
             let differences = &mut differences[..values.len()];
             let from = chunk * CHUNK;
-            // The narrow widths are what sensors give: each has a loop of its own, without a shift that varies.
+            // Sensors produce narrow widths: each has its own loop with constant shifts.
             match self.width {
                 1 => self.gather::<1>(from, differences),
                 2 => self.gather::<2>(from, differences),

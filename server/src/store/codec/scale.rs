@@ -1,31 +1,31 @@
-//! Which whole counts could a column be made of?
+//! Candidate steps of which a column may consist of integer counts.
 
-/// How a value comes from a count.
+/// Conversion of a count to a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Scale {
     /// value = count × step
     Times(f64),
-    /// value = count ÷ parts: decimals as they are printed, which no product reproduces.
+    /// value = count ÷ parts: printed decimals, which a multiplication does not reproduce.
     Over(f64),
 }
 
-/// Largest count: beyond it [`Scale::count`] does not round any more.
+/// Largest count: beyond it [`Scale::count`] does not round.
 const LARGEST: f64 = (1u64 << 50) as f64;
-/// Adding this to |x| < 2^51 leaves the nearest whole number in the low bits of the sum.
+/// Adding this to |x| < 2^51 places the nearest integer in the low bits of the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
-/// 1 ÷ 10^k is tried for k up to this: nine significant digits from microunits upwards.
+/// Largest k of the tested scales 1 ÷ 10^k: nine significant digits from microunits upwards.
 const DECIMALS: i32 = 15;
-/// Values looked at before a scale is tried on the whole column.
+/// Values that are tested before the whole column.
 const PROBES: usize = 64;
 
 impl Scale {
-    /// The nearest count. Meaningless outside of ±2^50.
+    /// The nearest count. Undefined outside of ±2^50.
     #[inline(always)]
     pub fn count(self, value: f64, inverse: f64) -> i64 {
         ((value * inverse + ROUNDER).to_bits() as i64).wrapping_sub(ROUNDER.to_bits() as i64)
     }
 
-    /// What [`Scale::count`] multiplies by.
+    /// The factor of [`Scale::count`].
     pub fn inverse(self) -> f64 {
         match self {
             Scale::Times(step) => 1.0 / step,
@@ -35,7 +35,7 @@ impl Scale {
 
     #[inline(always)]
     pub fn value(self, count: i64) -> f64 {
-        // The way of `count` back: unlike a conversion, it is done for several values at once.
+        // Inverse of `count`. Unlike a conversion, this can be vectorized.
         let whole = f64::from_bits(count.wrapping_add(ROUNDER.to_bits() as i64) as u64) - ROUNDER;
         match self {
             Scale::Times(step) => whole * step,
@@ -43,7 +43,7 @@ impl Scale {
         }
     }
 
-    /// Units in the last place from the count's value to the true one.
+    /// Difference between the true value and the count's value, in units in the last place.
     pub fn misses(self, value: f64, inverse: f64) -> Option<i8> {
         if (value * inverse).abs() < LARGEST {
             let nearest = self.value(self.count(value, inverse));
@@ -59,12 +59,12 @@ impl Scale {
     }
 }
 
-/// The scales worth trying, best first: those that hit every probe, then those that come within a few last places.
+/// Candidate scales, best first: those that match every probe, then those within a few last places.
 pub fn candidates(values: &[f64], resolution: Option<f64>) -> Vec<Scale> {
     let told = resolution.into_iter().flat_map(|step| [Scale::Times(step), Scale::Over((1.0 / step).round())]);
     let decimals = (0..=DECIMALS).map(|digits| Scale::Over(10f64.powi(digits)));
     let stride = values.len().div_ceil(PROBES).max(1);
-    // An odd stride does not fall in step with a periodic column.
+    // An odd stride avoids aliasing with a periodic column.
     let probes: Vec<f64> = values.iter().copied().step_by(stride | 1).collect();
     let few = probes.len() / 16;
 

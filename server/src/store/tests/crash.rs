@@ -2,7 +2,7 @@ use super::super::StoreError;
 use super::*;
 use jointbench_procedure::Safe;
 
-/// Another store on a copy of the files as they lie on the disk this moment: what a start after kill -9 finds.
+/// A store on a copy of the files on the disk: the state at a start after kill -9.
 async fn after_kill(folder: &TempDir) -> (TempDir, Store) {
     let copy = tempfile::tempdir().unwrap();
     for file in ["jointbench.db", "jointbench.db-wal"] {
@@ -18,7 +18,7 @@ fn every_committed_row_is_there_once_after_a_kill() {
         let (folder, store) = fresh().await;
         let run = store.create_run(&new_run()).await.unwrap();
         store.commit(run, RunState::Arming, &[note(0.0, "armed")], Trace::default()).await.unwrap();
-        // One commit before a block is full, the one that fills it, one behind it.
+        // Commits before, at and after the end of a block.
         for (kept, count) in [(0, 32_000), (32_000, 500), (32_500, 500), (33_000, 500)] {
             store.commit(run, RunState::Running, &[note(kept as f64, "step")], rows(kept, count)).await.unwrap();
             let (_copy, found) = after_kill(&folder).await;
@@ -48,7 +48,7 @@ fn every_committed_row_is_there_once_after_a_kill() {
 fn a_full_disk_keeps_all_before_it_and_the_end_of_a_run_when_it_is_healed() {
     block_on(async {
         let (_folder, store) = fresh().await;
-        // What was packed leaves free pages behind, which are no room either.
+        // Packing frees pages in the file; these must not accept data either.
         let before = store.create_run(&new_run()).await.unwrap();
         commit(&store, before, RunState::Running, rows(0, 20_000)).await;
         commit(&store, before, RunState::Completed, Trace::default()).await;

@@ -1,11 +1,11 @@
-//! Damage in the file: each record that is hit is named, and hides no other.
+//! Damage in the file: each damaged record is named, and does not hide others.
 
 use super::super::{NewModel, RunFilter, Search, StoreError};
 use super::*;
 use serde_json::{Map, json};
 use sqlx::AssertSqlSafe;
 
-/// Changes what is stored behind the store's back, as a failing disk does: no trigger and no condition is in the way.
+/// Changes stored data without triggers and constraints, like a failing disk.
 pub async fn damage(store: &Store, sql: &str) {
     let triggers: Vec<(String, String)> = sqlx::query_as("SELECT name, sql FROM sqlite_schema WHERE type = 'trigger'")
         .fetch_all(&store.writer)

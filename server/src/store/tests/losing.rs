@@ -1,4 +1,4 @@
-//! A write-ahead file that was removed or cut, and what the mark says of it.
+//! A removed or truncated write-ahead log, and its detection by the mark.
 
 use super::super::runs::now;
 use super::super::{Loss, StoreError, verify};
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-/// A copy of the files as they lie on the disk, once the mark has reached the last change.
+/// A copy of the files on the disk after the mark has reached the last change.
 async fn copy_when_marked(folder: &Path, store: &Store) -> TempDir {
     let changes: i64 = sqlx::query_scalar("SELECT changes FROM store_log").fetch_one(&store.readers).await.unwrap();
     let is_marked = || super::super::mark::Mark::read(folder).is_some_and(|mark| mark.changes == changes);
@@ -25,7 +25,7 @@ async fn copy_when_marked(folder: &Path, store: &Store) -> TempDir {
     copy
 }
 
-/// A run on a bench, part of which is in the write-ahead file only.
+/// A run on a bench, partly in the write-ahead log only.
 async fn with_run() -> (TempDir, Store, RunId) {
     let (folder, store) = fresh().await;
     let run = store.create_run(&new_run()).await.unwrap();
@@ -66,7 +66,7 @@ fn a_removed_write_ahead_file_is_noticed_and_blocks_the_benches() {
 fn a_cut_write_ahead_file_is_noticed_and_blocks_the_benches() {
     block_on(async {
         let (folder, store, run) = with_run().await;
-        // A run that ends goes into the database: what follows is in the write-ahead file alone.
+        // The end of a run causes a checkpoint: later changes are only in the write-ahead log.
         store.commit(run, RunState::Completed, &[], Trace::default()).await.unwrap();
         for _ in 0..2_000 {
             if fs::metadata(folder.path().join("jointbench.db-wal")).unwrap().len() == 0 {

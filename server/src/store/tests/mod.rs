@@ -1,4 +1,4 @@
-//! The store against a folder of its own.
+//! Tests of the store in a temporary folder.
 
 mod crash;
 mod damage;
@@ -37,7 +37,7 @@ fn new_run() -> NewRun {
     }
 }
 
-/// Rows of a run from `first` on: a time, an encoder, noise without a step.
+/// Rows of a run from `first` on: time, encoder, and noise without a step.
 fn rows(first: usize, count: usize) -> Trace {
     let channels = vec![
         Channel::new("time_s"),

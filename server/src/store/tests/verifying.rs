@@ -1,4 +1,4 @@
-//! The check of everything, and backups.
+//! Tests of the complete check and of backups.
 
 use super::super::runs::now;
 use super::super::{StoreError, VerifyReport, backup, restore, verify};
@@ -7,7 +7,7 @@ use super::*;
 use serde_json::json;
 use std::time::Duration;
 
-/// Two runs, one of them still on, with everything that hangs on them.
+/// A store with two runs, one of them active, and related records.
 async fn furnished() -> (TempDir, Store) {
     let (folder, store) = fresh().await;
     store.import(&new_run(), &[note(0.0, "from a file")], rows(0, 70_000)).await.unwrap();
@@ -36,7 +36,7 @@ fn a_store_in_use_is_whole() {
         let report = verify(folder.path()).await.unwrap();
         assert!(report.is_whole(), "{report:?}");
         assert_eq!((report.runs, report.rows, report.without_checksum), (2, 110_000, 0));
-        // 3 blocks and 1 with 3 channels, a piece of tail, 2 runs twice, 6 channels, 2 events, and 8 of one each.
+        // 3 blocks and 1 with 3 channels, a tail piece, 2 runs twice, 6 channels, 2 events, and 8 single records.
         assert_eq!(report.records, 4 * 3 + 1 + 4 + 6 + 2 + 8);
         assert!(store.check(Duration::ZERO).await.unwrap().is_whole());
         let nothing = verify(&folder.path().join("elsewhere")).await.unwrap_err();

@@ -3,7 +3,7 @@ use super::*;
 
 const TORQUE: &str = "link_torque_nm";
 
-/// A run of `count` rows with one sample far away at `spike`, the last part of it in the tail.
+/// A run of `count` rows with one outlier at `spike`. Its last part is in the tail.
 async fn with_spike(store: &Store, count: usize, spike: usize) -> (RunId, Trace) {
     let (channels, mut columns) = (rows(0, 1).channels().to_vec(), rows(0, count).columns().to_vec());
     columns[2][spike] = 55.5;
@@ -39,7 +39,7 @@ fn a_spike_of_one_sample_is_seen_at_every_width() {
         const COUNT: usize = 150_000;
         for spike in [0, 1, 32_767, 32_768, 77_777, 134_999, 135_000, COUNT - 1] {
             let (run, trace) = with_spike(&store, COUNT, spike).await;
-            // From every source: coarse bins, fine bins, samples, the rows themselves.
+            // Covers all sources: coarse bins, fine bins, samples, and exact rows.
             for px in [1, 7, 60, 500, 2_000, 200_000] {
                 let view = store.view(run, Some(&[TORQUE.to_owned()]), None, None, px).await.unwrap();
                 check_view(&view, &trace, 0..COUNT, px);

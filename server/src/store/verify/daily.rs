@@ -1,4 +1,4 @@
-//! The check that a daemon makes beside its work.
+//! The periodic check of a running daemon.
 
 use super::super::{Loss, Store};
 use super::DamagedRecord;
@@ -7,10 +7,10 @@ use std::sync::PoisonError;
 use std::time::Duration;
 use utoipa::ToSchema;
 
-/// A start has other things to do first.
+/// Delay of the first check after a start.
 const FIRST: Duration = Duration::from_secs(60);
 const DAY: Duration = Duration::from_secs(24 * 3600);
-/// Between two runs.
+/// Pause between two runs.
 const PACE: Duration = Duration::from_secs(1);
 
 /// Result of the latest integrity check of the store.
@@ -25,12 +25,11 @@ pub struct StoreHealth {
 }
 
 impl Store {
-    /// Never waits.
     pub fn health(&self) -> StoreHealth {
         self.health.read().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Checks all runs, one a second, once a day, until the store is closed.
+    /// Checks all runs once a day, one run per second, until the store is closed.
     pub async fn check_daily(self) {
         let closed = self.readers.close_event();
         let checks = async {

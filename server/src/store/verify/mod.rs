@@ -1,6 +1,6 @@
-//! Reads everything that is stored and says what is damaged, by run and table, and what can still be read.
+//! Reads all stored data and reports damage by run and table, and the readable part.
 //!
-//! Only reading, also while a daemon has the folder. Samples are read block by block: memory stays small.
+//! Read-only, also while a daemon uses the folder. Samples are read block by block to limit memory.
 
 mod daily;
 mod records;
@@ -25,20 +25,20 @@ use std::time::Duration;
 /// Tables whose rows belong to no run.
 const OF_NO_RUN: [&Sealed; 5] =
     [&seal::BENCH_SAFETY, &seal::CALIBRATIONS, &seal::INSTRUMENT_FAULTS, &seal::OWN_EFFECTS, &seal::AUTOPILOT_STEPS];
-/// At most so many faults of SQLite's own check are listed.
+/// Limits the number of faults that SQLite's own check lists.
 const MOST_FAULTS: &str = "PRAGMA integrity_check(100)";
 
-/// Checks the store in a folder as a whole.
+/// Checks the whole store in a folder.
 ///
 /// # Errors
-/// [`StoreError::NoStore`] and the other reasons for which there is nothing to check. Damage is no error.
+/// [`StoreError::NoStore`] and other errors that prevent a check. Damage is not an error.
 pub async fn verify(folder: &Path) -> Result<VerifyReport, StoreError> {
-    // Before the database: a change that comes in between is no loss.
+    // Read before the database: a change in between must not count as a loss.
     let mark = Mark::read(folder);
     check_database(to_read(folder).await?, mark.as_ref()).await
 }
 
-/// The same of a database that lies alone, as a backup does.
+/// The same for a single database file, such as a backup.
 pub async fn verify_file(file: &Path) -> Result<VerifyReport, StoreError> {
     check_database(file_to_read(file).await?, None).await
 }
@@ -51,7 +51,7 @@ async fn check_database(mut database: SqliteConnection, mark: Option<&Mark>) -> 
         check_rows(&mut database, sealed, None, &mut report).await;
     }
     for run in run_ids(&mut database, &mut report).await {
-        // In one transaction: a daemon may be at work on the run.
+        // In one transaction, because a daemon may write to the run.
         let mut reader = database.begin().await?;
         check_run(&mut reader, run, &mut report).await;
         reader.rollback().await?;
@@ -61,8 +61,8 @@ async fn check_database(mut database: SqliteConnection, mark: Option<&Mark>) -> 
 }
 
 impl Store {
-    /// Checks what is stored, a run each `pace`, on one of the reading connections. Rows of an older release get their
-    /// checksums. SQLite's own check, which cannot be done in parts, is left to [`verify`].
+    /// Checks the stored data on a reader connection, one run per `pace`. Adds checksums to rows of an older release.
+    /// Only [`verify`] runs SQLite's own check, because it cannot be split.
     pub async fn check(&self, pace: Duration) -> Result<VerifyReport, StoreError> {
         let mut report = VerifyReport { checked_at: now(), ..VerifyReport::default() };
         report.lost = self.losses().await?;
@@ -81,7 +81,7 @@ impl Store {
     }
 }
 
-/// One run with all that belongs to it.
+/// Checks one run with all its records.
 async fn check_run(database: &mut SqliteConnection, run: RunId, report: &mut VerifyReport) {
     report.runs += 1;
     for sealed in [&seal::RUNS, &seal::RUN_STATES, &seal::CHANNELS, &seal::EVENTS] {
@@ -93,7 +93,7 @@ async fn check_run(database: &mut SqliteConnection, run: RunId, report: &mut Ver
     }
 }
 
-/// By their numbers, where the table itself cannot be read through.
+/// Tests id by id if SQLite cannot scan the table.
 async fn run_ids(database: &mut SqliteConnection, report: &mut VerifyReport) -> Vec<RunId> {
     let ids = sqlx::query_scalar("SELECT id FROM runs ORDER BY id").fetch_all(&mut *database).await;
     match ids {
@@ -106,7 +106,7 @@ async fn run_ids(database: &mut SqliteConnection, report: &mut VerifyReport) -> 
     }
 }
 
-/// SQLite's own check, with foreign keys.
+/// SQLite's own check, including foreign keys.
 async fn check_file(database: &mut SqliteConnection, report: &mut VerifyReport) {
     match sqlx::query_scalar::<_, String>(MOST_FAULTS).fetch_all(&mut *database).await {
         Ok(said) => said.into_iter().filter(|said| said != "ok").for_each(|said| report.add(None, "file", said)),
@@ -128,7 +128,7 @@ async fn check_file(database: &mut SqliteConnection, report: &mut VerifyReport) 
     }
 }
 
-/// Both are part of the store since one release: of an older one they say nothing.
+/// An older release stored neither losses nor a mark; missing tables are ignored.
 async fn look_for_losses(database: &mut SqliteConnection, mark: Option<&Mark>, report: &mut VerifyReport) {
     report.lost = losses(database).await.unwrap_or_default();
     if let Ok(Some(loss)) = missing(database, mark).await {

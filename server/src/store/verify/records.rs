@@ -1,4 +1,4 @@
-//! Records against their checksums.
+//! Comparison of records with their checksums.
 
 use super::super::seal::Sealed;
 use super::super::{Store, StoreError};
@@ -10,10 +10,10 @@ use std::time::Duration;
 
 /// Rows that are read at a time.
 const SLICE: i64 = 64;
-/// Between two slices of rows that get their checksum: the writer is the recorder's first.
+/// Pause between two slices of rows that get their checksums: the recorder has priority on the writer.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// All rows of a table, or those of a run. Where SQLite cannot read through it, each row for itself.
+/// Checks all rows of a table, or those of a run. Checks row by row if SQLite cannot scan the table.
 pub async fn check_rows(
     database: &mut SqliteConnection,
     sealed: &Sealed,
@@ -38,7 +38,7 @@ pub async fn check_rows(
     report.count(run, sealed, whole, damaged);
 }
 
-/// What is wrong, without what to do about it.
+/// The damage without the advice.
 pub fn what(fault: &StoreError) -> String {
     match fault {
         StoreError::Damaged(what) => what.clone(),
@@ -46,14 +46,14 @@ pub fn what(fault: &StoreError) -> String {
     }
 }
 
-/// The number by which a row is found, and the condition that chooses those of a run.
+/// The key of a row, and the condition that selects the rows of a run.
 fn keys(sealed: &Sealed) -> (&'static str, &'static str) {
     match sealed.table {
         "runs" => ("id", "id = ?1"),
         "channels" => ("place", "run = ?1"),
         "events" => ("sequence", "run = ?1"),
         "diagnoses" => ("id", "model IN (SELECT id FROM models WHERE run = ?1)"),
-        // The one key of two numbers.
+        // The only key of two numbers.
         "autopilot_steps" => ("(autopilot << 32) + sequence", "?1 IS NULL"),
         "notes" | "models" => ("id", "run = ?1"),
         _ => ("id", "?1 IS NULL"),
@@ -90,7 +90,7 @@ async fn row(
 }
 
 impl Store {
-    /// Gives the rows of an older release their checksums, a slice at a time. What was damaged before stays unnoticed.
+    /// Adds checksums to rows of an older release, slice by slice. Earlier damage remains undetected.
     pub(super) async fn seal_old_rows(&self) -> Result<(), StoreError> {
         for sealed in super::seal::ALL {
             let key = if matches!(sealed.table, "channels" | "autopilot_steps") { "0" } else { "id" };
@@ -103,7 +103,7 @@ impl Store {
         Ok(())
     }
 
-    /// The key of the last row that got one; `None` where there was none left.
+    /// The key of the last row that got a checksum; `None` if all rows have one.
     async fn seal_slice(&self, sealed: &Sealed, key: &str, behind: i64) -> Result<Option<i64>, StoreError> {
         let Sealed { table, checksum, .. } = sealed;
         let sql = format!(

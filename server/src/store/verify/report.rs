@@ -1,11 +1,11 @@
-//! What a check has found.
+//! Results of a check.
 
 use super::super::Loss;
 use super::super::seal::Sealed;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What a check of the store has found. It is whole where nothing is `damaged`.
+/// Result of a check of the store. The store is intact if `damaged` is empty.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
 pub struct VerifyReport {
     #[schema(format = DateTime)]
@@ -13,14 +13,14 @@ pub struct VerifyReport {
     pub runs: u64,
     /// Rows of samples.
     pub rows: u64,
-    /// Stored records, with the blocks of samples among them.
+    /// Stored records, including the blocks of samples.
     pub records: u64,
-    /// Records of an older release, which have no checksum yet.
+    /// Records of an older release without a checksum.
     pub without_checksum: u64,
     pub damaged: Vec<DamagedRecord>,
-    /// Of runs with damage: how much of each table can be read.
+    /// For runs with damage: the readable part of each table.
     pub readable: Vec<Readable>,
-    /// Changes that were acknowledged once and are missing.
+    /// Acknowledged changes that are missing.
     pub lost: Vec<Loss>,
 }
 
@@ -33,7 +33,7 @@ pub struct DamagedRecord {
     pub what: String,
 }
 
-/// How much of a table can be read of a run, or of all where `run` is `null`.
+/// The readable part of a table, for one run or, if `run` is `null`, for all.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Readable {
     pub run: Option<i64>,
@@ -51,7 +51,7 @@ impl VerifyReport {
         self.damaged.push(DamagedRecord { run, table: table.to_owned(), what });
     }
 
-    /// So many records of a table were read, and so many could not be.
+    /// Adds the numbers of readable and damaged records of a table.
     pub(super) fn count(&mut self, run: Option<i64>, sealed: &Sealed, whole: u64, damaged: u64) {
         self.records += whole + damaged;
         if damaged > 0 {

@@ -1,4 +1,4 @@
-//! Samples of a run: each block against its checksum, the pyramid against the blocks, and the number of rows.
+//! Check of the samples of a run: checksums of blocks, the pyramid, and the number of rows.
 
 use super::super::StoreError;
 use super::super::codec;
@@ -11,7 +11,7 @@ use jointbench_procedure::RunId;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{Row, SqliteConnection};
 
-/// What was found in one piece of a run.
+/// Result of the check of one piece of a run.
 #[derive(Default)]
 struct Found {
     rows: i64,
@@ -27,10 +27,10 @@ pub async fn check(database: &mut SqliteConnection, run: RunId, report: &mut Ver
     }
 }
 
-/// The number of rows that the pieces of a run hold.
+/// Checks all pieces of a run and returns their number of rows.
 async fn pieces(database: &mut SqliteConnection, run: RunId, report: &mut VerifyReport) -> Result<i64, StoreError> {
     let channels: i64 = scalar(database, "SELECT COUNT(*) FROM channels WHERE run = ?", run).await?;
-    // From the index alone, which is read where the table is damaged.
+    // These queries use only the index, which is readable if the table is damaged.
     let spans: Vec<i64> =
         first_rows(database, "SELECT first_row FROM spans WHERE run = ? ORDER BY first_row", run).await?;
     let tail: Vec<i64> =
@@ -56,7 +56,7 @@ async fn pieces(database: &mut SqliteConnection, run: RunId, report: &mut Verify
         found.damaged.into_iter().for_each(|(table, what)| report.add(Some(run), table, what));
     }
     let told: i64 = scalar(database, "SELECT rows FROM runs WHERE id = ?", run).await?;
-    // Where a piece cannot be read, it is named already.
+    // An unreadable piece is already reported.
     if told != rows && report.damaged.iter().all(|finding| finding.run != Some(run)) {
         report.add(Some(run), "runs", format!("the run has {told} rows, and blocks hold {rows}"));
     }
@@ -71,7 +71,7 @@ async fn first_rows(database: &mut SqliteConnection, sql: &'static str, run: Run
     Ok(sqlx::query_scalar(sql).bind(run).fetch_all(database).await?)
 }
 
-/// The blocks of all channels from a row on, with their picture.
+/// Checks the blocks of all channels from `first_row` on, with their pyramid.
 async fn span(database: &mut SqliteConnection, run: RunId, first_row: i64, channels: i64) -> Result<Found, StoreError> {
     let span = sqlx::query("SELECT * FROM spans WHERE run = ? AND first_row = ?")
         .bind(run)
@@ -106,7 +106,7 @@ async fn span(database: &mut SqliteConnection, run: RunId, first_row: i64, chann
     checked.await.map_err(|fault| StoreError::Database(fault.to_string()))
 }
 
-/// A fault of SQLite does not say where.
+/// Adds the position to a fault of SQLite, which has none.
 fn named(what: String, place: impl Fn() -> String) -> String {
     if what.starts_with("table") { what } else { place() + &what }
 }
@@ -123,7 +123,7 @@ fn column(block: &SqliteRow, found: &mut Found) -> Result<Vec<f64>, StoreError> 
     Ok(values)
 }
 
-/// The picture of a block, and whether it shows the samples.
+/// Checks the pyramid of a block against the samples.
 fn picture(span: &SqliteRow, columns: &[(usize, Vec<f64>)], found: &mut Found) -> Result<(), StoreError> {
     for sealed in [&SPANS, &COARSE, &FINE] {
         check_seal(span, sealed, found)?;
@@ -142,14 +142,14 @@ fn picture(span: &SqliteRow, columns: &[(usize, Vec<f64>)], found: &mut Found) -
     Ok(())
 }
 
-/// Bit by bit, but for NaN and the sign of zero.
+/// Equal bit by bit, except for NaN and the sign of zero.
 fn same(a: &Extremes, b: &Extremes) -> bool {
     let alike =
         |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()));
     alike(&a.min, &b.min) && alike(&a.max, &b.max)
 }
 
-/// The rows of one commit that are in no block yet.
+/// Checks the rows of one commit in the tail.
 async fn tail_piece(
     database: &mut SqliteConnection,
     run: RunId,

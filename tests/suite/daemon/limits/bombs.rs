@@ -1,4 +1,4 @@
-//! Files that are small where they lie and large in memory, and a long run.
+//! Small files that need much memory, and a long run.
 
 use super::*;
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
@@ -11,7 +11,7 @@ use jointbench_instrument::{Channel, Kind, Meta, Trace};
 
 const NAMES: [&str; 3] = ["time_s", "motor_position_rad", "motor_current_a"];
 
-/// Zeros, a thousand times smaller.
+/// Zeros, compressed to a thousandth.
 pub fn gzip() -> Vec<u8> {
     let mut packed = GzEncoder::new(Vec::new(), Compression::best());
     let piece = vec![b'0'; 1 << 20];
@@ -20,7 +20,7 @@ pub fn gzip() -> Vec<u8> {
     packed.finish().expect("memory")
 }
 
-/// As many rows as may be: each column one value and a number of repetitions.
+/// The maximum number of rows: each column is one value with a repetition count.
 pub fn parquet() -> Vec<u8> {
     let channels: Vec<Channel> = NAMES.iter().copied().chain(["a", "b", "c", "d", "e"]).map(Channel::new).collect();
     let meta = Meta { kind: Some(Kind::Friction), ..Meta::default() };
@@ -33,7 +33,7 @@ pub fn parquet() -> Vec<u8> {
     bytes
 }
 
-/// A buffer that says of itself that it unpacks to a terabyte.
+/// A buffer that declares an uncompressed size of one terabyte.
 pub fn arrow() -> Vec<u8> {
     let rows = 500;
     let column: ArrayRef = Arc::new(Float64Array::from_iter_values((0..rows).map(f64::from)));

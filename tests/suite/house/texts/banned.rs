@@ -1,6 +1,6 @@
 //! Words and phrases that the glossary replaces by standard terms.
 
-/// As lower-case words. A phrase matches these words in a row.
+/// In lower case. A phrase matches consecutive words.
 const BANNED: [&str; 82] = [
     "any more",
     "asked for",
@@ -86,7 +86,7 @@ const BANNED: [&str; 82] = [
     "would have it",
 ];
 
-/// Longer sentences need a second reading.
+/// Longer sentences are hard to read.
 const MOST_WORDS: usize = 25;
 
 /// The first banned phrase in a text.
@@ -100,7 +100,7 @@ pub fn long_sentences(text: &str) -> Vec<String> {
     ended.split(". ").filter(|sentence| words(sentence).len() > MOST_WORDS).map(str::to_owned).collect()
 }
 
-/// In lower case, without code between backticks and without names of arguments between braces: a person sees their values.
+/// In lower case, without code in backticks and without argument names in braces, which a person does not see.
 fn words(text: &str) -> Vec<String> {
     let mut spoken = String::new();
     let mut braces = 0;

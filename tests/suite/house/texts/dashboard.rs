@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// With more than one word: the others are names. With their file.
+/// Texts with more than one word (others are names), with their file.
 pub fn under(root: &Path, folder: &Path) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for file in sources(&root.join(folder)) {
@@ -48,7 +48,7 @@ impl Texts {
         self.markup(&format!("{before}{markup}"));
     }
 
-    /// String literals; in a template, its text and those of what it holds.
+    /// Collects string literals; for a template, its text and the literals in its expressions.
     fn script(&mut self, source: &str) {
         let mut rest = source;
         while let Some(at) = rest.find(['\'', '"', '`', '/']) {
@@ -94,7 +94,7 @@ impl Texts {
         ""
     }
 
-    /// Up to the brace that closes.
+    /// Reads up to the closing brace.
     fn braces<'s>(&mut self, source: &'s str) -> &'s str {
         let mut rest = source;
         let mut open = 1;
@@ -132,7 +132,7 @@ impl Texts {
         self.found.push(text + rest);
     }
 
-    /// The attributes that a person reads.
+    /// Collects the attributes that a person reads.
     fn tag<'s>(&mut self, source: &'s str) -> &'s str {
         const UNREAD: [&str; 4] = ["class=", "style=", "href=", "file="];
         let mut rest = source;
@@ -167,7 +167,7 @@ impl Texts {
     }
 }
 
-/// Behind a comment, or behind a stroke that begins none.
+/// The source after a comment, or after a slash that starts none.
 fn comment(source: &str) -> &str {
     match (source.strip_prefix('/'), source.strip_prefix('*')) {
         (Some(line), _) => line.split_once('\n').map_or("", |(_, rest)| rest),

@@ -3,7 +3,7 @@
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::path::{Path, PathBuf};
 
-/// Those with more than one word: the others are names. With their file.
+/// Strings with more than one word (others are names), with their file.
 pub fn under(root: &Path, folder: &Path) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for file in sources(&root.join(folder)) {
@@ -34,7 +34,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 
 fn collect(tokens: TokenStream, strings: &mut Vec<String>) {
     let mut tokens = tokens.into_iter().peekable();
-    // What follows `#[cfg(test)]` up to its body.
+    // Tokens between `#[cfg(test)]` and its body.
     let mut is_test = false;
     while let Some(token) = tokens.next() {
         match token {
@@ -45,7 +45,7 @@ fn collect(tokens: TokenStream, strings: &mut Vec<String>) {
                 if let Some(TokenTree::Group(attribute)) = tokens.next_if(|next| matches!(next, TokenTree::Group(_))) {
                     let inside = attribute.stream().to_string();
                     is_test |= inside.starts_with("cfg (test)") || inside.starts_with("cfg(test)") || inside == "test";
-                    // `#[error("…")]` is a message, a comment is none.
+                    // `#[error("…")]` is a message; a doc comment is not.
                     if inside.starts_with("error") {
                         collect(attribute.stream(), strings);
                     }
@@ -60,7 +60,7 @@ fn collect(tokens: TokenStream, strings: &mut Vec<String>) {
     }
 }
 
-/// The text of a string literal; breaks of a line that ends in a backslash are taken out.
+/// The text of a string literal, with backslash line breaks removed.
 fn string(literal: &str) -> Option<String> {
     let body = literal.trim_start_matches(['b', 'r', '#']).strip_prefix('"')?;
     let body = body.trim_end_matches('#').strip_suffix('"')?;

@@ -1,5 +1,5 @@
-//! Every text that a person sees is standard English (docs/glossary.md): help of the command line, procedures, effects, the
-//! description of the API, and the strings of the sources from which results, journals and refusals are made.
+//! Every text for users is standard English (docs/glossary.md): command line help, procedures, effects, API
+//! description, and strings for results, events and errors.
 
 mod banned;
 mod dashboard;
@@ -29,7 +29,7 @@ const SPOKEN: [&str; 12] = [
     "server/src/report",
 ];
 
-/// A text and where a person sees it.
+/// A text and its source.
 type Text = (String, String);
 
 fn assert_plain(texts: impl IntoIterator<Item = Text>, least: usize) {
@@ -48,7 +48,7 @@ fn assert_short(texts: impl IntoIterator<Item = Text>) {
     assert!(wrong.is_empty(), "{} sentences are too long:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// The names in the list of subcommands that a help text contains.
+/// The names of the subcommands in a help text.
 fn subcommands(help: &str) -> Vec<String> {
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
     let names = listed.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
@@ -60,7 +60,7 @@ fn helps(command: &[&str]) -> Vec<Text> {
     let below = subcommands(&help);
     let place = format!("jointbench {} --help", command.join(" "));
     let more = below.iter().flat_map(|name| helps(&[command, &[name.as_str()]].concat()));
-    // As a whole: a phrase may be broken into two lines.
+    // As one text, because a phrase may continue on the next line.
     [(place, help)].into_iter().chain(more).collect()
 }
 
@@ -89,7 +89,7 @@ fn library() -> Vec<Text> {
     texts.collect()
 }
 
-/// Summaries, descriptions and titles of the snapshot that `server/src/api/specification.rs` keeps true.
+/// Summaries, descriptions and titles of the snapshot that `server/src/api/specification.rs` checks.
 fn described(value: &Value, place: &str) -> Vec<Text> {
     match value {
         Value::Object(fields) => fields
