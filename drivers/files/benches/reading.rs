@@ -1,8 +1,9 @@
 //! Reading speed of a plain CSV, compared with polars on the same file in the same run.
 //!
-//! `cargo bench -p jointbench-files --bench reading -- 1024` creates a file of 1024 MiB. polars runs through Python
-//! (`JOINTBENCH_PYTHON`, else python3), because its crate takes longer to build than everything else here. Without
-//! polars only our own result is printed.
+//! `cargo bench -p jointbench-files --bench reading -- 1024` creates a file of 1024 MiB.
+//!
+//! polars runs through Python (`JOINTBENCH_PYTHON`, else python3), because its crate takes longer to build than everything
+//! else here. Without polars only our own result is printed.
 
 use jointbench_files::{ReadOptions, understand};
 use std::fs::File;

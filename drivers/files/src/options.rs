@@ -19,7 +19,7 @@ pub struct ReadOptions {
     pub map: Vec<(String, String)>,
     /// Factors: (name in the run table, factor). A value in the table is the file's value times the factor.
     pub scale: Vec<(String, f64)>,
-    /// Columns of the file to omit, whatever their content.
+    /// Columns of the file to omit, with any content.
     pub leave: Vec<String>,
     /// A row with an empty cell is omitted and becomes a gap in time. Their number is a fact of the run.
     pub leave_empty_rows: bool,

@@ -5,7 +5,7 @@ use crate::units::quantity_of;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What a run table measures. It determines what a model predicts.
+/// The measurement of a run table. It determines the prediction of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {

@@ -1,4 +1,4 @@
-//! Instrument roles. They are narrow on purpose: a role contains only what every instrument of its kind can do.
+//! Instrument roles. They are narrow on purpose: a role contains only functions of every instrument of its kind.
 //!
 //! Calls block until the instrument has answered or its deadline has passed; no call blocks for ever. After a missing
 //! or garbled reply a driver returns the fault. The caller may call [`Instrument::recover`] and try again.

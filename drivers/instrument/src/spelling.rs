@@ -16,7 +16,7 @@ pub fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     known.into_iter().filter_map(near).min_by_key(|(mistakes, _)| *mistakes).map(|(_, known)| known)
 }
 
-/// What to write instead of an unknown name: the suggested name, or all known names.
+/// A hint for an unknown name: the suggested name, or all known names.
 pub fn instead(name: &str, known: &[&str]) -> String {
     match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean {near}?"),

@@ -1,4 +1,4 @@
-//! Data sheets of the joints under test and the brake: what an owner of the bench knows beforehand.
+//! Data sheets of the joints under test and the brake, known to the owner of the bench.
 
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;

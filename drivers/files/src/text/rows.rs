@@ -14,7 +14,7 @@ use csv::ByteRecord;
 pub struct Way {
     pub content: Content,
     pub decimal: Decimal,
-    /// The column is not needed, whatever its content.
+    /// The column is not needed; its content is ignored.
     pub is_left: bool,
 }
 

@@ -39,7 +39,7 @@ pub fn receive(drive: &mut Odrive, input: &mut Vec<u8>, plant: &Plant, output: &
             answer(drive, &line[..end], plant, output);
         }
     }
-    // A full buffer without a line end marks the line as too long, whatever its final length.
+    // A full buffer without a line end marks the line as too long, independent of its final length.
     input.truncate(LONGEST_LINE);
 }
 

@@ -1,4 +1,4 @@
-//! Poles that a falling current leaves in a rotor at standstill. Rotation under a falling current removes them.
+//! Poles that remain in a rotor when the current falls at standstill. Rotation under a falling current removes them.
 
 use super::branches::rising;
 use std::f64::consts::TAU;
