@@ -2,8 +2,8 @@
 //!
 //! `cargo bench -p jointbench-files --bench reading -- 1024` creates a file of 1024 MiB.
 //!
-//! polars runs through Python (`JOINTBENCH_PYTHON`, else python3), because its crate takes longer to build than everything
-//! else here. Without polars only our own result is printed.
+//! polars runs through Python (`JOINTBENCH_PYTHON`, else python3), because its crate takes longer to build than the
+//! rest of this benchmark. Without polars only our own result is printed.
 
 use jointbench_files::{ReadOptions, understand};
 use std::fs::File;

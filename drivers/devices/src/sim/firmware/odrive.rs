@@ -1,5 +1,6 @@
-//! An ODrive v3.6, firmware 0.5.6: state machine, estimators and control law at 8 kHz (`MotorControl/{axis,controller}.cpp`,
-//! `encoder.cpp`), commissioned for the joint. Axis 0 drives the motor, axis 1 reads the link encoder.
+//! An ODrive v3.6, firmware 0.5.6: state machine, estimators and control law at 8 kHz
+//! (`MotorControl/{axis,controller}.cpp`, `encoder.cpp`), commissioned for the joint. Axis 0 drives the motor, axis 1
+//! reads the link encoder.
 
 use super::Firmware;
 use crate::sim::data_sheet::Joint;
