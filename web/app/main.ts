@@ -4,7 +4,7 @@ import { mount } from 'svelte';
 import App from './App.svelte';
 import './state/theme.svelte';
 
-/** The frame that came with the first answer makes room. */
+/** Removes the page frame that was part of the first response. */
 const target = document.getElementById('app')!;
 target.replaceChildren();
 mount(App, { target });

@@ -1,4 +1,4 @@
-/** The pages beside the first: their scripts come when they are opened. */
+/** All pages except the first one: their scripts are loaded when they are opened. */
 import { later } from './ui/later.svelte';
 
 export const pages = {
@@ -12,10 +12,10 @@ export const pages = {
 	settings: later(() => import('./settings/Settings.svelte')),
 };
 
-/** [ms] The first page asks the daemon for what it shows meanwhile. */
+/** [ms] In this time the first page sends its own requests. */
 const REST_MS = 2000;
 
-/** A run is watched also where the daemon does not answer when its page is opened. */
+/** Preloads the page of a run, so that a run can be watched even if the daemon does not answer at that time. */
 export function fetchRunPage(): void {
 	setTimeout(() => [pages.live, pages.run].forEach((page) => page.want()), REST_MS);
 }

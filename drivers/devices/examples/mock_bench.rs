@@ -1,4 +1,4 @@
-//! A mock bench for other programs: prints where the instruments answer, and lets time pass until Enter is pressed.
+//! A mock bench for other programs: prints the addresses of the instruments, and lets time pass until Enter is pressed.
 //!
 //! `cargo run -p jointbench-devices --example mock_bench -- [joint_a|joint_b|encoder_bench] [seed] [tcp] [hmp4040] [effect …]`
 

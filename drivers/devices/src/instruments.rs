@@ -1,4 +1,4 @@
-//! The instruments of one bench: how each is reached, and what opening them has brought.
+//! The instruments of one bench: the settings to reach them, and the result of opening them.
 
 use crate::driver::{
     AdamSettings, AdamThermometer, DmmSettings, DmmTorqueSensor, GcsSettings, GcsStage, LorenzSensor, LorenzSettings,
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 
-/// How each instrument is reached. Absence is an empty slot.
+/// Connection settings of each instrument. A missing instrument is an empty slot.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct InstrumentSettings {
     pub joint: JointSettings,
@@ -40,7 +40,7 @@ impl JointSettings {
         }
     }
 
-    /// Motor current for each volt, where it is read as the voltage at a shunt.
+    /// Motor current per volt, if the drive measures it as the voltage at a shunt.
     pub fn amperes_per_volt(&self) -> Option<f64> {
         match self {
             JointSettings::Odrive(_) => None,
@@ -48,7 +48,7 @@ impl JointSettings {
         }
     }
 
-    /// Whether the drive takes a motor current beside a velocity.
+    /// Whether the drive accepts a feed-forward motor current in addition to a velocity.
     pub fn feeds_forward(&self) -> bool {
         matches!(self, JointSettings::Odrive(_))
     }
@@ -64,7 +64,7 @@ impl JointSettings {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum TorqueSensorSettings {
     Lorenz(LorenzSettings),
-    /// On the sensor's analogue output.
+    /// On the analogue output of the sensor.
     Multimeter(DmmSettings),
 }
 
@@ -84,7 +84,7 @@ impl TorqueSensorSettings {
     }
 }
 
-/// One instrument after it was asked who it is.
+/// The result of identifying one instrument.
 #[derive(Debug, Clone)]
 pub struct Asked {
     pub role: &'static str,
@@ -94,7 +94,7 @@ pub struct Asked {
     pub identity: Result<Identity, Fault>,
 }
 
-/// The instruments that answer, each in its slot.
+/// The instruments that answered, each in its slot.
 pub struct Instruments {
     pub joint: Option<Box<dyn JointController>>,
     pub torque_sensor: Option<Box<dyn TorqueSensor>>,
@@ -103,13 +103,13 @@ pub struct Instruments {
     pub test_encoder: Option<Box<dyn PositionCounter>>,
     pub stage: Option<Box<dyn AlignmentStage>>,
     pub thermometer: Option<Box<dyn Thermometer>>,
-    /// All that are described, those that do not answer too.
+    /// All described instruments, including those that do not answer.
     pub asked: Vec<Asked>,
 }
 
 impl InstrumentSettings {
-    /// Writes the traffic of every instrument down in `folder`, from its opening on, a file each (`joint.traffic`), which
-    /// [`crate::Replay`] can answer from.
+    /// Records the traffic of every instrument in `folder` from its opening on, one file each (`joint.traffic`).
+    /// [`crate::Replay`] can answer from such a file.
     pub fn record_in(&mut self, folder: &Path) {
         let sensor = self.torque_sensor.as_mut().map(|sensor| match sensor {
             TorqueSensorSettings::Lorenz(settings) => (&settings.name, &mut settings.port),
@@ -130,7 +130,7 @@ impl InstrumentSettings {
         }
     }
 
-    /// Opens and identifies every instrument; one that does not answer keeps no other from being asked. Nothing moves.
+    /// Opens and identifies every instrument, also after one does not answer. Nothing moves.
     pub fn open(&self, clock: &Arc<dyn Clock>) -> Instruments {
         let mut desk = Desk { asked: Vec::new() };
         let (mut joint, opened) = (self.joint.clone(), self.joint.clone());
@@ -201,7 +201,7 @@ impl Desk {
 }
 
 impl Instruments {
-    /// `None` where an instrument does not answer: half a bench is none.
+    /// `None` if an instrument does not answer: a bench must be complete.
     pub fn into_bench(
         self,
         name: &str,

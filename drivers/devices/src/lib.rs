@@ -1,15 +1,15 @@
 //! Instruments on real wires: transports, one module per protocol, one driver per instrument, and a mock bench that
 //! answers on the same wires.
 //!
-//! Everything here is synchronous: a bench is one physical thing, and the thread that owns it owns its ports. A driver
-//! holds one [`transport::Link`]; the link holds the port exclusively, gives every request a deadline of its own, and after
-//! a missed or garbled reply refuses further use until the instrument has been drained and identified again.
+//! Everything here is synchronous: a bench is one physical thing, and one thread owns the bench and its ports. A driver
+//! holds one [`transport::Link`]. The link holds the port exclusively and gives every request its own deadline. After a
+//! missing or garbled reply it refuses further use until the instrument is drained and identified again.
 //!
-//! The mock bench ([`sim`]) simulates instruments, not drivers: the firmware side of each protocol answers on
-//! pseudo-terminals or TCP ports that any program may open, or within the process, for a time-lapse. Its truth never
-//! crosses the wire.
+//! The mock bench ([`sim`]) simulates instruments, not drivers. The firmware side of each protocol answers on
+//! pseudo-terminals or TCP ports that any program may open, or inside the process for accelerated time. The true
+//! parameters are never sent over the wire.
 //!
-//! The traffic of any link can be written down ([`PortSettings::record`]) and replayed as an instrument ([`sim::Replay`]).
+//! The traffic of any link can be recorded ([`PortSettings::record`]) and replayed as an instrument ([`sim::Replay`]).
 
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 

@@ -17,7 +17,7 @@ struct Mean {
     link_nm: f64,
 }
 
-/// Runs at `velocity_rad_s`, and averages the last `keep_s`.
+/// Runs at `velocity_rad_s` and averages the last `keep_s`.
 fn stretch(bench: &mut Bench, velocity_rad_s: f64, settle_s: f64, keep_s: f64) -> Mean {
     let start_s = bench.clock.now_s();
     let (mut mean, mut rows) = (Mean::default(), 0.0);
@@ -52,7 +52,7 @@ fn arm(bench: &mut Bench) {
     bench.brake.as_mut().unwrap().prepare(compliance).unwrap();
 }
 
-/// With nothing hidden, motor torque less the load's share is Coulomb and viscous friction and nothing else.
+/// Without hidden effects, motor torque minus the load is only Coulomb and viscous friction.
 fn check_baseline(joint: Joint, velocities_rad_s: &[f64], budget_nm: f64) {
     let (mock, mut bench) = open(MockSettings::new(joint, 7));
     arm(&mut bench);
@@ -61,7 +61,7 @@ fn check_baseline(joint: Joint, velocities_rad_s: &[f64], budget_nm: f64) {
     for current_a in [0.0, 0.35] {
         bench.brake.as_mut().unwrap().set_current(Amperes(current_a)).unwrap();
         for velocity_rad_s in velocities_rad_s.iter().flat_map(|v| [*v, -*v]) {
-            // The brake's rotor winds up over a part of a degree before it slips, which takes a slow joint its time.
+            // The brake's rotor winds up over a fraction of a degree before it slips, which takes long at low speed.
             let mean = stretch(&mut bench, velocity_rad_s, 1.2 + 5.0 / velocity_rad_s.abs(), 1.2);
             let friction_nm = mean.motor_nm - mean.link_nm / truth.gear_ratio;
             let expected_nm = truth.coulomb_nm * velocity_rad_s.signum() + truth.viscous_nm_s * mean.velocity_rad_s;
@@ -135,7 +135,7 @@ fn the_brake_follows_late_and_holds_its_current() {
     let reading = brake.read().unwrap();
     assert!((reading.current.0 - 0.6).abs() < 0.002, "{reading:?}");
     assert_eq!(reading.regulation, Regulation::ConstantCurrent);
-    // Half the rating on the way down lies above half the rating on the way up.
+    // At half the rating, the torque on the falling branch is larger than on the rising branch.
     brake.set_current(Amperes(0.3)).unwrap();
     let falling = stretch(&mut bench, 60.0, 1.0, 0.3);
     let brake = bench.brake.as_mut().unwrap();

@@ -1,4 +1,4 @@
-//! Each hidden effect does to the measured torque what its truth says, and nothing else.
+//! Each hidden effect changes the measured torque as its true parameters say, and nothing else.
 
 use jointbench_devices::sim::HiddenEffect;
 use jointbench_devices::{Joint, MockBench, MockSettings};
@@ -72,7 +72,7 @@ impl World {
     }
 }
 
-/// Extra friction of a world that hides `effect`, against the same specimen that hides nothing.
+/// Extra friction of a joint with hidden `effect`, compared with the same specimen without it.
 fn extra_nm(effect: &str, velocity_rad_s: f64, brake_a: f64) -> (f64, Sample, HiddenEffect) {
     let mut world = World::hiding(&[effect]);
     let with = world.mean(velocity_rad_s, brake_a);
@@ -108,7 +108,7 @@ fn direction_offset_adds_one_way_and_takes_the_other() {
     check(backward_nm, truth.parameters["offset_nm"], 1e-3, "backward");
 }
 
-/// Half the swing of the friction over one link turn and more.
+/// Half the peak-to-peak friction over more than one link turn.
 fn swing_nm(effects: &[&str]) -> (f64, World) {
     let mut world = World::hiding(effects);
     let blocks = world.blocks(200.0, 0.0, 40);

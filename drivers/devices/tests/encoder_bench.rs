@@ -1,4 +1,4 @@
-//! The encoder bench: a shaft with two encoders, and nothing that brakes it.
+//! The encoder bench: a shaft with two encoders and no load.
 
 use jointbench_devices::sim::{MockInstrument, Trouble};
 use jointbench_devices::transport::{Event, Traffic};
@@ -18,7 +18,7 @@ fn every_slot_that_an_encoder_bench_has_is_filled() {
     let encoder = bench.test_encoder.as_mut().unwrap();
     assert!(encoder.status().expect("wired").periods_are_consistent().unwrap());
 
-    // 100 rad/s, both ways, and all three count alike.
+    // 100 rad/s in both directions: all three encoders agree.
     bench.joint.arm(RadPerSec(200.0), Amperes(5.0)).unwrap();
     for (velocity_rad_s, turned_rad) in [(100.0, 50.0), (-100.0, -50.0)] {
         let mut drive = |seconds: f64| {
@@ -47,7 +47,7 @@ fn half_an_encoder_bench_is_none() {
     assert!(mock.open_bench("mock").is_err());
 }
 
-/// What every instrument said in the same conversation, byte for byte.
+/// The bytes that every instrument sent in the same conversation.
 fn said(seed: u64) -> Vec<(String, Vec<u8>)> {
     let folder = tempfile::tempdir().unwrap();
     let mock = MockBench::start(MockSettings::new(Joint::EncoderShaft, seed)).unwrap();

@@ -1,4 +1,4 @@
-//! What loads the joint, as the torque sensor sees it.
+//! The load of the joint, as the torque sensor measures it.
 
 use jointbench_devices::sim::Load;
 use jointbench_devices::{Joint, MockBench, MockSettings};
@@ -15,7 +15,7 @@ fn open(joint: Joint, load: Load) -> (MockBench, Bench) {
     (mock, bench)
 }
 
-/// Link torques at a motor speed and a brake current, a reading each tick.
+/// Link torques at a motor speed and a brake current, one reading per tick.
 fn stretch(bench: &mut Bench, velocity_rad_s: f64, brake_a: f64, seconds: f64) -> Vec<f64> {
     bench.brake.as_mut().unwrap().set_current(Amperes(brake_a)).unwrap();
     let ticks = (seconds / TICK_S) as usize;
@@ -49,7 +49,7 @@ fn gear_and_brake_b_break_away_and_depend_on_speed() {
 #[test]
 fn brake_a_cogs_after_a_decrease_at_standstill_until_ramped_down_while_turning() {
     let (_mock, mut bench) = open(Joint::JointB, Load::BrakeA);
-    /// Peak to peak over more than a turn of the link.
+    /// Peak-to-peak torque over more than one turn of the link.
     fn swing_nm(bench: &mut Bench) -> f64 {
         let torques = stretch(bench, 50.0, 0.0, 8.0);
         let tail = &torques[torques.len() / 5..];

@@ -1,4 +1,4 @@
-//! What may be opened, and what may not.
+//! Ports that may be opened, and ports that may not.
 
 use jointbench_devices::sim::{MockInstrument, Transport};
 use jointbench_devices::transport::{Address, ports, why_closed};

@@ -1,4 +1,4 @@
-//! The Puma's axis through its driver: what it feels, how it moves, and its bad days.
+//! The Puma axis through its driver: its readings, its motion and its troubles.
 
 use jointbench_devices::protocol::puma::memory;
 use jointbench_devices::sim::{MockInstrument, Transport, Trouble};
@@ -37,7 +37,7 @@ fn hold(bench: &mut Bench, velocity_rad_s: f64, seconds: f64) -> [f64; 3] {
     sums.map(|sum| sum / (ticks - ticks / 2) as f64)
 }
 
-/// The lines of figure 3.2 with this specimen's figures, upright, where the arm has no weight.
+/// The lines of figure 3.2 with the values of this specimen, upright, where the arm has no gravity torque.
 #[test]
 fn upright_the_current_is_the_friction_of_its_direction() {
     let (mock, mut bench) = start(Transport::Terminal, &[]);
@@ -47,7 +47,7 @@ fn upright_the_current_is_the_friction_of_its_direction() {
     };
     let (offset, share) = (hidden("direction_offset", "offset_nm"), hidden("viscous_asymmetry", "relative"));
     for speed_rad_s in [10.0, 30.0, 60.0] {
-        // Out, then back over the upright position: the mean over the same arc holds no weight.
+        // Out, then back over the upright position: the mean over the same arc contains no gravity torque.
         hold(&mut bench, -speed_rad_s, 10.0 / speed_rad_s);
         for sign in [1.0, -1.0] {
             let [velocity, current, at_rad] = hold(&mut bench, sign * speed_rad_s, 40.0 / speed_rad_s);
@@ -124,7 +124,7 @@ fn a_passing_trouble_is_seen_and_over_when_it_is() {
         mock.trouble(MockInstrument::Joint, Trouble::None);
         bench.joint.read().unwrap_or_else(|fault| panic!("it does not recover from {trouble:?}: {fault}"));
     };
-    // Side by side: nearly all of it is waiting for deadlines.
+    // In parallel, because most of the time is spent waiting for deadlines.
     std::thread::scope(|scope| {
         for (transport, trouble) in [
             (Transport::Terminal, Trouble::Silent),
@@ -162,7 +162,7 @@ fn positions_from_before_a_power_cycle_are_never_mixed_with_those_after() {
         assert!(matches!(fault.kind, FaultKind::Reported { .. }) && !fault.is_retryable(), "{fault}");
         assert!(fault.to_string().contains("its power was interrupted"), "{fault}");
     };
-    // Too short for any request to be missed: the next reply tells it.
+    // Too short to miss a request: the next reply shows the power cycle.
     let (mock, mut bench) = start(Transport::Terminal, &[]);
     hold(&mut bench, 20.0, 1.0);
     mock.trouble(MockInstrument::Joint, Trouble::PowerCycled);

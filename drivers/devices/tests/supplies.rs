@@ -1,4 +1,4 @@
-//! The second dialect of the brake's supply, through the same driver.
+//! The second dialect of the brake's supply, with the same driver.
 
 use jointbench_devices::sim::{MockInstrument, Supply, Trouble};
 use jointbench_devices::{Joint, MockBench, MockSettings};
@@ -24,7 +24,7 @@ fn an_hmp_feeds_the_brake_as_far_as_its_voltage_goes() {
     let reading = brake.read().unwrap();
     assert_eq!(reading.regulation, Regulation::ConstantCurrent);
     assert!((reading.current.0 - 0.3).abs() < 2e-3 && (reading.voltage.0 - 15.6).abs() < 0.5, "{reading:?}");
-    // 0.6 A through 52 Ω take 31.2 V.
+    // 0.6 A through 52 Ω need 31.2 V.
     brake.set_current(Amperes(0.6)).unwrap();
     settle();
     assert_eq!(brake.read().unwrap().regulation, Regulation::ConstantVoltage);

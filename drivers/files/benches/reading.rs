@@ -1,8 +1,9 @@
-//! Reading speed of a plain CSV, and that of polars on the same file in the same run.
+//! Reading speed of a plain CSV, compared with polars on the same file in the same run.
 //!
-//! `cargo bench -p jointbench-files --bench reading -- 1024` makes a file of so many MiB. polars is asked through Python
-//! (`JOINTBENCH_PYTHON`, else python3), since building its crate takes longer than everything else here together. Without
-//! it only our own figures are printed.
+//! `cargo bench -p jointbench-files --bench reading -- 1024` creates a file of 1024 MiB.
+//!
+//! polars runs through Python (`JOINTBENCH_PYTHON`, else python3), because its crate takes longer to build than the
+//! rest of this benchmark. Without polars only our own result is printed.
 
 use jointbench_files::{ReadOptions, understand};
 use std::fs::File;
@@ -13,10 +14,10 @@ use std::time::Instant;
 
 const MIB: u64 = 1 << 20;
 const USUAL_MIB: u64 = 256;
-/// Repeats; the fastest counts.
+/// Repeats; the fastest one counts.
 const TRIES: usize = 3;
 
-/// Reads the file named, as often, and prints the best time.
+/// Reads the named file repeatedly and prints the best time.
 const POLARS: &str = "
 import sys, time
 import polars
@@ -68,7 +69,7 @@ fn write(path: &Path, bytes: u64) -> std::io::Result<usize> {
         written += line.len() as u64;
         row += 1;
     }
-    // Writing it back must not go on while it is read.
+    // The write-back to disk must not overlap with the reading.
     out.into_inner()?.sync_all()?;
     Ok(row)
 }

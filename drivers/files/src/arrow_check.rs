@@ -1,5 +1,6 @@
-//! An Arrow file before it is decoded: its own lengths decide how much memory its decoder takes, and some of them where it
-//! reads. Source: "Arrow Columnar Format", IPC file format, arrow.apache.org/docs/format/Columnar.html.
+//! Checks an Arrow file before it is decoded. The lengths in the file determine the memory that its decoder allocates,
+//! and some of them the read position. Source: "Arrow Columnar Format", IPC file format,
+//! arrow.apache.org/docs/format/Columnar.html.
 
 use crate::Bounds;
 use crate::error::FileFault;
@@ -7,12 +8,12 @@ use arrow_ipc::{Block, Buffer, Footer, RecordBatch, root_as_footer, root_as_mess
 
 /// Footer length and magic number at the end of a file.
 const TRAILER_BYTES: usize = 10;
-/// Begins a message, before its length.
+/// Marks the start of a message, before its length.
 const CONTINUATION: [u8; 4] = [0xff; 4];
-/// Before a compressed buffer: its length when it is not; −1 where it is none.
+/// Uncompressed length before a compressed buffer; −1 for a buffer that is not compressed.
 const LENGTH_BYTES: usize = 8;
 
-/// Refuses lengths that lie or lead out of the file, and tables beyond the bounds.
+/// Refuses lengths that exceed the file or point outside it, and tables beyond the bounds.
 pub fn check(file: &[u8], bounds: &Bounds) -> Result<(), FileFault> {
     let footer = footer(file).ok_or_else(|| broken("its footer"))?;
     let batches = footer.recordBatches().into_iter().flatten();
@@ -61,7 +62,7 @@ fn batch(file: &[u8], block: &Block) -> Option<Found> {
     Some(Found { rows: u64::try_from(batch.length()).ok()?, expanded: expanded(batch, body)? })
 }
 
-/// The buffers of a batch when they are unpacked. A batch that has no compression is read where it lies.
+/// Total unpacked size of the buffers of a batch. A batch without compression is read in place.
 fn expanded(batch: RecordBatch<'_>, body: &[u8]) -> Option<u64> {
     let mut all = 0_u64;
     for buffer in batch.buffers()? {

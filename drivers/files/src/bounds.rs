@@ -1,27 +1,28 @@
-//! How much of a file is taken in. A few kilobytes can be made to unpack to more than any memory holds.
+//! Limits for the import of a file: a few kilobytes can unpack to more than the memory of any computer.
 
 use crate::error::FileFault;
 
-/// Bounds of a table on its way in. What is beyond one of them is refused with the bound and what to do.
+/// Bounds of an imported table. A larger table is refused with the bound and a remedy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bounds {
     pub rows: usize,
     pub columns: usize,
-    /// Of text that was packed, of buffers that were compressed, and of the table as doubles.
+    /// Bytes of unpacked text, of decompressed buffers, and of the table as doubles.
     pub expanded_bytes: u64,
-    /// Of one cell of a CSV.
+    /// Bytes of one cell of a CSV.
     pub cell_bytes: usize,
-    /// Of the name of a column.
+    /// Bytes of the name of a column.
     pub name_bytes: usize,
 }
 
-/// No table of measurements packs better: its time alone changes with every row. Gzip makes a thousandth of zeros.
+/// No table of measurements compresses better, because at least its time changes with every row. Gzip compresses zeros
+/// by a factor of about 1000.
 const MOST_RATIO: u64 = 200;
-/// Below this a good ratio does no harm.
+/// Below this size a high compression ratio is harmless.
 const HARMLESS_BYTES: u64 = 256 << 20;
 
 impl Bounds {
-    /// For a file that somebody sends.
+    /// For an uploaded file.
     pub const UPLOADED: Bounds =
         Bounds { rows: 50_000_000, columns: 512, expanded_bytes: 4 << 30, cell_bytes: 4096, name_bytes: 256 };
 
@@ -44,7 +45,7 @@ impl Bounds {
         }
     }
 
-    /// `columns`: those that are read.
+    /// `columns`: the columns that are read.
     pub(crate) fn check_rows(&self, rows: usize, columns: usize) -> Result<(), FileFault> {
         if rows > self.rows {
             let most = self.rows;
@@ -63,7 +64,7 @@ impl Bounds {
         }
     }
 
-    /// `packed`: what the bytes came from, where they were packed.
+    /// `packed`: the packed size, if the bytes were packed.
     pub(crate) fn check_expanded(&self, bytes: u64, packed: Option<u64>) -> Result<(), FileFault> {
         let cure = "split the file, leave columns out, or keep every second row";
         if bytes > self.expanded_bytes {
@@ -80,7 +81,7 @@ impl Bounds {
 }
 
 impl Default for Bounds {
-    /// For a file of one's own: what a large computer holds.
+    /// For the user's own file: the memory of a large computer.
     fn default() -> Self {
         Bounds { rows: 1_000_000_000, columns: 4096, expanded_bytes: 64 << 30, cell_bytes: 1 << 16, name_bytes: 1024 }
     }

@@ -1,29 +1,29 @@
-//! A column as it was read, before anybody knows whether it is needed.
+//! A column as read from the file, before it is known whether it is needed.
 
 use crate::text::{Content, Shape};
 
 /// One column of a file.
 #[derive(Debug, Clone, Default)]
 pub struct Column {
-    /// Its name: in the file, or the one that stands for it; later that in the run table.
+    /// Its name in the file or a generated name; later its name in the run table.
     pub name: String,
     /// Its name in the file.
     pub source: String,
-    /// Its unit as the file states it, in a line of units.
+    /// Its unit from a line of units in the file.
     pub unit: Option<String>,
     pub content: Content,
-    /// What it holds in a columnar file, where that is no number; its values were not read.
+    /// Its type in a columnar file, if it is not numeric; the values are not read then.
     pub other_type: Option<String>,
-    /// A time without a unit: its values decide, or a person.
+    /// A time without a unit: its values or the user must determine the unit.
     pub is_unit_open: bool,
-    /// Not a number where a cell held none.
+    /// NaN for a cell without a number.
     pub values: Vec<f64>,
     pub found: Found,
-    /// The first cells, for people.
+    /// The first cells, for display.
     pub first: Vec<String>,
 }
 
-/// A cell and where it stands.
+/// A cell with its position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
     /// Row of the table, from 0.
@@ -31,25 +31,25 @@ pub struct Cell {
     pub text: String,
 }
 
-/// What came up while a column was read.
+/// Observations while a column is read.
 #[derive(Debug, Clone, Default)]
 pub struct Found {
-    /// Cells that hold neither a number nor nothing; the first of them, and all their rows.
+    /// Cells that are neither a number nor empty: the first of them, and all their rows.
     pub wrong: Vec<Cell>,
     pub wrong_rows: Vec<usize>,
     pub missing: usize,
     pub first_missing: Option<Cell>,
     pub truths: usize,
     pub numbers: usize,
-    /// The first number in which the sign of thousands could be that of decimals: 1.220 among decimal commas.
+    /// The first number whose thousands separator could be a decimal sign: 1.220 in a table with decimal commas.
     pub doubtful: Option<Cell>,
-    /// The first number in which the sign of decimals could be that of thousands: 1.220 among decimal points.
+    /// The first number whose decimal sign could be a thousands separator: 1.220 in a table with decimal points.
     pub three_decimals: Option<Cell>,
-    /// One of its numbers is grouped, without a doubt.
+    /// At least one number is grouped without ambiguity.
     pub is_grouped: bool,
-    /// One of its numbers has decimals, without a doubt.
+    /// At least one number has decimals without ambiguity.
     pub is_decimal: bool,
-    /// It holds whole numbers of more than two digits.
+    /// It contains whole numbers of more than two digits.
     pub has_hundreds: bool,
 }
 
@@ -81,7 +81,7 @@ impl Found {
         self.three_decimals.get_or_insert_with(|| Cell { row, text: text_of(cell) });
     }
 
-    /// `later`: of rows that come behind, whose numbers begin at 0.
+    /// `later`: observations of subsequent rows, whose numbers start at 0.
     fn append(&mut self, later: Found, rows: usize) {
         let moved = |cell: Cell| Cell { row: cell.row + rows, ..cell };
         self.wrong.extend(later.wrong.into_iter().map(moved));
@@ -99,7 +99,7 @@ impl Found {
     }
 }
 
-/// As much of a cell as a message shows.
+/// The part of a cell that a message shows.
 fn text_of(cell: &[u8]) -> String {
     const SHOWN_BYTES: usize = 200;
     String::from_utf8_lossy(&cell[..cell.len().min(SHOWN_BYTES)]).into_owned()
@@ -111,13 +111,13 @@ impl Column {
         Self { name: name.into(), values, found, ..Self::default() }
     }
 
-    /// Adds the values of rows that come behind `rows` others.
+    /// Appends the values of subsequent rows after `rows` existing rows.
     pub fn append(&mut self, rows: usize, values: &[f64], found: Found) {
         self.values.extend_from_slice(values);
         self.found.append(found, rows);
     }
 
-    /// Without the rows from this one on.
+    /// Removes the rows from this one on.
     pub fn truncate(&mut self, rows: usize) {
         let found = &mut self.found;
         found.wrong.retain(|cell| cell.row < rows);
@@ -129,7 +129,7 @@ impl Column {
         found.numbers = found.numbers.saturating_sub(values.len() - empty - gone.len());
     }
 
-    /// Takes cells of this value as empty.
+    /// Treats cells of this value as empty.
     pub fn empty(&mut self, code: f64) {
         for (row, value) in self.values.iter_mut().enumerate().filter(|(_, value)| **value == code) {
             *value = f64::NAN;
@@ -139,7 +139,7 @@ impl Column {
         }
     }
 
-    /// Nothing for a model.
+    /// The column has no use for a model.
     pub fn is_words(&self) -> bool {
         self.content == Content::Words || self.found.wrong_rows.len() > self.found.numbers + self.found.truths
     }

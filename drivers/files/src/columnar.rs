@@ -1,4 +1,4 @@
-//! Parquet and Arrow in: columns of any number type, clocks, and which cells are empty.
+//! Imports Parquet and Arrow: columns of any number type, clocks, and empty cells.
 
 use crate::ReadOptions;
 use crate::column::Column;
@@ -55,7 +55,7 @@ pub(crate) fn read_arrow(name: &str, bytes: &[u8], options: &ReadOptions) -> Res
     })
 }
 
-/// The decoders end some broken files by a panic. What such a file needs is the same refusal.
+/// The decoders panic on some broken files. Such a file gets the same refusal as other broken files.
 fn guarded(name: &str, read: impl FnOnce() -> Result<RawTable, FileError>) -> Result<RawTable, FileError> {
     catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| {
         let what = "its parts contradict each other: write it again".to_owned();
@@ -63,7 +63,7 @@ fn guarded(name: &str, read: impl FnOnce() -> Result<RawTable, FileError>) -> Re
     })
 }
 
-/// The columns that are read, by their places: all but those to leave and those that hold no numbers.
+/// Indices of the columns to read: all columns except omitted and non-numeric ones.
 fn wanted(name: &str, schema: &Schema, options: &ReadOptions) -> Result<Vec<usize>, FileError> {
     let names: Vec<String> = schema.fields().iter().map(|field| field.name().clone()).collect();
     options.bounds.check_columns(&names).map_err(|fault| fault.in_file(name))?;
@@ -116,7 +116,7 @@ fn empty(field: &Field) -> Column {
     Column { name, content, other_type: (!is_numeric(of)).then(|| of.to_string()), ..Column::default() }
 }
 
-/// A fault, and the row in the batch where one row is at fault.
+/// A fault, and its row in the batch if the fault is in one row.
 type At<T> = Result<T, (Option<usize>, FileFault)>;
 
 fn append(array: &dyn Array, into: &mut Column, clock: &mut Option<i64>) -> At<()> {
@@ -157,7 +157,7 @@ fn append(array: &dyn Array, into: &mut Column, clock: &mut Option<i64>) -> At<(
         into.found.missing(first + row, b"");
     }
     for row in first..into.values.len() {
-        // What is not a number in a file of numbers is a missing one.
+        // NaN in a numeric file is a missing value.
         if into.values[row].is_nan() && !array.is_null(row - first) {
             into.found.missing(row, b"NaN");
         }

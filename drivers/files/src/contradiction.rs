@@ -1,12 +1,12 @@
-//! What columns say of each other: angles that begin anew after a turn, and velocities in another unit than the slope of
-//! their position. Proposed to people, never applied.
+//! Contradictions between columns: angles that wrap after a turn, and velocities whose unit differs from the slope of
+//! their position. Corrections are proposed to the user, never applied.
 
 use crate::column::Column;
 use crate::note::Note;
 use jointbench_instrument::{Kind, RunTable};
 use std::f64::consts::TAU;
 
-/// Makes an angle continuous that begins anew after a period.
+/// Unwraps an angle that wraps after a period.
 pub fn unwrap(values: &mut [f64], period: f64) {
     let mut turns = 0.0;
     let mut before = values.first().copied().unwrap_or(0.0);
@@ -18,23 +18,23 @@ pub fn unwrap(values: &mut [f64], period: f64) {
     }
 }
 
-/// What the columns of a run propose, each with the option that does it.
+/// Proposed corrections for the columns of a run, each with its option.
 pub fn proposals(run: &RunTable) -> Vec<Note> {
     let angles: &[&str] = match run.kind() {
         Kind::Friction | Kind::Stiffness => &["motor_position_rad", "link_position_rad"],
-        // The difference of two encoders is wrapped by itself.
+        // The difference of two encoders wraps by definition.
         Kind::Encoder => &[],
         Kind::Brake => &["position_rad"],
     };
     let wrapped: Vec<Note> = angles.iter().filter_map(|name| wrapped(run, name)).collect();
     let (speed, angle) = motion(run.kind());
-    // A wrapped angle has no slope.
+    // A wrapped angle has no valid slope.
     let slope = if wrapped.is_empty() { slope(run, speed, angle) } else { None };
     let power = if wrapped.is_empty() && slope.is_none() { taken_power(run) } else { None };
     wrapped.into_iter().chain(slope).chain(power).collect()
 }
 
-/// A velocity, and the angle whose slope it is.
+/// A velocity, and the angle from which it derives.
 fn motion(kind: Kind) -> (&'static str, &'static str) {
     match kind {
         Kind::Friction => ("motor_velocity_rad_s", "motor_position_rad"),
@@ -44,10 +44,10 @@ fn motion(kind: Kind) -> (&'static str, &'static str) {
     }
 }
 
-/// An angle that moves by so much is not one at rest [rad].
+/// An angle that moves by this much is not at rest [rad].
 const MOVES: f64 = 0.1;
 
-/// The velocity, where it is 0 in every row while its angle moves, and what to say of it.
+/// A velocity that is 0 in every row while its angle moves, with the note about it.
 pub fn idle_velocity(columns: &[Column], kind: Kind) -> Option<(usize, Note)> {
     let (speed, angle) = motion(kind);
     let place = columns.iter().position(|column| column.name == speed)?;
@@ -63,7 +63,7 @@ pub fn idle_velocity(columns: &[Column], kind: Kind) -> Option<(usize, Note)> {
     })
 }
 
-/// Leaps of an angle are of one size to this share, and larger than this share of its range.
+/// Wraps of an angle differ by at most this fraction and exceed `LEAP_OF_RANGE` of its range.
 const SAME_LEAP: f64 = 0.05;
 const LEAP_OF_RANGE: f64 = 0.8;
 
@@ -71,7 +71,7 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
     let values = run.column(name)?;
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let range = high - low;
-    // A leap is a turn less the step that it stands for, which is as long as the one before.
+    // A wrap is the period minus one step, which is about as long as the step before.
     let leap = |w: &[f64]| (w[2] - w[1], (w[2] - w[1] - (w[1] - w[0])).abs());
     let leaps: Vec<f64> = values
         .windows(3)
@@ -81,7 +81,7 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
         .collect();
     let mean = leaps.iter().sum::<f64>() / leaps.len() as f64;
     let is_one_size = leaps.iter().all(|leap| (leap / mean - 1.0).abs() < SAME_LEAP);
-    // A turn is what most encoders begin anew after, also where their samples do not reach its ends.
+    // Most encoders wrap after a turn, even if their samples do not reach its ends.
     let is_turn = (mean / TAU - 1.0).abs() < LEAP_OF_RANGE / 4.0 && range <= TAU * 1.001;
     if leaps.len() < 2 || !is_one_size || range <= 0.0 {
         return None;
@@ -92,11 +92,11 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
     Some(Note::with(said, format!("--unwrap {name}{period}")))
 }
 
-/// Share of the work that the motor gives or takes, above which it only takes.
+/// Fraction of the total work above which the motor only absorbs power.
 const TAKES: f64 = 0.8;
 
-/// A motor that moves a joint against friction gives work. One that only takes it has a current of the other sign, or
-/// something else drives the joint.
+/// A motor that drives a joint against friction supplies power. If it only absorbs power, its current has the wrong
+/// sign, or another machine drives the joint.
 fn taken_power(run: &RunTable) -> Option<Note> {
     if run.kind() != Kind::Friction || run.column("link_torque_nm").is_some() {
         return None;
@@ -111,11 +111,11 @@ fn taken_power(run: &RunTable) -> Option<Note> {
     })
 }
 
-/// Rows over which a slope is taken.
+/// Number of rows for a slope.
 const OVER: usize = 20;
-/// Share of the variance in common, below which the columns do not tell the same.
+/// Smallest shared fraction of the variance for two columns that describe the same quantity.
 const SAME: f64 = 0.9;
-/// A ratio is a unit's where it is as near as this.
+/// Tolerance between a ratio and the ratio of two units.
 const NEAR: f64 = 0.04;
 
 fn slope(run: &RunTable, speed: &str, angle: &str) -> Option<Note> {
@@ -124,7 +124,7 @@ fn slope(run: &RunTable, speed: &str, angle: &str) -> Option<Note> {
     for from in (0..speeds.len().saturating_sub(OVER)).step_by(OVER) {
         let to = from + OVER;
         let way = (angles[to] - angles[from]) / (time_s[to] - time_s[from]);
-        // By the trapezoidal rule.
+        // Trapezoidal rule.
         let ends = 0.5 * (speeds[from] + speeds[to]);
         let mean = (speeds[from + 1..to].iter().sum::<f64>() + ends) / OVER as f64;
         (aa, ab, bb) = (aa + mean * mean, ab + mean * way, bb + way * way);

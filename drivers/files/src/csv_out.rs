@@ -1,26 +1,26 @@
-//! CSV out: the shortest decimal that reads back as the same double.
+//! Exports CSV with the shortest decimal that reads back as the same double.
 
 use jointbench_instrument::{Channel, Trace};
 use std::io::{self, Write};
 
-/// Bytes collected before they are handed on.
+/// Buffer size before data is written.
 const CHUNK: usize = 1 << 16;
 
-/// Writes the rows with a line of names. The facts ([`crate::meta_json`]) go into a file beside it.
+/// Writes the rows after a line of names. The facts ([`crate::meta_json`]) are a separate file.
 pub fn write_csv(out: impl Write, trace: &Trace) -> io::Result<()> {
     let mut csv = CsvWriter::new(out, trace.channels());
     csv.write(trace)?;
     csv.finish()
 }
 
-/// The same, one stretch of rows behind the other.
+/// Writes a CSV block by block.
 pub struct CsvWriter<W> {
     out: W,
     text: Vec<u8>,
 }
 
 impl<W: Write> CsvWriter<W> {
-    /// `channels` are those of every stretch.
+    /// `channels` are the same for every block.
     pub fn new(out: W, channels: &[Channel]) -> Self {
         let names: Vec<String> = channels.iter().map(|channel| quoted(&channel.name)).collect();
         let mut text = names.join(",").into_bytes();

@@ -1,17 +1,17 @@
-//! Why a file is refused, and where in it.
+//! Why and where a file is refused.
 
 use crate::note::shell;
 use crate::text::Decimal;
 use jointbench_instrument::{Kind, TableFault};
 use std::{fmt, io};
 
-/// So many wrong rows are told of, beside how many there are.
+/// Number of wrong rows in a message, in addition to their total number.
 pub(crate) const TOLD_ROWS: usize = 5;
 
-/// A word that stands for an empty cell has so many letters at most.
+/// Largest number of letters of a word for an empty cell.
 const CODE: usize = 12;
 
-/// A file that is refused: where, and what was expected.
+/// A refused file: the position of the fault, and the expected content.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{}", self.cause(), self.remedy())]
 pub struct FileError {
@@ -20,7 +20,7 @@ pub struct FileError {
     pub fault: FileFault,
 }
 
-/// Where in a file. Lines count from 1 as an editor shows them; columnar files have rows, counted from 1, instead.
+/// A position in a file. Lines count from 1 as in an editor; columnar files have rows, counted from 1, instead.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Place {
     pub file: String,
@@ -67,18 +67,18 @@ pub enum FileFault {
         first: Box<FileFault>,
         more: Vec<Wrong>,
         rows: usize,
-        /// Columns with empty cells, and how many rows have none; empty where there are none.
+        /// Columns with empty cells, and the number of rows without empty cells; empty if there are no empty cells.
         gaps: String,
     },
     #[error("numbers stand where the line of column names is expected; a {kind} run needs {}", kind.required_columns().join(", "))]
     NoNames { kind: Kind, options: Vec<String> },
-    /// What cannot be decided from the file, and the options that decide it.
+    /// A question that the file does not answer, and the options that answer it.
     #[error("{said}")]
     Choice { said: String, options: Vec<String> },
-    /// A time that does not rise, what it looks like, and the options that mend it.
+    /// A time that does not rise, the probable cause, and the options that correct it.
     #[error("{fault}; {said}")]
     Time { fault: TableFault, said: String, options: Vec<String> },
-    /// What the file seems to hold under other names.
+    /// Columns that the file seems to contain under other names.
     #[error("{fault}; {said}")]
     Proposed { fault: TableFault, said: &'static str, options: Vec<String> },
     #[error(
@@ -124,7 +124,7 @@ pub enum FileFault {
     Table(TableFault),
 }
 
-/// One row that is wrong.
+/// One wrong row.
 #[derive(Debug)]
 pub struct Wrong {
     pub line: u64,
@@ -153,7 +153,7 @@ fn io_words(fault: &io::Error) -> String {
     }
 }
 
-/// The decimal sign with which it is a number.
+/// The decimal sign that makes the cell a number.
 fn other_sign(found: &str) -> Option<Decimal> {
     let is_one = |decimal: &Decimal| crate::text::number(found.as_bytes(), *decimal).is_some();
     [Decimal::Point, Decimal::Comma].into_iter().find(is_one)
@@ -168,7 +168,7 @@ fn shown(found: &str) -> String {
 }
 
 impl FileFault {
-    /// What takes cells without a number.
+    /// Options that accept cells without a number.
     fn options_of_cells(&self) -> Vec<String> {
         let cell = |fault: &Self| if let Self::NotNumber { found } = fault { Some(found.clone()) } else { None };
         let cells: Option<Vec<String>> = match self {
@@ -178,7 +178,7 @@ impl FileFault {
             fault => cell(fault).map(|cell| vec![cell]),
         };
         let Some(cells) = cells else { return Vec::new() };
-        // What holds a digit is a number in another notation.
+        // A cell with a digit is a number in another notation.
         let is_short = |cell: &str| cell.chars().count() <= CODE && !cell.contains(|c: char| c.is_ascii_digit());
         let mut codes: Vec<&str> = cells.iter().map(|cell| cell.trim()).collect();
         codes.retain(|cell| !crate::text::is_missing(cell.as_bytes()));
@@ -207,7 +207,7 @@ impl FileError {
         self
     }
 
-    /// `wrong`: the first of `rows` rows that are wrong, one at least. Told at the place of the first.
+    /// `wrong`: the first of `rows` wrong rows, at least one. The error has the position of the first one.
     pub(crate) fn of_rows(file: &str, mut wrong: Vec<Wrong>, rows: usize, gaps: String, is_text: bool) -> Self {
         let Wrong { line, column, fault } = wrong.remove(0);
         let fault = match rows {
@@ -222,7 +222,7 @@ impl FileError {
         Self { place: Box::new(place), fault }
     }
 
-    /// The column that is to be blamed, where one is.
+    /// The column at fault, if the fault is in one column.
     pub fn column(&self) -> Option<&str> {
         match &self.fault {
             FileFault::Table(fault) | FileFault::Time { fault, .. } | FileFault::Proposed { fault, .. } => {
@@ -232,12 +232,12 @@ impl FileError {
         }
     }
 
-    /// Where the fault is, and what was expected; without the proposed options.
+    /// Position of the fault and expected content, without the proposed options.
     pub fn cause(&self) -> String {
         format!("{}: {}", self.place, self.fault)
     }
 
-    /// Options that are proposed, as they are written on the command line.
+    /// Proposed options in command-line notation.
     pub fn options(&self) -> Vec<String> {
         match &self.fault {
             FileFault::Choice { options, .. }
@@ -249,7 +249,7 @@ impl FileError {
         }
     }
 
-    /// The options as they follow the cause.
+    /// The options as text after the cause.
     fn remedy(&self) -> String {
         match (&self.fault, self.options()) {
             (_, options) if options.is_empty() => String::new(),
@@ -261,7 +261,7 @@ impl FileError {
         }
     }
 
-    /// The machine's trouble (a disk, a permission), not a table that is wrong.
+    /// A fault of the computer (disk, permission), not of the table.
     pub fn is_io(&self) -> bool {
         matches!(&self.fault, FileFault::Io(fault) if fault.kind() != io::ErrorKind::NotFound)
     }

@@ -1,4 +1,4 @@
-//! The facts beside a table: one JSON object, in a file or embedded.
+//! The facts of a table: one JSON object, in its own file or embedded.
 
 use crate::error::{FileError, FileFault};
 use jointbench_instrument::spelling::plainly;
@@ -7,12 +7,12 @@ use serde_json::{Map, Value};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Under this key a Parquet or Arrow file carries the facts as JSON.
+/// Key of the facts as JSON in a Parquet or Arrow file.
 pub(crate) const EMBEDDED: &str = "meta";
-/// In the facts: the smallest step of each column that has one. The tool's own, for tables that it wrote itself.
+/// Key of the columns' resolutions in the facts. Only in tables that this program has written.
 const RESOLUTION: &str = "resolution";
 
-/// Reads the facts from JSON. `name` stands in messages.
+/// Reads the facts from JSON. `name` appears in messages.
 pub fn parse_meta(name: &str, json: &[u8]) -> Result<Meta, FileError> {
     let line_of = |fact: &str| {
         let text = String::from_utf8_lossy(json);
@@ -24,7 +24,7 @@ pub fn parse_meta(name: &str, json: &[u8]) -> Result<Meta, FileError> {
             return fault.at_line(name, line_of(&fact));
         }
         let text = fault.to_string();
-        // serde_json appends the place, which the message already leads with.
+        // serde_json appends the position, with which the message already starts.
         let what = plainly(text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what));
         match fault.line() {
             0 => FileFault::Meta { what }.in_file(name),
@@ -39,14 +39,14 @@ pub fn parse_meta(name: &str, json: &[u8]) -> Result<Meta, FileError> {
     }
 }
 
-/// The fact that is not of its type: serde names what it found, and not where.
+/// The fact with the wrong type: serde reports the value it found, but not the fact.
 fn mistyped(json: &[u8]) -> Option<(String, FileFault)> {
     let facts: Map<String, Value> = serde_json::from_slice(json).ok()?;
     facts.into_iter().find_map(|(fact, value)| {
         let found = value.to_string();
         let alone = Map::from_iter([(fact.clone(), value)]);
         let said = serde_json::from_value::<Meta>(Value::Object(alone)).err()?.to_string();
-        // A word that is not known is told with the one that was meant.
+        // The message about an unknown word suggests a known word.
         let expected = match said.strip_prefix("invalid ")?.rsplit_once("expected ")?.1 {
             "f64" => "a number without quotes, such as 50".to_owned(),
             "u32" => "a whole number without quotes, such as 12".to_owned(),
@@ -63,7 +63,7 @@ pub(crate) fn read_meta(path: &Path) -> Result<Meta, FileError> {
     parse_meta(&name, &json)
 }
 
-/// `run-12.csv.gz` → `run-12.meta.json` in the same folder: where [`crate::write`] puts the facts of a CSV.
+/// `run-12.csv.gz` → `run-12.meta.json` in the same folder: the path of the facts that [`crate::write`] uses for a CSV.
 pub fn meta_path_of(table: &Path) -> PathBuf {
     let name = table.file_name().unwrap_or_default().to_string_lossy();
     let stem = name.split('.').next().unwrap_or_default();
@@ -74,7 +74,7 @@ pub(crate) fn beside(table: &Path) -> Option<PathBuf> {
     [meta_path_of(table), table.with_file_name("meta.json")].into_iter().find(|path| path.is_file())
 }
 
-/// The facts of a run as JSON, its columns' resolutions with them.
+/// The facts of a run as JSON, with the resolutions of its columns.
 pub fn meta_json(meta: &Meta, channels: &[Channel]) -> String {
     let mut meta = meta.clone();
     let steps: Map<String, Value> =
@@ -85,7 +85,7 @@ pub fn meta_json(meta: &Meta, channels: &[Channel]) -> String {
     serde_json::to_string_pretty(&meta).expect("facts are plain JSON")
 }
 
-/// Takes the resolutions of the named columns out of the facts. Anything else under that key stays where it is.
+/// Removes the resolutions of the named columns from the facts. Other values under that key are kept.
 pub(crate) fn take_resolutions(meta: &mut Meta, names: &[String]) -> Vec<Channel> {
     let mut steps = match meta.other.get_mut(RESOLUTION) {
         Some(Value::Object(steps)) => std::mem::take(steps),

@@ -1,4 +1,4 @@
-//! A file's form, told by the end of its name, and its way to a raw table.
+//! The form of a file, determined by its suffix, and its conversion to a raw table.
 
 use crate::error::{FileError, FileFault};
 use crate::raw::RawTable;
@@ -15,7 +15,7 @@ pub(crate) enum Form {
     Arrow,
 }
 
-/// Texts of rows, whatever parts their columns.
+/// Suffixes of text files with rows, with any column separator.
 const TEXTS: [&str; 7] = [".csv", ".tsv", ".txt", ".dat", ".asc", ".log", ".lvm"];
 
 impl Form {
@@ -36,10 +36,10 @@ impl Form {
     }
 }
 
-/// Reads a file; a text of any length passes through a few pieces of memory.
+/// Reads a file. Text of any length is read in pieces, so that memory use is limited.
 pub(crate) fn open(name: &str, path: &Path, options: &ReadOptions) -> Result<RawTable, FileError> {
     let io_fault = |fault| FileFault::Io(fault).in_file(name);
-    // A file that is not there is told before a name that says nothing.
+    // A missing file is reported before an unknown suffix.
     let file = File::open(path).map_err(io_fault)?;
     match Form::named(name)? {
         Form::Text => {

@@ -1,4 +1,4 @@
-//! Which columns of a foreign table are most likely those of a run table. Proposed to people, never applied.
+//! The probable columns of a run table in a foreign table. Proposed to the user, never applied.
 
 use crate::column::Column;
 use crate::naming::{Named, is_time, known};
@@ -7,18 +7,18 @@ use crate::unit::{Dimension, Unit, dimension_of, is_count};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 
-/// A column of the run table, and where it seems to be in the file.
+/// A column of the run table, and its probable source in the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Proposal {
     pub column: String,
     /// Name in the file.
     pub from: String,
-    /// Unit there, where its name or the line of units states it, or the name is that of a unit.
+    /// Unit of the source, if its name or the line of units states it, or the name itself is a unit.
     pub unit: Option<String>,
 }
 
 impl Proposal {
-    /// As it is written on the command line.
+    /// In command-line notation.
     pub fn option(&self) -> String {
         let map = format!("--map {}", shell(&format!("{}={}", self.column, self.from)));
         let is_open = |unit: &str| unit.starts_with("counts/N");
@@ -30,7 +30,7 @@ impl Proposal {
     }
 }
 
-/// Names without their units that people give these columns, the surest first.
+/// Common names of these columns without their units, the most certain first.
 const ALIASES: [(&str, &str); 15] = [
     (
         "motor_position_rad",
@@ -67,7 +67,7 @@ const ALIASES: [(&str, &str); 15] = [
     ("repeat", "repeat rep cycle pass"),
 ];
 
-/// The most likely source of each column that is not there; no source twice.
+/// The most probable source of each missing column. Each source is used only once.
 pub fn guess(columns: &[Column], kind: Kind) -> Vec<Proposal> {
     let mut taken: Vec<usize> = columns
         .iter()
@@ -88,14 +88,14 @@ pub fn guess(columns: &[Column], kind: Kind) -> Vec<Proposal> {
     found
 }
 
-/// The unit that a column states, in its name or as its name, where it can be one of the wanted column.
+/// The unit that a column states in its name or as its name, if it suits the wanted column.
 pub fn unit_of(source: &Column, column: &str) -> Option<String> {
     let named = Named::of(source);
     let last = named.quantity.rsplit('_').next().unwrap_or_default().to_owned();
     let pair = named.quantity.rsplitn(3, '_').take(2).collect::<Vec<_>>();
     let ratio = if pair.len() == 2 { format!("{}/{}", pair[1], pair[0]) } else { String::new() };
     let fits = |unit: Unit| Some(unit.dimension) == dimension_of(column);
-    // The m of `theta_m` is the motor.
+    // The m in `theta_m` means motor, not metres.
     let is_linear = |text: &str, unit: Unit| unit.is_linear() && text.len() > 1;
     if let Some(stated) = &named.unit
         && Unit::parse(stated).is_some_and(|unit| fits(unit) || unit.is_linear())
@@ -112,7 +112,7 @@ pub fn unit_of(source: &Column, column: &str) -> Option<String> {
     })
 }
 
-/// The unit of encoder counts, which is whole when their number per turn is known.
+/// The unit of encoder counts, which is complete only with the counts per turn.
 pub fn counts_of(word: &str, column: &str) -> Option<&'static str> {
     let per_turn = match dimension_of(column)? {
         Dimension::Angle => "counts/N",
@@ -122,7 +122,7 @@ pub fn counts_of(word: &str, column: &str) -> Option<&'static str> {
     (is_count(word) || word == per_turn).then_some(per_turn)
 }
 
-/// How sure a source is; smaller is surer.
+/// Uncertainty of a source; smaller is more certain.
 fn rank(column: &str, source: &Column) -> Option<usize> {
     let named = Named::of(source);
     let unit = named.unit.as_deref().and_then(Unit::parse);
@@ -139,7 +139,7 @@ fn rank(column: &str, source: &Column) -> Option<usize> {
     }
 }
 
-/// A quantity without the unit that hangs at its end: `pos_deg` → `pos`, `vel_rad_s` → `vel`.
+/// A quantity without a unit at its end: `pos_deg` → `pos`, `vel_rad_s` → `vel`.
 fn bare(quantity: &str, column: &str) -> String {
     let fits = |text: &str| Unit::parse(text).is_some_and(|unit| Some(unit.dimension) == dimension_of(column));
     let parts: Vec<&str> = quantity.split('_').collect();
@@ -153,7 +153,7 @@ fn bare(quantity: &str, column: &str) -> String {
     quantity.to_owned()
 }
 
-/// The kind whose required columns are found best; the first of equals.
+/// The kind with the largest fraction of its required columns; the first one of equals.
 pub fn guess_kind(columns: &[Column]) -> Kind {
     let share = |kind: Kind| {
         let guessed = guess(columns, kind);

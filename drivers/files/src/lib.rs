@@ -1,7 +1,7 @@
-//! Run tables as files: CSV (also gzipped), Parquet and Arrow in; CSV, Parquet and MATLAB out.
+//! Run tables as files: imports CSV (also gzipped), Parquet and Arrow; exports CSV, Parquet and MATLAB.
 //!
-//! What goes out comes in again bit by bit. What comes in is checked whole before anything is returned, and refused with
-//! file, line, column and what was expected.
+//! An exported table imports again with identical bits. An imported table is checked completely before it is returned.
+//! A refusal states file, line, column and expected content.
 
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
@@ -53,20 +53,20 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Reads a run table with its facts: `options.meta_path`, else what is embedded, else `<name>.meta.json` or `meta.json`
-/// beside the file.
+/// Reads a run table with its facts. The facts come from `options.meta_path`, else from the file itself, else from
+/// `<name>.meta.json` or `meta.json` in the same folder.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<RunTable, FileError> {
     Ok(understand(path, options)?.into_run()?.0)
 }
 
-/// What there is in a file, before it is known whether it makes a run: see [`Understood::into_run`].
+/// The content of a file, before it is known whether it is a complete run: see [`Understood::into_run`].
 pub fn understand(path: &Path, options: &ReadOptions) -> Result<Understood, FileError> {
     let name = path.display().to_string();
     understand_as(&name, path, facts::beside(path), options)
 }
 
-/// The same of a file that came over a wire as `name`, which tells its form and stands in messages. Nothing is looked for
-/// beside it.
+/// The same for an uploaded file. `name` determines its form and appears in messages. No facts are read from the
+/// folder.
 pub fn understand_upload(name: &str, path: &Path, options: &ReadOptions) -> Result<Understood, FileError> {
     understand_as(name, path, None, options)
 }
@@ -86,19 +86,19 @@ fn understand_as(
     raw.understand(name, beside, options)
 }
 
-/// Reads a run table from memory. `name` tells the form and stands in messages; nothing is looked for beside it.
+/// Reads a run table from memory. `name` determines its form and appears in messages. No facts are read from a folder.
 pub fn read_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<RunTable, FileError> {
     Ok(understand_bytes(name, bytes, options)?.into_run()?.0)
 }
 
-/// What there is in a table in memory.
+/// The content of a table in memory.
 pub fn understand_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Understood, FileError> {
     let meta = options.meta_path.as_deref().map(facts::read_meta).transpose()?;
     form::of_bytes(name, bytes, options)?.understand(name, meta, options)
 }
 
-/// Writes a run to `path` in the form that its name tells: Parquet with embedded facts, or CSV (also `.csv.gz`) with
-/// `<name>.meta.json` beside it.
+/// Writes a run to `path` in the form of its suffix: Parquet with embedded facts, or CSV (also `.csv.gz`) with
+/// `<name>.meta.json` in the same folder.
 pub fn write(path: &Path, meta: &Meta, trace: &Trace) -> Result<(), FileError> {
     let name = path.display().to_string();
     let io_fault = |fault: io::Error| FileFault::Io(fault).in_file(&name);

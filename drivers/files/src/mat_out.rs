@@ -1,5 +1,5 @@
-//! MATLAB out, in level 4 of the MAT format: what MATLAB, Octave and SciPy have all read since 1990, and all that a table of
-//! doubles needs. Source: "MAT-File Format" (The MathWorks), chapter "Level 4 MAT-file format".
+//! Exports MATLAB files in level 4 of the MAT format. MATLAB, Octave and SciPy have read it since 1990, and it suffices
+//! for a table of doubles. Source: "MAT-File Format" (The MathWorks), chapter "Level 4 MAT-file format".
 
 use crate::facts::meta_json;
 use jointbench_instrument::{Channel, Meta, Trace};
@@ -12,12 +12,12 @@ const NUMBERS: i32 = 0;
 const TEXT: i32 = 51;
 /// MATLAB cuts longer names.
 const LONGEST_NAME: usize = 63;
-/// The variable that holds the facts.
+/// The variable with the facts.
 const FACTS: &str = "meta_json";
-/// Bytes collected before they are handed on.
+/// Buffer size before data is written.
 const CHUNK: usize = 1 << 16;
 
-/// One column vector for each channel, and the facts as the text `meta_json`.
+/// Writes one column vector per channel, and the facts as the text `meta_json`.
 pub fn write_mat(out: impl Write, meta: &Meta, trace: &Trace) -> io::Result<()> {
     let mut mat = MatWriter::new(out);
     for (channel, column) in trace.channels().iter().zip(trace.columns()) {
@@ -27,7 +27,7 @@ pub fn write_mat(out: impl Write, meta: &Meta, trace: &Trace) -> io::Result<()> 
     mat.finish(meta, trace.channels())
 }
 
-/// The same, one column behind the other.
+/// Writes a MAT file column by column.
 pub struct MatWriter<W: Write> {
     out: BufWriter<W>,
     taken: HashSet<String>,
@@ -38,12 +38,12 @@ impl<W: Write> MatWriter<W> {
         Self { out: BufWriter::with_capacity(CHUNK, out), taken: HashSet::from([FACTS.to_owned()]) }
     }
 
-    /// Begins a column; `rows` values follow.
+    /// Starts a column; `rows` values follow.
     pub fn begin(&mut self, name: &str, rows: usize) -> io::Result<()> {
         head(&mut self.out, NUMBERS, rows, 1, &free_name(name, &mut self.taken))
     }
 
-    /// The next values of the column that was begun last.
+    /// The next values of the current column.
     pub fn values(&mut self, values: &[f64]) -> io::Result<()> {
         values.iter().try_for_each(|value| self.out.write_all(&value.to_le_bytes()))
     }
@@ -65,7 +65,7 @@ fn head(out: &mut impl Write, kind: i32, rows: usize, columns: usize, name: &str
     out.write_all(&[0])
 }
 
-/// Letters, digits and underscores, a letter first, and not yet taken.
+/// A name of letters, digits and underscores that starts with a letter and is not used yet.
 fn free_name(wanted: &str, taken: &mut HashSet<String>) -> String {
     let mut plain: String = wanted.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if !plain.starts_with(|c: char| c.is_ascii_alphabetic()) {

@@ -1,4 +1,4 @@
-//! Numbers that stand for an empty cell: `-9999`, or `9.9E+37` of instruments (SCPI 1999, volume 1, 7.2.1).
+//! Numbers that mean an empty cell: `-9999`, or `9.9E+37` of instruments (SCPI 1999, volume 1, 7.2.1).
 
 use crate::ReadOptions;
 use crate::column::Column;
@@ -7,17 +7,17 @@ use crate::note::{counted, plural};
 use crate::raw::RawTable;
 use crate::text::Content;
 
-/// Overflow and “not a number” of SCPI instruments, in single precision or in a text.
+/// Overflow and "not a number" of SCPI instruments, in single precision or as text.
 const SCPI: [f64; 2] = [9.9e37, 9.91e37];
 const SINGLE: f64 = 1e-6;
-/// A code stands so many times further from all other values than these stand from each other.
+/// The distance of a code from all other values, in multiples of their range.
 const FAR: f64 = 10.0;
-/// It is in at most this share of the cells; more than once, and within 32 bits, if its digits are not all nines.
+/// Largest fraction of cells with a code. A code not of nines must also occur more than once and fit into 32 bits.
 const SHARE: f64 = 0.1;
 const LARGEST: f64 = 4_294_967_296.0;
 
 impl RawTable {
-    /// Takes what the options say as empty, and asks about numbers that look like it.
+    /// Treats the codes of the options as empty, and asks about numbers that look like a code.
     pub fn settle_missing(&mut self, file: &str, options: &ReadOptions) -> Result<(), FileError> {
         let codes: Vec<f64> = options.missing.iter().filter_map(|text| text.trim().parse().ok()).collect();
         for column in &mut self.columns {
@@ -42,7 +42,8 @@ impl RawTable {
     }
 }
 
-/// The number in a column that looks like a code: one of SCPI, or one that is far from all others and of nines only or repeated.
+/// The number in a column that looks like a code: a SCPI code, or a number far from all others that has only nines or
+/// repeats.
 fn code_of(column: &Column) -> Option<f64> {
     if column.content != Content::Numbers {
         return None;
@@ -64,7 +65,7 @@ fn is_of_scpi(value: f64) -> bool {
     SCPI.iter().any(|code| (value.abs() / code - 1.0).abs() < SINGLE)
 }
 
-/// 999, -9999, 99999.99.
+/// Whether all digits are nines: 999, -9999, 99999.99.
 fn is_of_nines(value: f64) -> bool {
     let text = value.abs().to_string();
     let digits: Vec<char> = text.chars().filter(char::is_ascii_digit).collect();

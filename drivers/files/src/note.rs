@@ -1,13 +1,13 @@
-//! What was skipped or assumed on the way in, for people.
+//! Notes for the user about skipped or assumed parts of an import.
 
 use serde::{Deserialize, Serialize};
 
-/// One thing that was skipped, assumed or noticed, and the option that changes it.
+/// One skipped, assumed or noticed item, and the option that changes it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Note {
     /// A clause without a full stop.
     pub said: String,
-    /// As it is written on the command line, such as `--leave remark`.
+    /// In command-line notation, such as `--leave remark`.
     pub option: Option<String>,
 }
 
@@ -30,7 +30,7 @@ impl std::fmt::Display for Note {
     }
 }
 
-/// All of them in one paragraph; empty where there is none.
+/// All notes in one paragraph; empty without notes.
 pub fn paragraph(notes: &[Note]) -> String {
     let said: Vec<String> = notes.iter().map(Note::to_string).collect();
     if said.is_empty() { String::new() } else { format!("{}.", said.join("; ")) }
@@ -54,7 +54,7 @@ pub fn plural(number: usize, one: &str) -> String {
     format!("{} {one}{}", counted(number), if number == 1 { "" } else { "s" })
 }
 
-/// A word of the command line, quoted where a shell would part or change it.
+/// A word of the command line, quoted if a shell would split or change it.
 pub fn shell(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "_-=./,:+%@".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

@@ -10,7 +10,8 @@ use jointbench_instrument::{Kind, Meta, TableFault};
 const ANGLE: &str = "motor_position_rad";
 const SPEED: &str = "motor_velocity_rad_s";
 
-/// Speeds without time and angle are points and no record of a motion; currents and torques of a brake too.
+/// Speeds without time and angle are operating points, not the record of a motion. So are the currents and torques of a
+/// brake.
 pub fn may_be(table: &RawTable, kind: Kind, guessed: &[Proposal]) -> bool {
     let has = |name: &str| table.place(name).is_some() || guessed.iter().any(|one| one.column == name);
     match kind {
@@ -20,8 +21,8 @@ pub fn may_be(table: &RawTable, kind: Kind, guessed: &[Proposal]) -> bool {
     }
 }
 
-/// Numbers the rows in the place of a time, a second each. Of a friction table it makes the angle too: the sum of the speeds.
-/// Neither means anything beyond the order of the rows.
+/// Numbers the rows as a time, one second each. For a friction table it also makes an angle: the sum of the speeds.
+/// Both only have a meaning as the order of the rows.
 pub fn settle(table: &mut RawTable, meta: &mut Meta, guessed: &[Proposal]) -> Result<(), FileFault> {
     if meta.kind == Some(Kind::Friction) && table.place(ANGLE).is_some() {
         let said = format!("the table has {ANGLE}: it is the record of a motion and no table of conditions");
@@ -55,7 +56,7 @@ pub fn settle(table: &mut RawTable, meta: &mut Meta, guessed: &[Proposal]) -> Re
     Ok(())
 }
 
-/// What the file seems to hold instead, as options to copy.
+/// Alternatives that the file seems to contain, as options to copy.
 fn without_speed(table: &RawTable, guessed: &[Proposal]) -> FileFault {
     let of_points = |one: &&Proposal| one.column != ANGLE && one.column != "time_s";
     if guessed.iter().any(|one| one.column == SPEED) {

@@ -1,4 +1,4 @@
-//! How a table with other names or units becomes a run table.
+//! Conversion of a table with other names or units to a run table.
 
 use crate::Bounds;
 use crate::text::Decimal;
@@ -8,49 +8,49 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-/// What to do to a file on its way in.
+/// Options for the import of a file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadOptions {
-    /// The facts in a file of their own. Comes before `meta`, embedded facts and a file beside the table.
+    /// File with the facts. It has priority over `meta`, embedded facts and a file in the folder of the table.
     pub meta_path: Option<PathBuf>,
-    /// Facts already at hand.
+    /// Facts that are already known.
     pub meta: Option<Meta>,
     /// Columns to rename: (name in the run table, name in the file).
     pub map: Vec<(String, String)>,
     /// Factors: (name in the run table, factor). A value in the table is the file's value times the factor.
     pub scale: Vec<(String, f64)>,
-    /// Columns of the file that stay out, whatever they hold.
+    /// Columns of the file to omit, with any content.
     pub leave: Vec<String>,
-    /// A row with an empty cell stays out, and is a gap in time. How many did is a fact of the run.
+    /// A row with an empty cell is omitted and becomes a gap in time. Their number is a fact of the run.
     pub leave_empty_rows: bool,
-    /// What stands for an empty cell: words such as `OVLD`, numbers such as `-9999`. `none`: no number does.
+    /// Codes for an empty cell: words such as `OVLD`, numbers such as `-9999`. `none`: no number is a code.
     pub missing: Vec<String>,
     /// Units of the file: (name in the run table, unit).
     pub unit: Vec<(String, Unit)>,
-    /// Angles that begin anew after a turn, made continuous: (name in the run table, period in its SI unit).
+    /// Wrapped angles to make continuous: (name in the run table, period in its SI unit).
     pub unwrap: Vec<(String, f64)>,
     /// Names of the columns, for a table without a line of names.
     pub names: Vec<String>,
-    /// The decimal sign: of a column of the file, or of all others.
+    /// The decimal sign of a column of the file, or of all other columns.
     pub decimal: Vec<(Option<String>, Decimal)>,
     pub time: TimeFrom,
-    /// A file in which time begins again holds several recordings: they are joined as runs of one measurement.
+    /// A file in which time restarts contains several recordings: they are joined as runs of one measurement.
     pub split_runs: bool,
     pub bounds: Bounds,
 }
 
-/// Where time comes from.
+/// The source of the time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum TimeFrom {
     #[default]
     Column,
-    /// From the number of the row and this rate [Hz]; for a table without a time.
+    /// From the row number and this rate [Hz], for a table without a time.
     Rate(f64),
-    /// The same, in the place of the time that the table has.
+    /// The same, instead of the time in the table.
     RateInstead(f64),
-    /// From the column; rows with one time stamp are spread evenly up to the next.
+    /// From the column; rows with the same time stamp are spread evenly up to the next stamp.
     Spread,
-    /// There is none: each row is the mean of one steady operating point.
+    /// No time: each row is the mean of one steady operating point.
     OperatingPoints,
 }
 
@@ -66,14 +66,14 @@ impl ReadOptions {
         self.decimal.iter().find(|(column, _)| column.is_none()).map(|(_, decimal)| *decimal)
     }
 
-    /// Where somebody has said it, for all or for this one.
+    /// The decimal sign that the user stated for all columns or for this one.
     pub(crate) fn decimal_of(&self, name: &str) -> Option<Decimal> {
         let own = self.decimal.iter().find(|(column, _)| column.as_deref() == Some(name));
         own.map(|(_, decimal)| *decimal).or_else(|| self.decimal_of_all())
     }
 }
 
-/// What to do to a file, as people and programs write it: options of the command line, parts of a request.
+/// Import options as users and programs write them: options of the command line, parts of a request.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Choices {
@@ -88,9 +88,9 @@ pub struct Choices {
     /// Names in the file.
     pub leave: Vec<String>,
     pub leave_empty_rows: bool,
-    /// What stands for an empty cell, such as `-9999`.
+    /// Codes for an empty cell, such as `-9999`.
     pub missing: Vec<String>,
-    /// Names with commas between.
+    /// Names, separated by commas.
     pub names: Option<String>,
     /// `point`, `comma` or `name in the file=comma`.
     pub decimal: Vec<String>,
@@ -102,7 +102,7 @@ pub struct Choices {
 }
 
 impl Choices {
-    /// Each choice as the part of a request: its name and its text.
+    /// Each choice as a part of a request: its name and its text.
     pub fn parts(&self) -> Vec<(&'static str, String)> {
         let mut parts = Vec::new();
         for (name, list) in [
@@ -131,7 +131,7 @@ impl Choices {
         parts
     }
 
-    /// Takes a part of a request. `Ok(false)`: no choice is called so.
+    /// Accepts a part of a request. `Ok(false)`: no choice has this name.
     pub fn take(&mut self, name: &str, text: String) -> Result<bool, OptionFault> {
         let number = |text: &str| text.trim().parse().map_err(|_| OptionFault::Rate(f64::NAN)).map(Some);
         match name {
@@ -154,7 +154,7 @@ impl Choices {
         Ok(true)
     }
 
-    /// Checked, with the widest bounds and no facts.
+    /// Checked options, with the widest bounds and without facts.
     pub fn options(&self) -> Result<ReadOptions, OptionFault> {
         let each = |list: &[String]| list.to_vec();
         Ok(ReadOptions {

@@ -1,23 +1,23 @@
-//! Whether a time rises, and how it fails to.
+//! Checks whether a time rises, and classifies the violations.
 
 use crate::note::{Note, plural};
 
-/// Steps of a time that are not forwards.
+/// Steps of a time that are not positive.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Order {
-    /// Rows that have the time of the row before.
+    /// Number of rows with the time of the row before.
     pub repeats: usize,
-    /// Rows that have an earlier one.
+    /// Rows with an earlier time than the row before.
     pub back: Vec<usize>,
-    /// Those of them with which the time begins again.
+    /// Rows of `back` at which the time restarts.
     pub restarts: Vec<usize>,
-    /// Between two different stamps, where stamps repeat.
+    /// Step between two different stamps, if stamps repeat.
     pub tick_s: Option<f64>,
 }
 
-/// A recording has so many rows at least.
+/// Smallest number of rows of a recording.
 const RECORDING: usize = 10;
-/// A time begins again where it falls into so much of the recording before, from its beginning.
+/// A time restarts if it falls into this first fraction of the recording before.
 const AGAIN: f64 = 0.1;
 
 impl Order {
@@ -48,7 +48,7 @@ impl Order {
     }
 }
 
-/// The middle of the steps forwards; 0 where there is none.
+/// The median of the positive steps; 0 without any.
 pub fn usual_step(values: &[f64]) -> f64 {
     let steps = values.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
     let mut steps: Vec<f64> = steps.take(10_000).collect();
@@ -59,10 +59,10 @@ pub fn usual_step(values: &[f64]) -> f64 {
     *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// A rate is a round one where it is as near as this: a coarse clock tells it no better.
+/// Tolerance for rounding a rate, because a coarse clock does not determine it better.
 const ROUND: f64 = 0.005;
 
-/// Rows a second over all recordings, as a round number where it is nearly one.
+/// Rows per second over all recordings, rounded if it is near a round number.
 pub fn rate_hz(values: &[f64], starts: &[usize]) -> f64 {
     let mut ends: Vec<usize> = starts.to_vec();
     ends.push(values.len());
@@ -76,7 +76,7 @@ pub fn rate_hz(values: &[f64], starts: &[usize]) -> f64 {
         begin = end;
     }
     let repeats = values.windows(2).any(|pair| pair[0] == pair[1]);
-    // Where each row has a time of its own, the usual step tells it whatever else the clock does.
+    // If every row has its own time, the usual step determines the rate in spite of gaps.
     let rate = if repeats { steps as f64 / passed_s } else { 1.0 / usual_step(values) };
     if !rate.is_finite() || rate <= 0.0 {
         return 1.0;
@@ -86,11 +86,11 @@ pub fn rate_hz(values: &[f64], starts: &[usize]) -> f64 {
     let rounder = (rate / (digits * 10.0)).round() * digits * 10.0;
     let nearly = |round: f64| (round / rate - 1.0).abs() < ROUND;
     let chosen = if nearly(rounder) { rounder } else { round };
-    // Without the digits that the powers of ten have left.
+    // Removes rounding errors of the powers of ten.
     format!("{chosen:.6}").parse().unwrap_or(chosen)
 }
 
-/// Rows of one stamp evenly up to the next; the last ones as far apart as those before.
+/// Spreads rows with the same stamp evenly up to the next stamp. The last rows keep the step before.
 pub fn spread(values: &mut [f64]) {
     let mut from = 0;
     let mut step = 0.0;
@@ -123,12 +123,12 @@ pub fn seconds(value_s: f64) -> String {
     format!("{text} {unit}")
 }
 
-/// A gap is so many usual steps long.
+/// Length of a gap in usual steps.
 const GAP: f64 = 10.0;
-/// Steps that differ by more than this share of the usual one are told.
+/// Deviation from the usual step above which a step is reported, as a fraction of the usual step.
 const JITTER: f64 = 0.5;
 
-/// Gaps, and steps that are not even.
+/// Notes about gaps and uneven steps.
 pub fn noticed(values: &[f64], starts: &[usize]) -> Vec<Note> {
     let usual = usual_step(values);
     let steps =

@@ -1,10 +1,10 @@
-//! The metadata of a Parquet file before it is decoded: where its columns lie, and how much they unpack to.
+//! Checks the metadata of a Parquet file before it is decoded: the positions and unpacked sizes of its columns.
 
 use crate::Bounds;
 use crate::error::FileFault;
 use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
 
-/// Refuses chunks that lie outside of the file, and a table beyond the bounds.
+/// Refuses chunks outside the file, and a table beyond the bounds.
 pub fn check(metadata: &ParquetMetaData, file_bytes: u64, bounds: &Bounds) -> Result<(), FileFault> {
     let broken = || FileFault::Columnar("its columns do not fit the file: was it cut off?".to_owned());
     let rows = usize::try_from(metadata.file_metadata().num_rows()).map_err(|_| broken())?;
@@ -24,7 +24,7 @@ pub fn check(metadata: &ParquetMetaData, file_bytes: u64, bounds: &Bounds) -> Re
     bounds.check_expanded(expanded, Some(file_bytes))
 }
 
-/// Bytes of a chunk when it is unpacked. `None` where it does not lie in the file.
+/// Unpacked size of a chunk in bytes. `None` if the chunk is not inside the file.
 fn unpacked(chunk: &ColumnChunkMetaData, file_bytes: u64) -> Option<u64> {
     let first = chunk.dictionary_page_offset().unwrap_or(chunk.data_page_offset()).min(chunk.data_page_offset());
     let from = u64::try_from(first).ok()?;

@@ -1,4 +1,4 @@
-//! Parquet out: one double column for each channel, the facts embedded.
+//! Exports Parquet: one column of doubles per channel, with embedded facts.
 
 use crate::facts::{EMBEDDED, meta_json};
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
@@ -17,14 +17,14 @@ pub fn write_parquet(out: impl Write + Send, meta: &Meta, trace: &Trace) -> io::
     parquet.finish()
 }
 
-/// The same, one stretch of rows behind the other.
+/// Writes a Parquet file block by block.
 pub struct ParquetWriter<W: Write + Send> {
     writer: ArrowWriter<W>,
     schema: Arc<Schema>,
 }
 
 impl<W: Write + Send> ParquetWriter<W> {
-    /// `channels` are those of every stretch.
+    /// `channels` are the same for every block.
     pub fn new(out: W, meta: &Meta, channels: &[Channel]) -> io::Result<Self> {
         let fields: Vec<Field> = channels.iter().map(|c| Field::new(&c.name, DataType::Float64, false)).collect();
         let facts = HashMap::from([(EMBEDDED.to_owned(), meta_json(meta, channels))]);

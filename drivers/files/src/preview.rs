@@ -1,4 +1,4 @@
-//! What a page shows of a file before it is taken in: its columns, what was understood, and what is proposed.
+//! The preview of a file before its import: its columns, their interpretation, and proposals.
 
 use crate::column::Column;
 use crate::error::FileError;
@@ -14,24 +14,24 @@ use std::path::Path;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Preview {
-    /// As the facts say, or as the columns look.
+    /// The kind from the facts, or a guess from the columns.
     pub kind: Kind,
     pub rows: usize,
     pub columns: Vec<PreviewColumn>,
-    /// Columns that say themselves what they are, and likely sources of the others.
+    /// Columns with known names, and probable sources of the other columns.
     pub proposals: Vec<Proposal>,
     pub notes: Vec<Note>,
-    /// Columns that are left out, as no model can use them.
+    /// Columns that are omitted, because no model can use them.
     pub left: Vec<String>,
-    /// Why the file is not taken in as it stands.
+    /// Why the file cannot be imported as it is.
     pub refused: Option<PreviewFault>,
 }
 
-/// One column as it stands in the file.
+/// One column of the file, unchanged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PreviewColumn {
     pub name: String,
-    /// As its name or a line of units states it.
+    /// The unit from its name or from a line of units.
     pub unit: Option<String>,
     /// Its first cells.
     pub first: Vec<String>,
@@ -46,7 +46,7 @@ pub struct PreviewFault {
     /// Line of a text, row of a columnar file.
     pub line: Option<u64>,
     pub column: Option<String>,
-    /// Options that are proposed, as they are written on the command line.
+    /// Proposed options in command-line notation.
     pub options: Vec<String>,
 }
 
@@ -61,7 +61,7 @@ impl From<&FileError> for PreviewFault {
     }
 }
 
-/// Reads a file as [`crate::understand_upload`] does and says what came of it. `Err`: nothing can be shown of it.
+/// Reads a file like [`crate::understand_upload`] and reports the result. `Err`: nothing can be shown.
 pub fn preview(name: &str, path: &Path, options: &ReadOptions) -> Result<Preview, FileError> {
     let mut raw = form::open(name, path, options)?;
     raw.name_all();

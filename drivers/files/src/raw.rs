@@ -1,4 +1,4 @@
-//! A table as it stands in a file, before names, units and values are checked.
+//! A table as it is in the file, before names, units and values are checked.
 
 use crate::ReadOptions;
 use crate::column::Column;
@@ -9,36 +9,36 @@ use crate::note::{Note, counted, plural};
 use crate::text::{Decimal, Lines};
 use jointbench_instrument::{Kind, Meta};
 
-/// A row of another width.
+/// A row with a different number of cells.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Odd {
     pub line: u64,
     pub cells: usize,
-    /// It begins with a number, as a row does that lacks some.
+    /// It starts with a number, like a row with missing cells.
     pub is_row: bool,
 }
 
-/// Words in so many columns of one row are no codes for empty cells.
+/// Words in this many columns of one row are not codes for empty cells.
 const SECOND_HEADER: usize = 2;
-/// Lines that may stand below the rows.
+/// Largest number of lines below the rows.
 const FOOTER_LINES: usize = 20;
 
 #[derive(Debug, Default)]
 pub(crate) struct RawTable {
     pub columns: Vec<Column>,
     pub rows: usize,
-    /// A text has lines; a columnar file has none.
+    /// A text file has lines; a columnar file has none.
     pub is_text: bool,
     pub lines: Lines,
     pub names_line: u64,
     pub odd: Vec<Odd>,
     pub comments: usize,
-    /// Of a text without a line of names: names to begin with.
+    /// Initial names for a text without a line of names.
     pub proposed_names: Option<String>,
     pub is_cut: bool,
-    /// Rows above which the names stand again.
+    /// Rows before which the line of names is repeated.
     pub named_again: Vec<usize>,
-    /// The rows of the file that stay, where some were left out.
+    /// The remaining rows of the file, if some were omitted.
     pub places: Option<Vec<usize>>,
     pub decimal: Decimal,
     pub meta: Option<Meta>,
@@ -58,7 +58,7 @@ impl RawTable {
         self.columns.iter().map(|column| column.name.clone()).collect()
     }
 
-    /// Where a row stands: by line in a text, else by its number from 1.
+    /// Position of a row: its line in a text, else its number from 1.
     pub fn located(&self, file: &str, row: usize) -> Place {
         let place = Place { file: file.to_owned(), ..Place::default() };
         let row = self.places.as_ref().map_or(row, |places| places[row]);
@@ -68,7 +68,7 @@ impl RawTable {
         }
     }
 
-    /// Names that nobody has given, or given twice, become names of their own.
+    /// Gives a unique name to columns with a missing or repeated name.
     pub fn name_all(&mut self) {
         match &self.proposed_names {
             None => self.leave_index(),
@@ -103,13 +103,13 @@ impl RawTable {
         }
     }
 
-    /// No line and no option names a column.
+    /// Neither a line nor an option names a column.
     pub fn is_unnamed(&self, kind: Kind) -> bool {
         let is_named = |name: &str| name != "time_s" && self.place(name).is_some();
         self.proposed_names.is_some() && !known(kind).any(is_named)
     }
 
-    /// A first column without a name that counts the rows, as data frames write it.
+    /// Drops a first column without a name that counts the rows, as data frames write it.
     fn leave_index(&mut self) {
         let counts = |column: &Column| {
             let from = column.values.first().copied().unwrap_or(f64::NAN);
@@ -123,7 +123,7 @@ impl RawTable {
         }
     }
 
-    /// Lines below the last row that hold no row, such as a mean or “End of file”. They end the table, where they are few.
+    /// Drops a few lines after the last row, such as a mean or "End of file". They end the table.
     pub fn leave_footer(&mut self) {
         let begins_wrong = |row: usize| {
             let first = self.columns.iter().find(|column| !column.values.is_empty());
@@ -133,7 +133,7 @@ impl RawTable {
         let Some(last) = end.checked_sub(1).and_then(|row| self.lines.of(row)) else { return };
         let below: Vec<&Odd> = self.odd.iter().filter(|odd| odd.line > last).collect();
         let count = self.rows - end + below.len();
-        // A short table that ends in words is none with a footer.
+        // Words at the end of a short table are not a footer.
         if count == 0 || count > FOOTER_LINES || end < 2 * count || below.iter().any(|odd| odd.is_row) {
             return;
         }
@@ -161,7 +161,7 @@ impl RawTable {
         let places: Vec<usize> = places.collect::<Result<_, _>>()?;
         for (place, (name, _)) in places.into_iter().zip(&options.map) {
             let column = &mut self.columns[place];
-            // Whoever renames a column says what it is; its unit is what the file states.
+            // Renaming defines the quantity of a column; the file still states its unit.
             column.unit = Named::of(column).unit.or_else(|| unit_of(column, name));
             column.is_unit_open = name == "time_s" && column.name != *name && column.unit.is_none();
             column.name.clone_from(name);
@@ -187,7 +187,7 @@ impl RawTable {
         )
     }
 
-    /// A row of words in several columns that hold numbers: names or units of another table.
+    /// A row with words in several numeric columns: names or units of another table.
     fn words_between(&self, is_needed: impl Fn(&str) -> bool) -> Option<usize> {
         let wrong: Vec<&[usize]> = self
             .columns
@@ -199,7 +199,7 @@ impl RawTable {
         wrong.iter().flat_map(|rows| rows.iter()).copied().filter(is_in).min()
     }
 
-    /// Refuses rows of another width and cells that should be numbers, all in one message.
+    /// Refuses rows with a different number of cells and cells that should be numbers, all in one message.
     pub fn refuse_wrong(
         &self,
         file: &str,
@@ -238,7 +238,7 @@ impl RawTable {
         }
         rows.sort_unstable();
         rows.dedup();
-        // The first fault of each row is told.
+        // Only the first fault of each row is reported.
         told.sort_by_key(|wrong| wrong.line);
         told.dedup_by_key(|wrong| wrong.line);
         told.truncate(crate::error::TOLD_ROWS);

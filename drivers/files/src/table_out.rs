@@ -1,4 +1,4 @@
-//! Any table out, numbers and words: what a picture shows, which is no run.
+//! Exports any table of numbers and words, such as the data of a figure, that is not a run.
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray};
 use parquet::arrow::ArrowWriter;
@@ -29,7 +29,7 @@ pub fn write_table_csv(out: impl Write, columns: &[(String, TableColumn)]) -> io
     out.flush()
 }
 
-/// The same as Parquet: doubles and texts, missing values as such.
+/// The same as Parquet: doubles and texts; missing values stay missing.
 pub fn write_table_parquet(out: impl Write + Send, columns: Vec<(String, TableColumn)>) -> io::Result<()> {
     let arrays = columns.into_iter().map(|(name, column)| {
         let array: ArrayRef = match column {

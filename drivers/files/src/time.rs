@@ -1,4 +1,4 @@
-//! The time of a table: from its column, whatever its unit and clock, or from a rate.
+//! The time of a table: from its column in any unit and clock, or from a rate.
 
 use crate::column::Column;
 use crate::contradiction;
@@ -16,7 +16,7 @@ use jointbench_instrument::{Meta, TableFault};
 const TIME: &str = "time_s";
 const DAY_S: f64 = 86_400.0;
 
-/// Gives the table a rising time in seconds. Returns the rows, but the first, with which a recording begins.
+/// Gives the table a rising time in seconds. Returns the first rows of all recordings except the first one.
 pub(crate) fn settle(
     table: &mut RawTable,
     meta: &mut Meta,
@@ -70,7 +70,7 @@ pub(crate) fn settle(
     Ok(split.to_vec())
 }
 
-/// Rows with which the time begins again, and those below a repeated line of names.
+/// Rows at which the time restarts, including those after a repeated line of names.
 fn starts(order: &Order, named_again: &[usize]) -> Vec<usize> {
     let mut all = order.restarts.clone();
     all.extend(named_again.iter().filter(|row| **row > 0 && order.back.contains(row)));
@@ -79,7 +79,7 @@ fn starts(order: &Order, named_again: &[usize]) -> Vec<usize> {
     all
 }
 
-/// The column in seconds, and what to say of it.
+/// Converts the column to seconds and returns a note about the conversion.
 fn to_seconds(column: &mut Column, meta: &Meta) -> Result<Option<Note>, FileFault> {
     let values = &mut column.values;
     if let Content::Stamps(first) = column.content {
@@ -100,7 +100,7 @@ fn to_seconds(column: &mut Column, meta: &Meta) -> Result<Option<Note>, FileFaul
                     .then(|| Note::with(format!("{TIME} was converted from {text}"), format!("--unit {TIME}=UNIT"))),
             )
         }
-        // Seconds since 1970 that are no date before 2100 are none.
+        // Seconds since 1970 are only valid as dates before 2100.
         (None, is_open) if is_open || values.first().is_some_and(|first| *first > EPOCH_S.end) => {
             let (name, why) = open_unit(values, meta.sample_rate_hz)?;
             let said = format!("{TIME} has no unit and was taken as {name}, {why}");
@@ -108,7 +108,7 @@ fn to_seconds(column: &mut Column, meta: &Meta) -> Result<Option<Note>, FileFaul
         }
         (None, _) => (Unit::SI, None),
     };
-    // Of a clock that counts from long ago the digits would go to the years.
+    // With a clock that counts from long ago, a double would lose digits of the seconds.
     let zero =
         values.first().copied().filter(|first| unit.factor * first.abs() > YEAR_S && note.is_some()).unwrap_or(0.0);
     if !unit.is_si() || zero != 0.0 {
@@ -119,7 +119,7 @@ fn to_seconds(column: &mut Column, meta: &Meta) -> Result<Option<Note>, FileFaul
 
 const YEAR_S: f64 = 365.0 * DAY_S;
 
-/// A clock that passes midnight goes on.
+/// Continues a clock time past midnight.
 fn unroll_days(values: &mut [f64]) {
     let (mut days, mut before) = (0.0, f64::NEG_INFINITY);
     for value in values {
@@ -141,7 +141,7 @@ const FILE_TIME_EPOCH_S: f64 = 11_644_473_600.0;
 /// Days since 1900, from 1954 to 2119.
 const SHEET_DAYS: std::ops::Range<f64> = 20_000.0..80_000.0;
 
-/// The unit that the values of a time show, and how.
+/// The unit that the values of a time indicate, and the reason.
 fn open_unit(values: &[f64], rate_hz: Option<f64>) -> Result<(&'static str, String), FileFault> {
     const UNITS: [(&str, f64); 5] = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9), ("days", DAY_S)];
     let step = order::usual_step(values);
@@ -187,12 +187,12 @@ fn from_rate(table: &mut RawTable, hz: f64, whence: &str) {
     table.notes.push(Note::new(format!("{TIME} counts the rows, {hz} a second, by {whence}")));
 }
 
-/// A counter of 32 bits begins anew after so many ticks.
+/// A 32-bit counter wraps after this many ticks.
 const OVERFLOW: f64 = 4_294_967_296.0;
-/// It loses so much of them at least with the step that overflows.
+/// Size of a wrap, including the step of the overflow, as a fraction of the counter range.
 const LOST: std::ops::RangeInclusive<f64> = 0.99..=1.0;
 
-/// Refuses a time that goes back by the range of a counter of ms, µs or ns.
+/// Refuses a time that falls by the range of a counter of ms, µs or ns.
 fn refuse_overflow(table: &RawTable, place: usize, file: &str) -> Result<(), FileError> {
     let values = &table.columns[place].values;
     let back: Vec<usize> = (1..values.len()).filter(|row| values[*row] < values[row - 1]).collect();
@@ -204,7 +204,7 @@ fn refuse_overflow(table: &RawTable, place: usize, file: &str) -> Result<(), Fil
     Err(FileError { place: Box::new(table.located(file, *row)), fault }.in_column(TIME))
 }
 
-/// Rows of one stamp evenly up to the next one.
+/// Spreads rows with the same stamp evenly up to the next stamp.
 fn spread(table: &mut RawTable, order: &Order) {
     let Some(place) = table.place(TIME) else { return };
     order::spread(&mut table.columns[place].values);
@@ -224,7 +224,7 @@ fn several(table: &RawTable, starts: &[usize], file: &str) -> FileError {
     FileError { place: Box::new(place), fault: FileFault::Choice { said, options } }.in_column(TIME)
 }
 
-/// The first row that is not later than the one before, what all such rows look like, and what to do.
+/// The first row that is not later than the row before, the probable cause, and the remedy.
 fn out_of_order(table: &RawTable, values: &[f64], starts: &[usize], file: &str) -> Option<FileError> {
     let is_start = |row: &usize| starts.binary_search(row).is_ok();
     let row = (1..values.len()).find(|row| values[*row] <= values[row - 1] && !is_start(row))?;

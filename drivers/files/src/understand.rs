@@ -1,4 +1,4 @@
-//! From a table as it stands in a file to the table of a run.
+//! Conversion of the table in a file to a run table.
 
 use crate::column::Column;
 use crate::error::{FileError, FileFault};
@@ -10,19 +10,19 @@ use crate::unit::{Unit, dimension_of};
 use crate::{ReadOptions, contradiction, facts, guess, naming, operating_points, order, time};
 use jointbench_instrument::{Meta, Motion, RunTable, TableFault, Trace};
 
-/// The fact that says how many rows of the file were left out for their empty cells.
+/// The fact with the number of rows that were omitted because of empty cells.
 pub const LEFT_OUT_ROWS: &str = "left_out_rows";
 
-/// What was understood of a file.
+/// The interpretation of a file.
 #[derive(Debug)]
 pub struct Understood {
     pub meta: Meta,
     pub trace: Trace,
-    /// What was skipped, assumed and noticed.
+    /// Skipped, assumed and noticed items.
     pub notes: Vec<Note>,
     /// Columns of the file that no model can use.
     pub left: Vec<String>,
-    /// Likely sources of columns that are not there.
+    /// Probable sources of missing columns.
     guessed: Vec<guess::Proposal>,
     file: String,
     table: RawTable,
@@ -76,7 +76,7 @@ impl RawTable {
         Ok(Understood { meta, trace, notes, left, guessed, file: file.to_owned(), table: self, starts })
     }
 
-    /// Refuses a column in which a sign could part thousands or decimals.
+    /// Refuses a column in which a sign could separate thousands or decimals.
     fn refuse_doubtful(&self, file: &str, options: &ReadOptions) -> Result<(), FileError> {
         if options.decimal_of_all().is_some() {
             return Ok(());
@@ -113,7 +113,8 @@ impl RawTable {
         Ok(())
     }
 
-    /// Channels with clocks of their own: a second column of the time, of the same name, that differs by more than half a step.
+    /// Refuses channels with their own clocks: a second time column with the same name that differs by more than half a
+    /// step.
     fn refuse_two_clocks(&self) -> Result<(), FileFault> {
         let Some(time) = self.place("time_s").map(|place| &self.columns[place]) else { return Ok(()) };
         let (own, step) = (naming::parted(&time.source), order::usual_step(&time.values));
@@ -132,7 +133,7 @@ impl RawTable {
         Ok(())
     }
 
-    /// Columns that nobody asks for, and that hold words or have gaps.
+    /// Drops columns that are not needed and contain words or gaps.
     fn leave_unusable(&mut self, is_needed: impl Fn(&str) -> bool, options: &ReadOptions) -> Vec<String> {
         let (rows, mut left) = (self.rows, Vec::new());
         let mut notes = Vec::new();
@@ -171,8 +172,8 @@ impl RawTable {
         left
     }
 
-    /// The unit that the file states for a column. One that contradicts the name in the file is asked about: one of both is
-    /// wrong. A column that was renamed is converted, and asked about where its unit is none of the quantity.
+    /// Applies the unit that the file states for a column. A unit that contradicts the column name leads to a question,
+    /// because one of both is wrong. A renamed column is converted. A unit of another quantity leads to a question too.
     fn settle_units(&mut self, options: &ReadOptions, motion: Motion) -> Result<(), FileFault> {
         for column in self.columns.iter_mut().filter(|column| column.name != "time_s") {
             let (name, Some(text)) = (column.name.clone(), column.unit.clone()) else { continue };
@@ -236,7 +237,7 @@ impl RawTable {
             (column.is_unit_open, column.unit) = (false, None);
             column.values.iter_mut().for_each(|value| *value *= factor);
         }
-        // The time is made continuous when it is in seconds.
+        // The time is unwrapped after its conversion to seconds.
         for (wanted, period) in options.unwrap.iter().filter(|(wanted, _)| wanted != "time_s") {
             let place = place(self, wanted)?;
             contradiction::unwrap(&mut self.columns[place].values, *period);
@@ -244,7 +245,7 @@ impl RawTable {
         Ok(())
     }
 
-    /// How many did not stay is a fact of the run.
+    /// The number of omitted rows is a fact of the run.
     fn leave_empty_rows(&mut self, meta: &mut Meta) {
         let whole = |row: &usize| self.columns.iter().all(|column| !column.values[*row].is_nan());
         let places: Vec<usize> = (0..self.rows).filter(whole).collect();
@@ -264,7 +265,7 @@ impl RawTable {
 }
 
 impl Understood {
-    /// Units that the file states for columns that no model knows, by their names.
+    /// Units in the file for columns that no model uses, by column name.
     pub fn stated_units(&self) -> Vec<(String, String)> {
         let is_known = |name: &str| self.meta.kind.is_some_and(|kind| naming::known(kind).any(|known| known == name));
         let stated = |column: &Column| {
@@ -274,7 +275,7 @@ impl Understood {
         self.table.columns.iter().filter_map(stated).collect()
     }
 
-    /// What it lacks for a run of its kind, with what the file seems to hold instead. `None`: nothing.
+    /// The missing part for a run of its kind, with a probable source in the file. `None`: the table is complete.
     pub fn lacks(&self) -> Option<Note> {
         let Some(kind) = self.meta.kind else {
             return Some(Note::with("no model fits the table yet: its facts state no kind", "--meta FILE"));
@@ -289,7 +290,7 @@ impl Understood {
         Some(if options.is_empty() { Note::new(said) } else { Note::with(said, options.join(" ")) })
     }
 
-    /// The run, checked, and the notes.
+    /// The checked run, and the notes.
     pub fn into_run(self) -> Result<(RunTable, Vec<Note>), FileError> {
         let Understood { meta, trace, mut notes, left, guessed, file, table, starts } = self;
         let refused = |mut fault: TableFault| {
@@ -315,7 +316,7 @@ impl Understood {
     }
 }
 
-/// Recordings one behind the other as one measurement.
+/// Joins consecutive recordings into one measurement.
 fn joined(meta: &Meta, trace: &Trace, starts: &[usize]) -> Result<RunTable, String> {
     let mut bounds: Vec<usize> = std::iter::once(0).chain(starts.iter().copied()).collect();
     bounds.push(trace.len());
@@ -328,14 +329,14 @@ fn joined(meta: &Meta, trace: &Trace, starts: &[usize]) -> Result<RunTable, Stri
     first.join(parts).map_err(|fault| fault.to_string())
 }
 
-/// Where the fault is, and what the file seems to hold instead.
+/// The position of the fault, and alternatives that the file seems to contain.
 fn refusal(fault: TableFault, file: &str, table: &RawTable, guessed: &[guess::Proposal]) -> FileError {
     let row = fault.row();
     let mut place = match row {
         Some(row) => table.located(file, row),
         None => crate::error::Place { file: file.to_owned(), ..Default::default() },
     };
-    // A column as a whole is at fault: the line of column names.
+    // A fault of a whole column is at the line of column names.
     if row.is_none() && table.is_text && fault.column().is_some() {
         place.line = Some(table.names_line);
     }

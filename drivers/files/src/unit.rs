@@ -1,8 +1,8 @@
-//! Units that tables come in, by the words that people write, and their values in SI.
+//! Units of imported tables with their common spellings, and their values in SI.
 
 use std::f64::consts::TAU;
 
-/// What a unit measures. A column is only taken in a unit of its own dimension.
+/// The quantity that a unit measures. A column only accepts units of its own dimension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
     Time,
@@ -25,7 +25,7 @@ pub struct Unit {
     pub offset: f64,
 }
 
-/// Newton metres of an ounce-force inch, and of the other units of the inch and the pound (NIST SP 811, appendix B.8).
+/// Newton metres per ounce-force inch, and other units of the inch and the pound (NIST SP 811, appendix B.8).
 const OZF_IN: f64 = 7.061_551_814e-3;
 const LBF_IN: f64 = 0.112_984_829;
 const LBF_FT: f64 = 1.355_817_948;
@@ -37,7 +37,7 @@ const ICE_K: f64 = 273.15;
 
 type Row = (Dimension, f64, &'static [&'static str]);
 
-/// Names are as [`plain`] leaves them; the first of each row is the one to write.
+/// Names as normalized by [`plain`]; the first name of each row is the preferred one.
 const UNITS: [Row; 53] = {
     use Dimension as D;
     [
@@ -101,12 +101,12 @@ const UNITS: [Row; 53] = {
     ]
 };
 
-/// One spelling of what people write in several: µ and μ, dots and dashes for times, no blanks.
+/// Normalizes spellings: µ and μ, dots and dashes for products, no spaces.
 fn plain(text: &str) -> String {
     let text = text.trim().replace(['µ', 'μ'], "u").replace(['·', '⋅', '•', '×'], "*").replace("º", "°");
     let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
     match text.as_str() {
-        // A dash between two units is a product, and one before a digit an exponent.
+        // A dash between two units is a product; a dash before a digit is an exponent.
         dashed if dashed.contains('-') && !dashed.ends_with("-1") => dashed.replace('-', "*"),
         dotted if dotted.len() > 2 && dotted.contains('.') => dotted.trim_end_matches('.').replace('.', "*"),
         _ => text,
@@ -114,16 +114,16 @@ fn plain(text: &str) -> String {
 }
 
 impl Unit {
-    /// SI, whatever it measures.
+    /// SI, for any quantity.
     pub const SI: Unit = Unit { dimension: Dimension::Other, factor: 1.0, offset: 0.0 };
 
-    /// By its name, as people write it: `deg`, `rpm`, `N·cm`, `counts/4096` (counts with the counts per turn), `°F`.
+    /// Parses common spellings: `deg`, `rpm`, `N·cm`, `counts/4096` (counts with the counts per turn), `°F`.
     pub fn parse(text: &str) -> Option<Unit> {
         let text = plain(text);
         if let Some(unit) = counts(&text) {
             return Some(unit);
         }
-        // mA and MA, Nm and nm are not the same: as written first, then without regard to case where that is clear.
+        // mA and MA, Nm and nm differ: first an exact match, then a match that ignores case if it is unique.
         let exact = UNITS.iter().find(|(_, _, names)| names.contains(&text.as_str()));
         let lower = text.to_lowercase();
         let alike = || {
@@ -139,7 +139,7 @@ impl Unit {
         Some(Unit { dimension: *dimension, factor: *factor, offset })
     }
 
-    /// As the unit is usually written: `ma` is mA.
+    /// The usual spelling of a unit: mA for `ma`.
     pub fn written(text: &str) -> Option<String> {
         let unit = Unit::parse(text)?;
         let same = |(dimension, factor, _): &&(Dimension, f64, &[&str])| {
@@ -153,7 +153,7 @@ impl Unit {
         value * self.factor + self.offset
     }
 
-    /// Of an axis that slides, whose columns are called as those of one that turns.
+    /// A unit of a sliding axis, whose columns have the names of a rotating axis.
     pub fn is_linear(self) -> bool {
         matches!(self.dimension, Dimension::Length | Dimension::Velocity | Dimension::Force)
     }
@@ -168,20 +168,20 @@ impl Unit {
     }
 }
 
-/// Whether readings are counted by an encoder.
+/// Whether the word means encoder counts.
 pub fn is_count(word: &str) -> bool {
     const WORDS: [&str; 12] =
         ["count", "counts", "cnt", "cnts", "cts", "tick", "ticks", "inc", "incs", "increments", "lsb", "steps"];
     WORDS.contains(&word.to_lowercase().as_str())
 }
 
-/// What may stand in a line of units and is no unit that can be converted.
+/// Words in a line of units that are not convertible units.
 pub fn is_unit_word(word: &str) -> bool {
     const WORDS: [&str; 10] = ["", "-", "1", "none", "grad", "raw", "digit", "digits", "bit", "bool"];
     WORDS.contains(&word.to_lowercase().as_str()) || is_count(word)
 }
 
-/// `counts/4096`: a 4096th of a turn; `counts/4096/s` the same a second.
+/// `counts/4096`: 1/4096 of a turn; `counts/4096/s`: the same per second.
 fn counts(text: &str) -> Option<Unit> {
     let rest = ["counts/", "count/", "cts/", "ticks/", "inc/"].iter().find_map(|word| text.strip_prefix(word))?;
     let (number, dimension) = match rest.strip_suffix("/s") {
@@ -192,7 +192,7 @@ fn counts(text: &str) -> Option<Unit> {
     Some(Unit { dimension, factor: TAU / per_turn, offset: 0.0 })
 }
 
-/// What a column of the run table measures, by the suffix of its name. `None` where that is no quantity with a unit.
+/// The quantity of a column of the run table, from the suffix of its name. `None` if it has no unit.
 pub fn dimension_of(column: &str) -> Option<Dimension> {
     use Dimension as D;
     Some(match jointbench_instrument::units::unit_of(column)? {

@@ -1,4 +1,4 @@
-//! What is beyond a bound is refused by its name, before it fills the memory.
+//! A table beyond a bound is refused by the name of the bound, before it fills the memory.
 
 use arrow_array::{ArrayRef, DictionaryArray, Float64Array, Int64Array, RecordBatch, StringArray, types::Int32Type};
 use arrow_ipc::CompressionType;
@@ -53,7 +53,7 @@ fn what_is_packed_is_not_unpacked_without_end() {
     read_bytes("run.csv.gz", &gzipped(rows(9).as_bytes()), &options(SMALL)).unwrap();
     let said = refused("run.csv.gz", &gzipped(&vec![b'0'; 20 << 20]));
     assert!(said.contains("it unpacks to more than 1 MiB: split the file, leave columns out"), "{said}");
-    // Within the absolute bound of an upload, and of no use to anybody.
+    // Within the absolute bound of an upload, but a useless table.
     let bomb = gzipped(&vec![b'0'; 257 << 20]);
     let said = read_bytes("run.csv.gz", &bomb, &options(Bounds::UPLOADED)).unwrap_err().to_string();
     assert!(said.contains("more than 200 times its size"), "{said}");
@@ -110,7 +110,7 @@ fn an_arrow_file_has_bounds() {
     assert!(refused("run.arrow", &arrow(wide, None)).contains("5 columns"));
 }
 
-/// The length of a buffer when it is unpacked stands before it, and may say anything.
+/// The stated unpacked length of a buffer may have any value.
 #[test]
 fn an_arrow_file_that_says_it_is_huge_is_not_believed() {
     let file = run(90, Some(CompressionType::ZSTD));
@@ -124,7 +124,7 @@ fn an_arrow_file_that_says_it_is_huge_is_not_believed() {
     }
 }
 
-/// A dictionary of long words repeated is small in a file and large in memory; its type alone decides.
+/// A dictionary of repeated long words is small in a file and large in memory; its type alone determines the refusal.
 #[test]
 fn words_are_left_before_they_are_unpacked() {
     let words: ArrayRef = Arc::new(StringArray::from_iter_values((0..9).map(|_| "x".repeat(100))));

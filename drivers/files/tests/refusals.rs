@@ -1,4 +1,4 @@
-//! A malformed file is refused with file, line, column and what was expected.
+//! A malformed file is refused with file, line, column and expected content.
 
 use arrow_array::{ArrayRef, Float32Array, Float64Array, Int64Array, RecordBatch, StringArray};
 use jointbench_files::{Choices, FileError, ReadOptions, parse_meta, read, read_bytes};

@@ -1,4 +1,4 @@
-//! What goes out comes in again bit by bit.
+//! An exported table imports again with identical bits.
 
 use jointbench_files::{
     LEFT_OUT_ROWS, ReadOptions, meta_json, parse_meta, read, read_bytes, write, write_csv, write_parquet,
@@ -37,7 +37,7 @@ prop_compose! {
     }
 }
 
-/// Equality of doubles would let -0.0 pass for 0.0.
+/// Compares bits, because doubles compare -0.0 equal to 0.0.
 fn check_same_bits(name: &str, bytes: &[u8], options: &ReadOptions, meta: &Meta, trace: &Trace) {
     let table = read_bytes(name, bytes, options).unwrap();
     assert_eq!(table.meta(), meta, "{name}");
@@ -101,7 +101,7 @@ fn rows_with_empty_cells_stay_out_where_that_is_asked_for() {
 
     let refused = |csv: &str, options| read_bytes("log.csv", csv.as_bytes(), options).unwrap_err().to_string();
     assert!(refused(csv, &options).contains("line 5, column motor_current_a: expected a number, found “x”"));
-    // What the table as a whole refuses is told by its line in the file, too.
+    // A fault of the whole table also states its line in the file.
     assert!(refused(&csv.replace("3,4,x", "2,4,4"), &options).contains("line 5"));
     let silent = ReadOptions { leave_empty_rows: false, ..options.clone() };
     assert!(refused(csv, &silent).contains("Use --missing x --leave-empty-rows"));

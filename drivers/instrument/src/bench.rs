@@ -1,4 +1,4 @@
-//! One bench: the instruments in their roles, one clock, one set of limits. Owned by exactly one thread.
+//! One bench: the instruments by role, one clock, one set of limits. One thread owns it.
 
 use crate::roles::{
     AlignmentStage, CurrentSource, Instrument, JointController, PositionCounter, PowerSwitch, Thermometer, TorqueSensor,
@@ -17,18 +17,18 @@ pub struct JointConstants {
     /// N: motor turns for each link turn.
     pub gear_ratio: f64,
     pub rotor_inertia_kg_m2: f64,
-    /// Coil resistance and rating of the brake decide the supply's compliance voltage. A bench without a brake has 0 here and
-    /// in its ratings.
+    /// Coil resistance and rating of the brake determine the supply's compliance voltage. A bench without a brake has 0
+    /// here and in its ratings.
     pub brake_compliance_v: f64,
     pub brake_rated_current_a: f64,
     /// Torque of the brake at rated current, link side.
     pub brake_rated_torque_nm: f64,
-    /// The link may turn this far to either side of the zero of its encoder. Empty: unlimited.
+    /// Permitted rotation of the link to either side of the zero of its encoder. `None`: unlimited.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link_range_rad: Option<f64>,
 }
 
-/// The instruments that a bench has. Absence is an empty slot, never a dummy.
+/// The instruments of a bench. A missing instrument is an empty slot, never a dummy.
 pub struct Bench {
     pub name: String,
     pub simulated: bool,
@@ -38,20 +38,20 @@ pub struct Bench {
     pub joint: Box<dyn JointController>,
     pub torque_sensor: Option<Box<dyn TorqueSensor>>,
     pub brake: Option<Box<dyn CurrentSource>>,
-    /// S1 of an encoder bench, on the motor's shaft.
+    /// S1 of an encoder bench, on the motor shaft.
     pub reference_encoder: Option<Box<dyn PositionCounter>>,
     /// S2, the encoder under test, on the same shaft.
     pub test_encoder: Option<Box<dyn PositionCounter>>,
     /// Holds the sensor of the encoder under test.
     pub stage: Option<Box<dyn AlignmentStage>>,
     pub thermometer: Option<Box<dyn Thermometer>>,
-    /// Switches instruments off and on. Empty: a person does.
+    /// Switches instruments off and on. `None`: a person has to do it.
     pub power: Option<Box<dyn PowerSwitch>>,
 }
 
 impl Bench {
-    /// Writes the traffic of every instrument down in `folder` from now on, a file each (`joint.traffic`), and returns the
-    /// files; `None` ends the record. Nothing is recorded where one of them cannot be.
+    /// Records the traffic of every instrument in `folder` from now on, one file each (`joint.traffic`), and returns
+    /// the files. `None` ends the recording. If one instrument cannot record, all recordings end.
     pub fn record(&mut self, folder: Option<&Path>) -> Result<Vec<PathBuf>, Fault> {
         let mut files = Vec::new();
         for instrument in self.instruments() {
@@ -65,12 +65,12 @@ impl Bench {
         Ok(files)
     }
 
-    /// By its name in the bench description.
+    /// The instrument with this name in the bench description.
     pub fn instrument(&mut self, name: &str) -> Option<&mut dyn Instrument> {
         self.instruments().into_iter().find(|instrument| instrument.name() == name)
     }
 
-    /// Every instrument that the bench has, the joint first.
+    /// Every instrument of the bench, the joint first.
     pub fn instruments(&mut self) -> Vec<&mut dyn Instrument> {
         let mut instruments: Vec<&mut dyn Instrument> = vec![self.joint.as_mut()];
         instruments.extend(self.torque_sensor.as_mut().map(|sensor| -> &mut dyn Instrument { sensor.as_mut() }));

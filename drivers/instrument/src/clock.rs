@@ -1,30 +1,30 @@
-//! One monotonic clock for a bench. The mock bench brings its own, which moves only when somebody waits.
+//! One monotonic clock for a bench. The mock bench has its own clock, which advances only while a caller waits.
 
 use std::time::{Duration, Instant};
 
-/// The bench's time. Seconds since the bench was opened.
+/// The time of the bench, in seconds since the bench was opened.
 pub trait Clock: Send + Sync {
     fn now_s(&self) -> f64;
 
-    /// Returns when the clock shows `t_s` or later. At once where that is past.
+    /// Returns when the clock shows `t_s` or later, immediately if that time is past.
     fn sleep_until_s(&self, t_s: f64);
 }
 
-/// A moment of which is known only that it lay between two: their middle, and how far it may be off either way.
+/// Midpoint of an interval that contains a moment, and the largest error of that midpoint in either direction.
 pub fn between(from_s: f64, until_s: f64) -> (f64, f64) {
     (0.5 * (from_s + until_s), 0.5 * (until_s - from_s))
 }
 
-/// A reading with its moment on the bench's clock.
+/// A reading with its time on the bench clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timed<T> {
     pub value: T,
     pub at_s: f64,
-    /// How far [`Timed::at_s`] may be off, either way.
+    /// Largest error of [`Timed::at_s`], in either direction.
     pub uncertainty_s: f64,
 }
 
-/// A reading that was taken between its question and its answer.
+/// A reading with the midpoint between request and reply as its time.
 pub fn timed<T, E>(clock: &dyn Clock, read: impl FnOnce() -> Result<T, E>) -> Result<Timed<T>, E> {
     let asked_s = clock.now_s();
     let value = read()?;

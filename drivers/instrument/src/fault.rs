@@ -1,4 +1,4 @@
-//! What can go wrong with an instrument, and what the caller may do about it.
+//! Instrument faults, and how the caller may react to them.
 
 use serde::{Deserialize, Serialize};
 
@@ -41,17 +41,17 @@ impl FaultKind {
 }
 
 impl Fault {
-    /// The port is gone, and whatever was behind it.
+    /// The port is lost, and with it the instrument.
     pub fn is_port_lost(&self) -> bool {
         matches!(self.kind, FaultKind::Disconnected { .. } | FaultKind::NotOpened { .. })
     }
 
-    /// Another instrument answers than the one that was there before.
+    /// The instrument that answers is not the one that answered before.
     pub fn is_wrong_instrument(&self) -> bool {
         matches!(self.kind, FaultKind::WrongInstrument { .. })
     }
 
-    /// Worth one more try after the link was drained and the instrument identified again.
+    /// One retry is useful after the link is drained and the instrument is identified again.
     pub fn is_retryable(&self) -> bool {
         matches!(self.kind, FaultKind::Silent { .. } | FaultKind::Garbled { .. } | FaultKind::StreamGap { .. })
     }

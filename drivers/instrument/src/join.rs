@@ -1,19 +1,19 @@
-//! Several recordings of one joint as one run table.
+//! Joins several recordings of one joint into one run table.
 //!
-//! Each keeps its own segments and repeats: the numbers of a later recording begin behind those of the one before. Time
-//! runs on after a pause, so that what changes from run to run shows over time. The column `run` numbers the recordings
+//! Each recording keeps its own segments and repeats: their numbers continue those of the recording before. Time
+//! continues after a pause, so that changes from run to run appear over time. The column `run` numbers the recordings
 //! from 0.
 
 use crate::{Channel, Kind, Meta, RunTable, TableFault, Trace};
 
-/// The pause between two recordings. How long it really was is in no run table; long enough for a gap that nobody takes
-/// for a late sample, short beside what changes from day to day.
+/// The pause between two recordings. The real pause is in no run table. The value is too long for a delayed sample and
+/// short compared with changes from day to day.
 const PAUSE_S: f64 = 60.0;
 
-/// Sample rates further apart than this share are two rates.
+/// Relative difference above which two sample rates are different.
 const SAME_RATE: f64 = 0.05;
 
-/// Why recordings cannot be looked at together. `number` counts them from 1.
+/// Why recordings cannot be joined. `number` counts them from 1.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum JoinFault {
     #[error(
@@ -40,7 +40,7 @@ pub enum JoinFault {
     Table(#[from] TableFault),
 }
 
-/// What makes two set-ups two joints.
+/// Two set-ups that differ in one of these facts have different joints.
 fn facts(meta: &Meta) -> [(&'static str, Option<f64>); 8] {
     [
         ("gear_ratio", meta.gear_ratio),
@@ -55,10 +55,10 @@ fn facts(meta: &Meta) -> [(&'static str, Option<f64>); 8] {
 }
 
 impl RunTable {
-    /// This run and more of the same kind and joint, in the order in which they were made, as one table.
+    /// Joins this run and more runs of the same kind and joint, in the order of measurement, into one table.
     ///
-    /// Columns that not all of them have are left out, except `segment` (found again where one lacks it) and `repeat`
-    /// (a recording without one counts as one repeat). The facts are those of the first.
+    /// Columns that some recordings lack are dropped. A recording without `repeat` counts as one repeat. The facts are
+    /// those of the first recording.
     pub fn join(self, more: Vec<RunTable>) -> Result<RunTable, JoinFault> {
         if more.is_empty() {
             return Ok(self);
@@ -91,7 +91,7 @@ impl RunTable {
         Ok(RunTable::new(meta, Trace::from_columns(channels, columns))?)
     }
 
-    /// Samples a second, by the middle step of the time; infinite for a single sample.
+    /// Samples per second, from the median time step. Infinite for a single sample.
     pub fn rate_hz(&self) -> f64 {
         let time_s = self.column("time_s").unwrap_or_default();
         let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
@@ -134,7 +134,7 @@ fn joined(runs: &[RunTable], name: &str) -> Vec<f64> {
     }
 }
 
-/// Whole numbers, each recording's behind those of the one before.
+/// Continues the whole numbers of each recording after those of the recording before.
 fn numbered(columns: impl Iterator<Item = Vec<f64>>) -> Vec<f64> {
     let mut next = 0.0;
     let mut out = Vec::new();
@@ -148,7 +148,7 @@ fn numbered(columns: impl Iterator<Item = Vec<f64>>) -> Vec<f64> {
     out
 }
 
-/// Each recording begins a pause after the end of the one before.
+/// Starts each recording one pause after the end of the recording before.
 fn shifted(columns: impl Iterator<Item = Vec<f64>>, pause_s: f64) -> Vec<f64> {
     let mut out: Vec<f64> = Vec::new();
     for column in columns {

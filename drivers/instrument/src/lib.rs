@@ -1,7 +1,7 @@
-//! The ground of the house: what a joint test bench can feel and do.
+//! The base crate: the measurements and commands of a joint test bench.
 //!
 //! Units, samples, run tables, instrument roles, limits, faults and clocks. No I/O, no threads, no async: every other
-//! crate stands on this one, and this one stands on nothing but serde.
+//! crate depends on this one. It depends only on serde, serde_json and thiserror.
 
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 

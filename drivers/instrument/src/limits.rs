@@ -1,4 +1,4 @@
-//! What a bench must never exceed. The guard checks every command and every sample against these.
+//! Limits that a bench must never exceed. The guard checks every command and every sample against them.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -15,11 +15,11 @@ pub struct Limits {
     pub link_torque_nm: f64,
     pub temperature_c: f64,
     pub brake_current_a: f64,
-    /// Heat that the brake takes up: |link torque · link velocity|.
+    /// Power that the brake converts to heat: |link torque · link velocity|.
     pub brake_power_w: f64,
 }
 
-/// The quantities that a limit can hold.
+/// The quantities that have a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Limited {
@@ -63,7 +63,7 @@ impl Limited {
     }
 }
 
-/// A limit that a command or a sample would break or has broken.
+/// A limit that a command or a sample exceeds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Breach {
     pub quantity: Limited,
@@ -93,7 +93,7 @@ impl Limits {
         }
     }
 
-    /// A value that is not a number breaks every limit: what cannot be read cannot be trusted.
+    /// NaN exceeds every limit, because an unreadable value cannot be trusted.
     pub fn check(&self, quantity: Limited, value: f64) -> Result<(), Breach> {
         let limit = self.of(quantity);
         if value.abs() <= limit { Ok(()) } else { Err(Breach { quantity, value, limit }) }

@@ -1,11 +1,11 @@
-//! The facts about a set-up that travel beside a run table (`meta.json`).
+//! The facts about a set-up that accompany a run table (`meta.json`).
 
 use crate::spelling::nearest;
 use crate::units::quantity_of;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What a run table measures, which decides what a model predicts.
+/// The measurement of a run table. It determines the prediction of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -15,7 +15,7 @@ pub enum Kind {
     Encoder,
     /// Torsion between motor and link [rad].
     Stiffness,
-    /// Torque of a hysteresis brake against its current [Nm].
+    /// Torque of a hysteresis brake over its current [Nm].
     Brake,
 }
 
@@ -31,7 +31,7 @@ impl Kind {
         }
     }
 
-    /// Columns without which a run table of this kind is refused. The first is always the time.
+    /// Columns that a run table of this kind must have. The first is always the time.
     pub fn required_columns(self) -> &'static [&'static str] {
         match self {
             Kind::Friction => &["time_s", "motor_position_rad", "motor_current_a"],
@@ -41,7 +41,7 @@ impl Kind {
         }
     }
 
-    /// Columns that the models know beside the required ones. Any other column is kept and offered as an axis.
+    /// Further columns that the models use. Any other column is kept and offered as an axis.
     pub fn optional_columns(self) -> &'static [&'static str] {
         match self {
             Kind::Friction => &[
@@ -60,7 +60,7 @@ impl Kind {
         }
     }
 
-    /// The unit of what a model of this kind predicts.
+    /// The unit of the quantity that a model of this kind predicts.
     pub fn target_unit(self) -> &'static str {
         match self {
             Kind::Friction | Kind::Brake => "Nm",
@@ -75,7 +75,7 @@ impl fmt::Display for Kind {
     }
 }
 
-/// Whether the axis turns or slides. A linear axis reads m for rad, N for Nm and kg for kg·m² in every label.
+/// Whether the axis rotates or slides. For a linear axis, every label shows m for rad, N for Nm and kg for kg·m².
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Motion {
@@ -93,7 +93,7 @@ impl Motion {
     }
 }
 
-/// Facts about the set-up. Fields that a kind does not need stay empty; unknown ones are kept in `other`.
+/// Facts about the set-up. Facts that a kind does not need stay empty; unknown facts are kept in `other`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Meta {
@@ -104,12 +104,12 @@ pub struct Meta {
     /// Effects of the model to start from (ids).
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub baseline: Vec<String>,
-    /// Each row is the mean of one steady operating point, in any order: time and angle only count the rows.
+    /// Each row is the mean of one steady operating point, in any order. Time and angle only number the rows.
     #[serde(skip_serializing_if = "is_false")]
     pub operating_points: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_rate_hz: Option<f64>,
-    /// k_m: motor torque for each ampere of i_q.
+    /// k_m: motor torque per ampere of i_q.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque_constant_nm_per_a: Option<f64>,
     /// N: motor turns for each link turn.
@@ -134,7 +134,7 @@ pub struct Meta {
 }
 
 impl Meta {
-    /// Every fact that is known by name.
+    /// The names of all known facts.
     pub const FACTS: [&str; 14] = [
         "kind",
         "motion",
@@ -152,13 +152,13 @@ impl Meta {
         "poles",
     ];
 
-    /// A fact of the user's own whose name is nearly that of one that is known and not there, and that one: most likely
-    /// misspelt, or with another unit.
+    /// An unknown fact whose name is similar to a known fact that is missing, with that known name. It is probably
+    /// misspelt or in another unit.
     pub fn misspelt(&self) -> Option<(&str, &'static str)> {
         let given = serde_json::to_value(self).unwrap_or_default();
         let missing: Vec<&'static str> = Self::FACTS.into_iter().filter(|fact| given.get(fact).is_none()).collect();
         let meant = |name: &str| {
-            // The same quantity without a unit, or with another.
+            // The same quantity without a unit or in another unit.
             let same = |fact: &&str| quantity_of(fact).is_some_and(|q| q == name || Some(q) == quantity_of(name));
             nearest(name, missing.iter().copied()).or_else(|| missing.iter().copied().find(same))
         };

@@ -1,7 +1,7 @@
-//! What an instrument can be for a bench. Narrow on purpose: a role holds what every instrument of its kind can do.
+//! Instrument roles. They are narrow on purpose: a role contains only functions of every instrument of its kind.
 //!
-//! Calls block until the instrument has answered or its deadline has passed; none blocks for ever. After a missed or
-//! garbled reply a driver returns the fault; the caller may [`Instrument::recover`] and try again.
+//! Calls block until the instrument has answered or its deadline has passed; no call blocks for ever. After a missing
+//! or garbled reply a driver returns the fault. The caller may call [`Instrument::recover`] and try again.
 
 use crate::units::{Amperes, Celsius, NewtonMetres, RadPerSec, Radians, Seconds, Volts};
 use crate::{Clock, Fault};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Who answers on a port.
+/// The instrument that answers on a port.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     pub maker: String,
@@ -23,79 +23,81 @@ pub trait Instrument: Send {
     fn name(&self) -> &str;
     fn port(&self) -> &str;
     fn identify(&mut self) -> Result<Identity, Fault>;
-    /// Drains the link and identifies the instrument again. Nothing is commanded.
+    /// Drains the link and identifies the instrument again. Sends no command.
     fn recover(&mut self) -> Result<Identity, Fault> {
         self.identify()
     }
-    /// Writes all traffic down in a new file from now on; `None` ends the record. Where there is no wire there is nothing to
-    /// record.
+    /// Records all traffic in a new file from now on; `None` ends the recording. An instrument without a wire records
+    /// nothing.
     fn record(&mut self, _file: Option<&Path>) -> Result<(), Fault> {
         Ok(())
     }
 }
 
-/// One reading of a joint, taken together. Positions and velocity in output units of the encoders: motor side, link side.
+/// One reading of a joint, all values at one time. Each position and velocity is on the side of its encoder: motor or
+/// link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointReading {
-    /// The middle of the reading on the bench's clock.
+    /// Midpoint of the reading on the bench clock.
     pub at_s: f64,
-    /// No part of it was taken further from there.
+    /// Largest time difference between `at_s` and a part of the reading.
     pub uncertainty_s: f64,
     pub motor_position: Radians,
     pub motor_velocity: RadPerSec,
     pub motor_current: Amperes,
-    /// Where a link encoder is wired to the controller.
+    /// `Some` if a link encoder is wired to the controller.
     pub link_position: Option<Radians>,
 }
 
-/// The state of a drive, as it reports it.
+/// The state that a drive reports.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DriveHealth {
     pub armed: bool,
     pub errors: Vec<String>,
-    /// Where the drive measures it.
+    /// `Some` if the drive measures it.
     pub bus_voltage: Option<Volts>,
     pub temperature: Option<Celsius>,
 }
 
-/// Drives the joint under test.
+/// Controls the joint under test.
 pub trait JointController: Instrument {
-    /// Sets limits and watchdog, zeroes the set-points and closes the velocity loop.
+    /// Sets limits and watchdog, sets the set-points to zero and closes the velocity loop.
     fn arm(&mut self, speed_limit: RadPerSec, current_limit: Amperes) -> Result<(), Fault>;
     /// Motor-side velocity set-point.
     fn set_velocity(&mut self, velocity: RadPerSec) -> Result<(), Fault> {
         self.set_velocity_fed(velocity, Amperes(0.0))
     }
-    /// The same with a motor current fed forward: added to what the velocity loop asks for.
+    /// Velocity set-point with a feed-forward motor current, which is added to the output of the velocity loop.
     fn set_velocity_fed(&mut self, velocity: RadPerSec, current: Amperes) -> Result<(), Fault>;
-    /// Motor current set-point, without a velocity loop: the joint goes where load and friction let it.
+    /// Motor current set-point without a velocity loop: load and friction determine the motion of the joint.
     fn set_motor_current(&mut self, current: Amperes) -> Result<(), Fault>;
     fn read(&mut self) -> Result<JointReading, Fault>;
     fn health(&mut self) -> Result<DriveHealth, Fault>;
-    /// Drive torque off. Returns when the command is on the wire; [`JointController::health`] tells whether it took effect.
+    /// Switches the drive torque off. Returns when the command is sent; [`JointController::health`] shows whether it
+    /// took effect.
     fn disarm(&mut self) -> Result<(), Fault>;
-    /// The smallest steps of the readings.
+    /// The resolution of the readings.
     fn resolution(&self) -> JointResolution;
-    /// Whether the drive takes a motor current beside a velocity.
+    /// Whether the drive accepts a feed-forward motor current in addition to a velocity.
     fn feeds_forward(&self) -> bool {
         true
     }
-    /// Motor current for each volt, where the drive reads it as the voltage at a shunt.
+    /// Motor current per volt, if the drive measures it as the voltage at a shunt.
     fn amperes_per_volt(&self) -> Option<f64> {
         None
     }
-    /// The memory of its processor, where the drive lets it be read.
+    /// The memory of the drive's processor, if it is readable.
     fn servo_memory(&mut self) -> Option<&mut dyn ServoMemory> {
         None
     }
 }
 
-/// Reads the memory of a drive's processor. Commands nothing.
+/// Reads the memory of a drive's processor. Sends no command.
 pub trait ServoMemory: Instrument {
     fn read_byte(&mut self, address: u8) -> Result<u8, Fault>;
 }
 
-/// The smallest steps that a joint controller can report.
+/// The resolution of the readings of a joint controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointResolution {
     pub motor_position: Option<Radians>,
@@ -105,21 +107,21 @@ pub struct JointResolution {
     pub temperature: Option<Celsius>,
 }
 
-/// Feels the torque between the joint and its load.
+/// Measures the torque between the joint and its load.
 pub trait TorqueSensor: Instrument {
     fn read(&mut self) -> Result<NewtonMetres, Fault>;
-    /// Whether the sensor has another range beside the one in use.
+    /// Whether the sensor has a second range in addition to the range in use.
     fn has_two_ranges(&self) -> bool {
         false
     }
-    /// The same with the other range's word for the same moment, where there is one.
+    /// Reads the torque in both ranges at the same moment, if the sensor has two.
     fn read_both(&mut self) -> Result<(NewtonMetres, Option<NewtonMetres>), Fault> {
         Ok((self.read()?, None))
     }
-    /// Full scale of the range in use; a reading beyond it is a fault, never a number.
+    /// Full scale of the range in use. A reading beyond it is a fault, never a number.
     fn range(&self) -> NewtonMetres;
     fn resolution(&self) -> Option<NewtonMetres>;
-    /// The same sensor sending by itself, where it can.
+    /// The same sensor as a stream, if it can send without requests.
     fn as_stream(&mut self) -> Option<&mut dyn TorqueStream> {
         None
     }
@@ -128,29 +130,30 @@ pub trait TorqueSensor: Instrument {
 /// One sample of a torque stream.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorqueSample {
-    /// Counted from 0 at the start of the stream; lost samples count.
+    /// Counted from 0 at the start of the stream, lost samples included.
     pub number: u64,
-    /// When it was taken, on the bench's clock, as its number tells.
+    /// Time of the sample on the bench clock, computed from its number.
     pub at_s: f64,
-    /// How far [`TorqueSample::at_s`] may be off, either way.
+    /// Largest error of [`TorqueSample::at_s`], in either direction.
     pub uncertainty_s: f64,
-    /// In the range in use; `None`: beyond it.
+    /// In the range in use; `None`: beyond full scale.
     pub torque: Option<NewtonMetres>,
-    /// The sensor's other range's word for the same moment; `None`: beyond that.
+    /// The same sample in the sensor's other range; `None`: beyond full scale.
     pub other: Option<NewtonMetres>,
 }
 
-/// Feels torque at the pace of its own clock. While a stream runs single readings are refused.
+/// Measures torque at the rate of the sensor's own clock. Single readings are refused while a stream runs.
 pub trait TorqueStream: Instrument {
-    /// Starts at the period nearest to `period` that the sensor has, and returns it.
+    /// Starts the stream with the available period that is nearest to `period`, and returns that period.
     fn start_stream(&mut self, period: Seconds, clock: Arc<dyn Clock>) -> Result<Seconds, Fault>;
-    /// The samples since the last call, in order. After those before a gap comes [`crate::FaultKind::StreamGap`], then
-    /// those behind it. Any other fault ends the stream. May wait for up to a period, to see how old the newest sample is.
+    /// The samples since the last call, in order. A gap splits them: first the samples before it, then
+    /// [`crate::FaultKind::StreamGap`], then the samples after it. Any other fault ends the stream. May wait up to one
+    /// period to measure the age of the newest sample.
     fn collect(&mut self) -> Result<Vec<TorqueSample>, Fault>;
     fn stop_stream(&mut self) -> Result<(), Fault>;
 }
 
-/// How a supply holds its output.
+/// How a supply regulates its output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regulation {
@@ -167,7 +170,7 @@ pub struct SupplyReading {
     pub regulation: Regulation,
 }
 
-/// Feeds the coil of a brake.
+/// Supplies the coil of a brake.
 pub trait CurrentSource: Instrument {
     /// Output off, current zero, compliance voltage set and read back, then output on.
     fn prepare(&mut self, compliance: Volts) -> Result<(), Fault>;
@@ -175,7 +178,7 @@ pub trait CurrentSource: Instrument {
     fn read(&mut self) -> Result<SupplyReading, Fault>;
     /// Output off. The coil current decays with its own time constant.
     fn output_off(&mut self) -> Result<(), Fault>;
-    /// The same for a supply that answers no more: the command is on the wire when this returns, and nothing is waited for.
+    /// Switches off a supply that no longer answers. Returns when the command is sent, without waiting for a reply.
     fn command_off(&mut self) -> Result<(), Fault>;
     fn resolution(&self) -> Option<Amperes>;
 }
@@ -183,47 +186,48 @@ pub trait CurrentSource: Instrument {
 /// One reading of a counter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CounterReading {
-    /// Moment of the reading on the bench's clock.
+    /// Time of the reading on the bench clock.
     pub at_s: f64,
-    /// How far it may be off, either way.
+    /// Largest error of `at_s`, in either direction.
     pub uncertainty_s: f64,
     pub position: Radians,
-    /// The counter's own time stamp, in its own units.
+    /// The counter's own time stamp, in its own unit.
     pub stamp: u32,
 }
 
 /// Counts the periods of an incremental encoder.
 pub trait PositionCounter: Instrument {
-    /// The position is 0 here.
+    /// Sets the position to 0 at the present angle.
     fn zero(&mut self) -> Result<(), Fault>;
-    /// Looks for the encoder's index while the shaft turns: begins with the first call, and tells by `true`, once, that it was
-    /// passed. From there on the position is 0 at the index; readings before it mean nothing.
+    /// Searches the index of the encoder while the shaft rotates. The first call starts the search. One call returns
+    /// `true` when the index was passed. From then on the position is 0 at the index; earlier readings have no meaning.
     fn seek_index(&mut self) -> Result<bool, Fault>;
     fn read(&mut self) -> Result<CounterReading, Fault>;
     fn resolution(&self) -> Radians;
-    /// `None`: nobody has wired the encoder's own status to this counter.
+    /// `None`: the encoder's own status is not wired to this counter.
     fn status(&mut self) -> Option<&mut dyn EncoderStatus>;
 }
 
-/// Takes the power of one of a bench's instruments away and gives it back.
+/// Switches the power of one instrument of a bench off and on again.
 pub trait PowerSwitch: Send {
-    /// Returns when it is back; the instrument may need a moment more until it answers, and says that its state is lost.
+    /// Returns when the power is on again. The instrument may need more time to answer, and reports that its state is
+    /// lost.
     fn cycle(&mut self, instrument: &str) -> Result<(), Fault>;
 }
 
-/// Tells whether a magnetic encoder's sensor sits well enough on its ring to count its periods.
+/// Reports whether the sensor of a magnetic encoder is aligned well enough with its ring to count the periods.
 pub trait EncoderStatus: Instrument {
     fn periods_are_consistent(&mut self) -> Result<bool, Fault>;
 }
 
-/// Feels temperatures.
+/// Measures temperatures.
 pub trait Thermometer: Instrument {
-    /// One for each channel that is in use, in the order of the bench description.
+    /// One temperature per channel in use, in the order of the bench description.
     fn read(&mut self) -> Result<Vec<Celsius>, Fault>;
     fn resolution(&self) -> Celsius;
 }
 
-/// Where a six-axis stage stands: shifts along x, y, z, then rotations about them.
+/// Position of a six-axis stage: shifts along x, y, z, then rotations about them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pose {
     pub shift_m: [f64; 3],
@@ -232,14 +236,15 @@ pub struct Pose {
 
 /// Holds a sensor in a pose.
 pub trait AlignmentStage: Instrument {
-    /// Begins to find the axes' zeros, which takes seconds. Without it no pose can be taken.
+    /// Starts the search for the zeros of the axes, which takes seconds. A stage that is not referenced accepts no
+    /// pose.
     fn reference(&mut self) -> Result<(), Fault>;
     fn is_referenced(&mut self) -> Result<bool, Fault>;
-    /// Sets off; a pose that cannot be reached is refused, and nothing moves.
+    /// Starts the motion. A pose out of reach is refused, and nothing moves.
     fn move_to(&mut self, pose: Pose) -> Result<(), Fault>;
     fn pose(&mut self) -> Result<Pose, Fault>;
-    /// On target, and settled.
+    /// On target and settled.
     fn is_settled(&mut self) -> Result<bool, Fault>;
-    /// At once, also in the middle of a reference move.
+    /// Stops immediately, also during a reference move.
     fn stop(&mut self) -> Result<(), Fault>;
 }

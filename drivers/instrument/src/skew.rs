@@ -1,29 +1,29 @@
-//! Readings of different instruments on one grid.
+//! Aligns readings of different instruments in time.
 //!
-//! A run's rows are placed by the joint: `time_s` is the moment of its reading. What another instrument felt in the same tick
-//! was felt a little later, by what the bench's clock says, and stands in the row as it was felt, with that skew beside it.
-//! Before anything is computed from a run, such columns are moved to the rows' moments, along the straight line between the
-//! readings before and behind.
+//! The joint determines the time of a run's rows: `time_s` is the time of its reading. Another instrument is read at
+//! another moment of the same tick. The row keeps its value as measured, together with the difference in time, the
+//! skew. Before any computation on a run, such columns are interpolated linearly to the times of the rows.
 
 use crate::{Channel, Trace};
 
-/// How much later one instrument felt than another, and how far that may be off either way.
+/// Delay of one instrument's reading relative to another's, and the largest error of that delay in either direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Skew {
     pub s: f64,
     pub uncertainty_s: f64,
 }
 
-/// When the torque was felt, against the rows.
+/// Time of the torque reading relative to the row.
 pub const TORQUE_SKEW: &str = "torque_skew_s";
-/// When the brake's current was measured, against the rows: a supply is read more seldom than the joint, and its reading held.
+/// Time of the brake current reading relative to the row. The supply is read less often than the joint, and its reading
+/// held.
 pub const BRAKE_SKEW: &str = "brake_current_skew_s";
-/// When the thermometer was read, against the rows: more seldom than all else.
+/// Time of the thermometer reading relative to the row. The thermometer is read least often.
 pub const WARMTH_SKEW: &str = "thermometer_skew_s";
-/// Moments are kept in whole microseconds: such as differ by less are one.
+/// Times are stored in whole microseconds; times that differ by less than this are equal.
 const HELD_S: f64 = 3e-6;
 
-/// What tells a skew, and the columns that have it. A thermometer's first channel may stand for the joint's temperature.
+/// The skew columns and the columns that each applies to. A thermometer's first channel may be the joint's temperature.
 pub fn skewed(trace: &Trace) -> [(&'static str, Vec<String>); 3] {
     let stands_in = trace.column("thermometer_1_c").is_none();
     let is_warmth = |name: &str| name.starts_with("thermometer_") && name.ends_with("_c");
@@ -33,10 +33,10 @@ pub fn skewed(trace: &Trace) -> [(&'static str, Vec<String>); 3] {
     [(TORQUE_SKEW, torque.into()), (BRAKE_SKEW, vec!["brake_current_a".into()]), (WARMTH_SKEW, warmth.collect())]
 }
 
-/// The value at each moment of the grid, on the straight line between the readings around it. `None` where there is no reading
-/// on one side: none is invented.
+/// The value at each time of the grid, by linear interpolation. `None` if a reading is missing on one side: no
+/// extrapolation.
 ///
-/// Both times rise. Cost: one pass over both.
+/// Both time columns must rise. Cost: one pass over both.
 fn on_grid(at_s: &[f64], values: &[f64], grid_s: &[f64]) -> Vec<Option<f64>> {
     let mut behind = 0;
     let at = |moment_s: &f64| {
@@ -53,8 +53,8 @@ fn on_grid(at_s: &[f64], values: &[f64], grid_s: &[f64]) -> Vec<Option<f64>> {
     grid_s.iter().map(at).collect()
 }
 
-/// Moves every column with a skew to the moments of its rows; the skew is 0 then. Within a segment only: between two of them
-/// time was not kept. Where there is no reading on one side a value stays as it was felt.
+/// Moves every column with a skew to the times of its rows and sets the skew to 0. Interpolates only within a segment,
+/// because the time between two segments is not recorded. A value with no reading on one side stays as measured.
 pub(crate) fn align(trace: Trace) -> Trace {
     skewed(&trace).into_iter().fold(trace, |trace, (skew, columns)| align_by(trace, skew, &columns))
 }
@@ -67,7 +67,7 @@ fn align_by(trace: Trace, skew: &str, skewed: &[String]) -> Trace {
         Some(segment) => (1..=time_s.len()).filter(|at| segment.get(*at) != Some(&segment[at - 1])).collect(),
         None => vec![time_s.len()],
     };
-    // A reading that is held stands in several rows; it counts at its own moment, once.
+    // A held reading is in several rows. It counts once, at its own time.
     let is_fresh = |i: usize, start: usize| i == start || felt_s[i] > felt_s[i - 1] + HELD_S;
     let time_s = time_s.to_vec();
     let (mut channels, mut columns) = trace.into_parts();
@@ -87,7 +87,7 @@ fn align_by(trace: Trace, skew: &str, skewed: &[String]) -> Trace {
             rows.for_each(|(felt, value)| *felt = value.unwrap_or(*felt));
             start = *end;
         }
-        // A value between two counts is no count any more.
+        // An interpolated value is no longer a whole count.
         *channel = Channel::new(&channel.name);
     }
     Trace::from_columns(channels, columns)
@@ -110,7 +110,7 @@ mod tests {
         let rows: Vec<[f64; 5]> = (0..8)
             .map(|i| {
                 let (at_s, segment) = (f64::from(i) * 0.01, f64::from(i / 4));
-                // Rises by 100 Nm/s, and begins anew with the segment.
+                // Rises by 100 Nm/s and starts again with each segment.
                 [at_s, 100.0 * (at_s + 2e-3) + 50.0 * segment, 2e-3, 1.0, segment]
             })
             .collect();
@@ -119,7 +119,7 @@ mod tests {
         let aligned = align(trace.clone());
         let torque_nm = aligned.column("link_torque_nm").unwrap();
         for (i, row) in rows.iter().enumerate() {
-            // The first of a segment has nothing before it: it stays.
+            // The first sample of a segment has no earlier reading: it does not change.
             let expected = if i % 4 == 0 { row[1] } else { row[1] - 0.2 };
             assert!((torque_nm[i] - expected).abs() < 1e-9, "row {i}: {}", torque_nm[i]);
         }
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn a_reading_that_is_held_counts_at_its_own_moment() {
-        // A current that rises by 1 A/s, read in every fifth row and a little before it.
+        // A current that rises by 1 A/s, read every fifth row and 1 ms before it.
         let channels = ["time_s", "brake_current_a", "brake_current_skew_s", "segment"].map(Channel::new);
         let mut trace = Trace::new(channels.into());
         for i in 0..23 {

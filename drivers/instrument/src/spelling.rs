@@ -1,7 +1,7 @@
-//! What was meant by a name that nobody knows.
+//! Suggests a known name for an unknown name.
 
-/// The known name that is nearest to `name`, if it is near enough to be meant: one letter wrong, missing, too many, or two in
-/// the wrong order; in a long name two such mistakes.
+/// The known name that is nearest to `name`, if it is near enough: one letter wrong, missing, added, or two letters
+/// swapped. A long name may have two such mistakes.
 pub fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     let near = |known: &'k str| {
         let length = name.chars().count().max(known.chars().count());
@@ -16,7 +16,7 @@ pub fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     known.into_iter().filter_map(near).min_by_key(|(mistakes, _)| *mistakes).map(|(_, known)| known)
 }
 
-/// What to write instead of a name that nobody knows: the one that was meant, or all that there are.
+/// A hint for an unknown name: the suggested name, or all known names.
 pub fn instead(name: &str, known: &[&str]) -> String {
     match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean {near}?"),
@@ -24,7 +24,7 @@ pub fn instead(name: &str, known: &[&str]) -> String {
     }
 }
 
-/// What serde says of a word that it does not know, as a person says it. Any other sentence stays as it is.
+/// Rewrites serde's message about an unknown word in plain words. Other messages stay unchanged.
 pub fn plainly(fault: &str) -> String {
     let parts: Vec<&str> = fault.split('`').collect();
     match parts.as_slice() {
@@ -36,7 +36,7 @@ pub fn plainly(fault: &str) -> String {
     }
 }
 
-/// Fewest letters to change, to add, to take away or to swap with the next (optimal string alignment).
+/// Fewest letters to change, add, remove or swap with the next letter (optimal string alignment).
 fn mistakes(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];

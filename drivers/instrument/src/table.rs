@@ -1,11 +1,11 @@
-//! A run table: one run's samples with the facts about the set-up, checked once at the door.
+//! A run table: the samples of one run with the facts about the set-up, checked once when it is created.
 
 use crate::skew::align;
 use crate::zero::take_off;
 use crate::{Kind, Meta, Trace};
 use serde::{Deserialize, Serialize};
 
-/// One run, ready for a model: the required columns are there, all values of the time are finite and rising.
+/// One run, ready for a model: it has the required columns, and its time is finite and rises.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunTable {
     kind: Kind,
@@ -13,7 +13,7 @@ pub struct RunTable {
     trace: Trace,
 }
 
-/// Why a table is refused. Rows count from 0 behind the header; the file readers turn them into lines.
+/// Why a table is refused. Rows count from 0 after the header; the file readers convert them to line numbers.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TableFault {
     #[error(
@@ -55,7 +55,7 @@ pub enum TableFault {
 }
 
 impl TableFault {
-    /// The row at fault, counted from 0 behind the header, where one row is.
+    /// The row at fault, counted from 0 after the header, if the fault is in one row.
     pub fn row(&self) -> Option<usize> {
         match self {
             TableFault::NotFinite { row, .. }
@@ -65,7 +65,7 @@ impl TableFault {
         }
     }
 
-    /// The column at fault, where one is.
+    /// The column at fault, if the fault is in one column.
     pub fn column(&self) -> Option<&str> {
         match self {
             TableFault::MissingColumn { column, .. } => Some(column),
@@ -84,8 +84,9 @@ impl TableFault {
 impl RunTable {
     /// Checks a trace against its kind: required columns, units, finite values, rising time, whole segment numbers.
     ///
-    /// Unknown columns may hold anything finite. Columns that were felt later than their rows are moved to them
-    /// ([`crate::skew`]), and a torque sensor's zero is taken off ([`crate::zero`]). Cost: one pass over the columns.
+    /// Unknown columns may contain any finite value. Columns with a skew are moved to the times of the rows
+    /// ([`crate::skew`]), and the zero of a torque sensor is subtracted ([`crate::zero`]). Cost: one pass over the
+    /// columns.
     pub fn new(mut meta: Meta, trace: Trace) -> Result<Self, TableFault> {
         let kind = meta.kind.ok_or(TableFault::UnknownKind)?;
         check_names(kind, &trace)?;
@@ -147,7 +148,7 @@ fn check_names(kind: Kind, trace: &Trace) -> Result<(), TableFault> {
             return Err(TableFault::DuplicateColumn((*name).to_owned()));
         }
     }
-    // `motor_position_deg` where `motor_position_rad` is known: a unit to convert, not a column to ignore.
+    // `motor_position_deg` instead of the known `motor_position_rad`: a unit to convert, not a column to ignore.
     let known = || kind.required_columns().iter().chain(kind.optional_columns());
     for name in names.iter().filter(|name| !known().any(|k| k == *name)) {
         let expected = known().find(|k| {
@@ -168,10 +169,10 @@ fn check_names(kind: Kind, trace: &Trace) -> Result<(), TableFault> {
     }
 }
 
-/// A stated rate this many times off the time column is another unit, not another rate.
+/// A stated rate that differs from the time column by this factor is in another unit.
 const OTHER_UNIT: f64 = 10.0;
 
-/// Facts that no set-up can have. A negative gear ratio can be: the link turns the other way round.
+/// Refuses impossible facts. A negative gear ratio is possible: the link rotates in the opposite direction.
 fn check_facts(meta: &Meta, time_s: &[f64]) -> Result<(), TableFault> {
     let is_positive = |value: f64| value.is_finite() && value > 0.0;
     for (fact, value, is_possible, expected) in [
@@ -187,7 +188,7 @@ fn check_facts(meta: &Meta, time_s: &[f64]) -> Result<(), TableFault> {
             return Err(TableFault::ImpossibleFact { fact, value, expected });
         }
     }
-    // A pause between recordings is no step: the middle one of the first thousand is.
+    // The median of the first thousand steps ignores a pause between recordings.
     let mut steps_s: Vec<f64> = time_s.windows(2).take(1000).map(|w| w[1] - w[0]).collect();
     steps_s.sort_by(f64::total_cmp);
     if let (Some(stated_hz), Some(step_s)) = (meta.sample_rate_hz, steps_s.get(steps_s.len() / 2)) {
@@ -199,7 +200,7 @@ fn check_facts(meta: &Meta, time_s: &[f64]) -> Result<(), TableFault> {
     Ok(())
 }
 
-/// Length of the unit suffix of a known column name, its underscore included.
+/// Length of the unit suffix of a known column name, including its underscore.
 fn unit_suffix(name: &str, unit: &str) -> usize {
     match unit {
         "rad/s" => "_rad_s".len(),
@@ -209,7 +210,7 @@ fn unit_suffix(name: &str, unit: &str) -> usize {
     }
 }
 
-/// The unit of a name that has the quantity of `expected`, as an option takes it.
+/// The unit of a name with the quantity of `expected`, in the notation of a command-line option.
 fn unit_words(found: &str, expected: &str) -> String {
     let unit = crate::units::unit_of(expected).map_or(0, |unit| unit_suffix(expected, unit));
     let rest = found.get(expected.len() - unit..).unwrap_or_default().trim_start_matches('_');
@@ -220,7 +221,7 @@ fn unit_words(found: &str, expected: &str) -> String {
     }
 }
 
-/// Suffixes by which other tools name the same quantities in another unit.
+/// Suffixes that other tools use for the same quantities in other units.
 fn is_unit_suffix(rest: &str) -> bool {
     const OTHERS: [&str; 26] = [
         "", "_deg", "_deg_s", "_degrees", "_turns", "_turns_s", "_rev", "_rev_s", "_rpm", "_counts", "_mrad", "_rad",

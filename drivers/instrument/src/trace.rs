@@ -1,4 +1,4 @@
-//! Samples as columns: a moment of the bench is one row of a [`Trace`], from the engine to the store and the model.
+//! Samples as columns: one time of the bench is one row of a [`Trace`], from the engine to the store and the model.
 
 use crate::units::unit_of;
 use serde::{Deserialize, Serialize};
@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
     pub name: String,
-    /// The smallest step that the instrument can report, in the channel's unit: one count of an encoder or converter.
-    /// The store keeps such a channel as whole counts. `None` where the source has no step of its own.
+    /// The resolution of the instrument in the channel's unit: one count of an encoder or converter. The store keeps
+    /// such a channel as whole counts. `None`: the source has no resolution of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub resolution: Option<f64>,
 }
@@ -27,7 +27,7 @@ impl Channel {
     }
 }
 
-/// Rows of samples held as columns of equal length.
+/// Rows of samples, stored as columns of equal length.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Trace {
     channels: Vec<Channel>,
@@ -41,7 +41,8 @@ impl Trace {
     }
 
     /// # Panics
-    /// Where the columns differ in length or number from the channels: a programming error, not bad input.
+    /// If the columns differ from the channels in number, or from each other in length: a programming error, not bad
+    /// input.
     pub fn from_columns(channels: Vec<Channel>, columns: Vec<Vec<f64>>) -> Self {
         assert_eq!(channels.len(), columns.len(), "one column for each channel");
         assert!(columns.windows(2).all(|w| w[0].len() == w[1].len()), "columns of equal length");
@@ -49,7 +50,7 @@ impl Trace {
     }
 
     /// # Panics
-    /// Where the row is not as wide as the trace: a programming error.
+    /// If the row and the trace differ in width: a programming error.
     pub fn push_row(&mut self, row: &[f64]) {
         assert_eq!(row.len(), self.columns.len(), "one value for each channel");
         for (column, value) in self.columns.iter_mut().zip(row) {
@@ -81,12 +82,12 @@ impl Trace {
         self.index_of(name).map(|i| self.columns[i].as_slice())
     }
 
-    /// Channels and columns, without a copy. [`Trace::from_columns`] puts them together again.
+    /// Channels and columns, without a copy. [`Trace::from_columns`] joins them again.
     pub fn into_parts(self) -> (Vec<Channel>, Vec<Vec<f64>>) {
         (self.channels, self.columns)
     }
 
-    /// Takes the rows out and leaves an empty trace with the same channels.
+    /// Removes the rows and keeps an empty trace with the same channels.
     pub fn take(&mut self) -> Trace {
         let empty = Trace::new(self.channels.clone());
         std::mem::replace(self, empty)
@@ -95,7 +96,7 @@ impl Trace {
     /// Appends the rows of a trace with the same channels.
     ///
     /// # Panics
-    /// Where the channels differ.
+    /// If the channels differ.
     pub fn append(&mut self, mut other: Trace) {
         assert_eq!(self.channels, other.channels, "the same channels");
         for (column, more) in self.columns.iter_mut().zip(&mut other.columns) {

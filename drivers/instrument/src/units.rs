@@ -1,4 +1,4 @@
-//! Units at the doors: a newtype for every quantity that crosses a role. Inside a module plain `f64` with a unit suffix.
+//! Units at the interfaces: a newtype for every quantity of a role. Modules use plain `f64` with a unit suffix inside.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -43,19 +43,19 @@ unit!(/// Duration, or a moment on the bench's clock.
 unit!(/// Power.
     Watts, "W");
 
-/// The unit that a column or channel name carries as its suffix (`motor_velocity_rad_s` → `rad/s`), in SI symbols.
+/// The unit of a column or channel name by its suffix (`motor_velocity_rad_s` → `rad/s`), in SI symbols.
 ///
 /// `None` for names without a unit suffix (`segment`, `repeat`, `kp`).
 pub fn unit_of(name: &str) -> Option<&'static str> {
     SUFFIXES.iter().find(|(suffix, _)| name.ends_with(suffix)).map(|(_, unit)| *unit)
 }
 
-/// What is left of a name without the suffix of its unit.
+/// A name without the suffix of its unit.
 pub fn quantity_of(name: &str) -> Option<&str> {
     SUFFIXES.iter().find_map(|(suffix, _)| name.strip_suffix(suffix))
 }
 
-/// Longest first: `_rad_s` before `_s`, `_nm_per_a` before `_a`.
+/// Longer suffixes first: `_rad_s` before `_s`, `_nm_per_a` before `_a`.
 const SUFFIXES: [(&str, &str); 19] = [
     ("_nm_per_rad", "Nm/rad"),
     ("_nm_rad", "Nm/rad"),

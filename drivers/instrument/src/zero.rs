@@ -1,11 +1,11 @@
-//! A torque sensor's zero that was measured before a run, and is taken off what the sensor has told in it.
+//! Subtracts the zero of a torque sensor, measured before a run, from the torque of that run.
 //!
-//! The rows stay as they were felt; before anything is computed from a run, the zero among its facts is taken off, and the
-//! fact is 0 then.
+//! The stored rows stay as measured. Before any computation on a run, the zero in its facts is subtracted, and the fact
+//! is set to 0.
 
 use crate::{Channel, Meta, Trace};
 
-/// The fact: what the sensor tells without a torque.
+/// The fact: the reading of the sensor without torque.
 pub const TORQUE_ZERO: &str = "torque_sensor_zero_nm";
 
 pub(crate) fn take_off(meta: &mut Meta, trace: Trace) -> Trace {
@@ -18,7 +18,8 @@ pub(crate) fn take_off(meta: &mut Meta, trace: Trace) -> Trace {
     for (channel, column) in channels.iter_mut().zip(&mut columns) {
         match channel.name.as_str() {
             "link_torque_nm" => column.iter_mut().for_each(|torque| *torque -= zero_nm),
-            // Positive where it brakes: it has turned with the way in which the shaft was last told to turn.
+            // Brake torque is positive when it brakes, so the sign of the zero follows the last commanded direction of
+            // rotation.
             "brake_torque_nm" => {
                 let mut way = 1.0;
                 for (row, torque) in column.iter_mut().enumerate() {
@@ -29,7 +30,7 @@ pub(crate) fn take_off(meta: &mut Meta, trace: Trace) -> Trace {
             }
             _ => continue,
         }
-        // No count of the sensor any more.
+        // The corrected value is no longer a whole count.
         *channel = Channel::new(&channel.name);
     }
     Trace::from_columns(channels, columns)

@@ -1,16 +1,16 @@
 import type { Channel } from '../api/types';
 import { label } from '../format/label';
 
-/** A channel that a formula makes of those of the run. */
+/** A channel that a formula derives from channels of the run. */
 export interface Derived {
 	formula: string;
-	/** As a person calls it; else the formula itself. */
+	/** The user's title, else the formula itself. */
 	title: string;
-	/** As a person says; else what the daemon knows of it. */
+	/** The user's unit, else the unit that the daemon determines. */
 	unit: string | null;
 }
 
-/** `drive power [W] = motor_torque_nm * motor_velocity_rad_s`, or the formula alone. The formula itself is the daemon's to read. */
+/** `drive power [W] = motor_torque_nm * motor_velocity_rad_s`, or only the formula. The daemon parses the formula. */
 export function derivedOf(text: string): Derived {
 	const equals = text.indexOf('=');
 	const formula = text.slice(equals + 1).trim();
@@ -19,7 +19,7 @@ export function derivedOf(text: string): Derived {
 	return { formula, title: title || formula, unit: unit ?? null };
 }
 
-/** Derived channels in the address, with semicolons between; a formula has none. */
+/** Derived channels in the address, separated by semicolons, which no formula contains. */
 export const readDerived = (text: string | null): string[] => (text ?? '').split(';').map((one) => one.trim()).filter(Boolean);
 export const writeDerived = (list: readonly string[]): string | null => [...new Set(list)].join(';') || null;
 
@@ -30,13 +30,13 @@ export function readOver(text: string | null): { y: string; x: string } | null {
 }
 
 export interface Choice {
-	/** What the daemon is asked for. */
+	/** The formula for the request to the daemon. */
 	formula: string;
 	title: string;
 	unit: string | null;
 }
 
-/** What can be drawn: the channels of the run, and what was derived from them. */
+/** Everything that can be drawn: channels of the run and derived channels. */
 export const choicesOf = (channels: readonly Channel[], derived: readonly string[]): Choice[] => [
 	...channels.filter(({ name }) => !/^(segment|repeat)$/.test(name)).map(({ name, unit }) => ({ formula: name, ...label(name, unit) })),
 	...derived.map(derivedOf),

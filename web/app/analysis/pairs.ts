@@ -1,7 +1,10 @@
-/** Points of one channel over another, in the order of x, which a plot needs; apart by the direction of motion where that is known. */
+/**
+ * Points of one channel over another, in the order of x as a plot needs it. The directions of motion are separated if
+ * they are known.
+ */
 export interface Pairs {
 	x: number[];
-	/** Forwards (or all), and backwards. */
+	/** Positive direction (or all points), then negative direction. */
 	columns: (number | null)[][];
 }
 

@@ -7,7 +7,7 @@ import { authorization } from './token';
 type Method = 'get' | 'post' | 'put' | 'delete';
 type Operation<P extends keyof paths, M extends Method> = NonNullable<paths[P][M]>;
 type Json<T> = T extends { content: { 'application/json': infer Body } } ? Body : undefined;
-/** What a call needs: the places in its address, its query, its body. */
+/** Arguments of a call: path parameters, query, body. */
 type Given<O> = (O extends { parameters: infer P } ? Pick<P, keyof P & ('path' | 'query')> : never) & (O extends { requestBody: infer B } ? { body: Json<B> } : unknown);
 type Answer<O> = O extends { responses: infer R } ? { [S in keyof R & (200 | 201 | 202 | 204)]: Json<R[S]> }[keyof R & (200 | 201 | 202 | 204)] : never;
 
@@ -17,7 +17,7 @@ interface Loose {
 	body?: unknown;
 }
 
-/** One documented operation, with the types of its document. */
+/** One documented operation of the REST interface, with the types of the API document. */
 export async function ask<P extends keyof paths, M extends Method>(method: M, address: P, given: Given<Operation<P, M>>, signal?: AbortSignal): Promise<Answer<Operation<P, M>>> {
 	const { path = {}, query = {}, body } = given as Loose;
 	const search = Object.entries(query).flatMap(([name, value]) => (value == null ? [] : [`${name}=${encodeURIComponent(value)}`]));
@@ -27,7 +27,7 @@ export async function ask<P extends keyof paths, M extends Method>(method: M, ad
 	return (answer.status === 204 ? undefined : await answer.json()) as Answer<Operation<P, M>>;
 }
 
-/** The answer to a request with the token that a person gave, or a refusal that a page can show. */
+/** Sends a request with the user's token. Throws a refusal that a page can show. */
 export async function request(href: string, { headers, ...rest }: RequestInit = {}): Promise<Response> {
 	if (role.observing && rest.method && rest.method !== 'GET' && !/\/(stop|preview|check|diagnoses)$/.test(href)) {
 		throw new Refusal({ title: 'Not by an observer', detail: role.barred, status: 403 });
@@ -35,7 +35,7 @@ export async function request(href: string, { headers, ...rest }: RequestInit = 
 	try {
 		const send = () => fetch(href, { ...rest, headers: { ...headers, ...authorization() } });
 		let answer = await send();
-		// What was pressed goes on with the token that is asked for; a stop that comes late is none.
+		// The request is repeated with the new token. A delayed stop is useless, so a stop is not repeated.
 		while (answer.status === 401 && rest.method && rest.method !== 'GET' && !href.endsWith('/stop')) {
 			await entry.ask();
 			answer = await send();

@@ -6,7 +6,7 @@ export const BASE = '/api/v1';
 type Signal = AbortSignal | undefined;
 type Values = Record<string, unknown>;
 
-/** Every call of the dashboard; each is a documented operation of the REST interface. */
+/** All calls of the dashboard. Each is a documented operation of the REST interface. */
 export const api = {
 	health: (signal?: Signal) => ask('get', '/api/v1/health', {}, signal),
 	benches: (signal?: Signal) => ask('get', '/api/v1/bench', {}, signal),
@@ -16,18 +16,18 @@ export const api = {
 	/** Refused while a run is in progress. */
 	servoMemory: (bench: string, signal?: Signal) => ask('get', '/api/v1/bench/{bench}/servo-memory', { path: { bench } }, signal),
 	calibrations: (bench: string, signal?: Signal) => ask('get', '/api/v1/bench/{bench}/calibrations', { path: { bench } }, signal),
-	/** The next runs of the bench use the result of the run; `null`: of the last complete one. */
+	/** The next runs of the bench use the result of this run; `null`: the result of the latest complete run. */
 	calibrate: (bench: string, procedure: string, run: number | null) =>
 		ask('post', '/api/v1/bench/{bench}/calibrations', { path: { bench }, body: { procedure, run } }),
 	stopBench: (bench: string, signal?: Signal) =>
 		ask('post', '/api/v1/bench/{bench}/stop', { path: { bench } }, signal),
 
-	/** With what that bench could not make of them, where one is named. */
+	/** With `bench`: each procedure includes the reason why that bench cannot run it. */
 	procedures: (bench?: string, signal?: Signal) => ask('get', '/api/v1/procedures', { query: { bench } }, signal),
 	preview: (id: string, bench: string, parameters: Values, signal?: Signal) =>
 		ask('post', '/api/v1/procedures/{id}/preview', { path: { id }, body: { bench, parameters } }, signal),
 
-	/** Newest first; of one run, or of the runs before one, where it is named. */
+	/** Newest first; only for one run, or only for runs before one, if given. */
 	log: (query: { run?: number; before?: number }, signal?: Signal) => ask('get', '/api/v1/log', { query }, signal),
 	runs: (query: { limit?: number; offset?: number; search?: string; sort?: string; typing?: boolean }, signal?: Signal) =>
 		ask('get', '/api/v1/runs', { query }, signal),
@@ -36,13 +36,13 @@ export const api = {
 		ask('get', '/api/v1/runs/{id}/identification', { path: { id } }, signal),
 	earlier: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}/earlier', { path: { id } }, signal),
 	beside: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}/beside', { path: { id } }, signal),
-	/** What complete runs have found; some of them later. */
+	/** Results of complete runs. Some may arrive in a later answer. */
 	trends: (search: string, signal?: Signal) => ask('get', '/api/v1/trends', { query: { search } }, signal),
 	start: (bench: string, procedure: string, parameters: Values) =>
 		ask('post', '/api/v1/runs', { body: { bench, procedure, parameters } }),
 	control: (id: number, what: 'pause' | 'resume' | 'stop' | 'abort') =>
 		ask('post', `/api/v1/runs/{id}/${what}`, { path: { id } }),
-	/** Starts a run that makes what this one has left. */
+	/** Starts a run with the remaining steps of this run. */
 	goOn: (id: number) => ask('post', '/api/v1/runs/{id}/continue', { path: { id } }),
 	plan: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}/plan', { path: { id } }, signal),
 	events: (id: number, after?: number, signal?: Signal) =>
@@ -58,7 +58,7 @@ export const api = {
 	statistics: (id: number, query: { channels?: string; from_s?: number; to_s?: number }, signal?: Signal) =>
 		ask('get', '/api/v1/runs/{id}/statistics', { path: { id }, query }, signal),
 
-	/** Channels by formulas over the columns of the run: a view `px` wide, or at most so many `rows` as they are. */
+	/** Channels by formulas over the columns of the run: a view `px` wide, or at most `rows` unfiltered rows. */
 	derived: (id: number, query: { formulas: string; from_s?: number; to_s?: number; px?: number; rows?: number }, signal?: Signal) =>
 		ask('get', '/api/v1/runs/{id}/derived', { path: { id }, query }, signal),
 	spectrum: (id: number, query: { formula: string; from_s?: number; to_s?: number }, signal?: Signal) =>
@@ -75,10 +75,10 @@ export const api = {
 	forgetEffect: (kind: string, id: string) =>
 		ask('delete', '/api/v1/effects/{kind}/{id}', { path: { kind, id } }),
 	models: (run: number, signal?: Signal) => ask('get', '/api/v1/models', { query: { run } }, signal),
-	/** Without `exclude` the version looks away where its parent does. */
+	/** Without `exclude` the version has the same exclusions as its parent. */
 	fit: (asked: NewModel) => ask('post', '/api/v1/models', { body: asked }),
 	keepModel: (id: number) => ask('post', '/api/v1/models/{id}/keep', { path: { id } }),
-	/** What the effect would add to the prediction, at each point of the residuals. */
+	/** The contribution of the effect to the prediction at each point of the residuals. */
 	withEffect: (id: number, effect: string, signal?: Signal) => ask('get', '/api/v1/models/{id}/with/{effect}', { path: { id, effect } }, signal),
 	worth: (id: number, signal?: Signal) => ask('get', '/api/v1/models/{id}/worth', { path: { id } }, signal),
 	compare: (first: number, second: number, run: number, signal?: Signal) =>
@@ -86,7 +86,7 @@ export const api = {
 	importModel: (run: number, model: Values) => ask('post', '/api/v1/models/import', { body: { run, model } }),
 	residuals: (id: number, signal?: Signal) =>
 		ask('get', '/api/v1/models/{id}/residuals', { path: { id } }, signal),
-	/** The kept diagnosis where nothing has changed since, else a new one. */
+	/** The stored diagnosis if nothing has changed since, else a new one. */
 	diagnose: (model: number, signal?: Signal) => ask('post', '/api/v1/diagnoses', { body: { model } }, signal),
 
 	autopilots: (signal?: Signal) => ask('get', '/api/v1/autopilots', {}, signal),
@@ -102,7 +102,7 @@ export const api = {
 
 export const modelHref = (id: number, format: 'json' | 'c' | 'lut' | 'mujoco' | 'urdf') => `${BASE}/models/${id}/export?format=${format}`;
 
-/** `model`: the version that is told of, else the one in use. */
+/** `model`: the version of the report, else the version in use. */
 export const reportHref = (run: number, model?: number) => `${BASE}/runs/${run}/report${model ? `?model=${model}` : ''}`;
 
 export function exportHref(run: number, format: 'csv' | 'parquet', stretch: readonly [from_s: number, to_s: number] | null = null): string {

@@ -1,6 +1,6 @@
 /**
- * Binary frames of the live stream, little endian: u32 sequence, u32 dropped frames, u32 rows, u32 channels, f64 t0 [s],
- * then one f32 column for each channel, in the order of the last text frame `channels`.
+ * Binary frames of the live stream, little endian: u32 sequence, u32 dropped frames, u32 rows, u32 channels, f64 t0
+ * [s], then one f32 column per channel, in the order of the last text frame `channels`.
  */
 export interface Frame {
 	sequence: number;
@@ -12,7 +12,7 @@ export interface Frame {
 
 const HEADER_BYTES = 24;
 
-/** `null` where the bytes are not one whole frame. */
+/** `null` if the bytes are not one whole frame. */
 export function decodeFrame(buffer: ArrayBuffer): Frame | null {
 	if (buffer.byteLength < HEADER_BYTES) return null;
 	const head = new DataView(buffer);

@@ -6,14 +6,14 @@ import type { LiveMessage } from './types';
 export interface LiveHandlers {
 	message: (message: LiveMessage) => void;
 	frame: (frame: Frame) => void;
-	/** The line is up (true) or lost (false). */
+	/** The connection is open (true) or lost (false). */
 	line: (up: boolean) => void;
 }
 
 const FIRST_RETRY_MS = 300;
 const LAST_RETRY_MS = 3000;
 
-/** Keeps one WebSocket to the daemon open for as long as the page lives. Returns the end of it. */
+/** Keeps one WebSocket to the daemon open for the lifetime of the page. Returns a function that closes it. */
 export function connectLive(handlers: LiveHandlers): () => void {
 	let socket: WebSocket | null = null;
 	let wait_ms = FIRST_RETRY_MS;
@@ -23,7 +23,7 @@ export function connectLive(handlers: LiveHandlers): () => void {
 	const open = () => {
 		const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
 		const kept = token();
-		// Addresses are logged on the way; a subprotocol has no brackets.
+		// Addresses are logged in transit, so the token is a subprotocol, which may not contain brackets.
 		const offered = kept ? ['jointbench', `token.${encodeURIComponent(kept).replace(/[()]/g, (bracket) => `%${bracket.charCodeAt(0).toString(16)}`)}`] : [];
 		socket = new WebSocket(`${scheme}://${location.host}${BASE}/events`, offered);
 		socket.binaryType = 'arraybuffer';

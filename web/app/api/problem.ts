@@ -1,6 +1,6 @@
 import type { Problem } from './types';
 
-/** What a page shows when a request failed: the daemon's problem document, or why there is none. */
+/** The error that a page shows for a failed request: the daemon's problem document, or the reason why there is none. */
 export class Refusal extends Error {
 	readonly status: number;
 	readonly title: string;
@@ -15,7 +15,7 @@ export class Refusal extends Error {
 		this.column = problem.column ?? null;
 	}
 
-	/** Nobody answered: worth waiting for, nothing to correct. */
+	/** The daemon did not answer: the page should wait; the user has nothing to correct. */
 	get offline(): boolean {
 		return this.status === 0;
 	}

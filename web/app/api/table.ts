@@ -2,7 +2,7 @@ import { save } from './download';
 import { request } from './ask';
 import type { Table } from './types';
 
-/** A table that a page shows, as files of the daemon's making: it has a writer for both forms. */
+/** Menu items that save a displayed table. The daemon writes the files, because it has a writer for both formats. */
 export function tableItems(name: string, shown: () => Table | Promise<Table>, what = '') {
 	const take = async (format: string) => {
 		const asked = { method: 'POST', body: JSON.stringify(await shown()), headers: { 'content-type': 'application/json' } };

@@ -1,6 +1,6 @@
 /**
- * A daemon that listens beyond loopback wants a token. A person gives it once for each browser session; it goes into a
- * header: that of the subprotocol where a browser can set no other (the live stream).
+ * A daemon that listens beyond loopback requires a token. The user enters it once per browser session. Requests send it
+ * in a header; the live stream uses the subprotocol header, because a browser cannot set another one there.
  */
 const KEPT = 'jointbench.token';
 

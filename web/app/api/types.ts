@@ -1,4 +1,4 @@
-/** The daemon's types, generated from its specification, under the names that the pages use. */
+/** The daemon's types, generated from its API specification, under the names that the pages use. */
 import type { components } from '../../gen/schema';
 
 type Schemas = components['schemas'];

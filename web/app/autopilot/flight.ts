@@ -12,24 +12,24 @@ const ENDS: Record<Autopilot['state'], { word: string; icon: string; mood: Mood 
 
 export const sayEnd = (state: Autopilot['state']) => ENDS[state];
 
-/** The diagnosis whose run it makes; `null` for one that goes on until nothing is missing. */
+/** The diagnosis whose recommended run it makes; `null` for an autopilot that continues until no effect is missing. */
 export function asked(flight: Autopilot): number | null {
 	const diagnosis = flight.request['diagnosis'];
 	return typeof diagnosis === 'number' ? diagnosis : null;
 }
 
-/** The run under which its models are found: a further run is looked at together with the first. */
+/** The run whose workbench shows its models: further runs are fitted together with the first one. */
 export function home(flight: Autopilot): number | null {
 	return asked(flight) === null ? ((flight.request['from_run'] as number | undefined) ?? flight.runs[0] ?? null) : null;
 }
 
-/** The run that is on, or `null` between runs. */
+/** The active run, or `null` between runs. */
 export function running(flight: Autopilot): number | null {
 	const last = flight.state === 'running' ? flight.steps.at(-1) : undefined;
 	return last?.action === 'measure' ? (last.run ?? null) : null;
 }
 
-/** A step for people: the start of a run and its end are one, once it has ended. */
+/** Steps for display: the start and the end of a run become one step after the run has ended. */
 export function told(steps: readonly AutopilotStep[]): AutopilotStep[] {
 	return steps.flatMap((step, i) => {
 		const next = steps[i + 1];
@@ -39,7 +39,7 @@ export function told(steps: readonly AutopilotStep[]): AutopilotStep[] {
 	});
 }
 
-/** Share of the held-out error that a step took away; unknown where before and after are of different data. */
+/** Relative reduction of the validation error by a step; unknown if the errors are of different data. */
 export function fall({ action, before_rms, after_rms }: AutopilotStep): number | null {
 	return action === 'add' && before_rms && after_rms != null ? 1 - after_rms / before_rms : null;
 }

@@ -6,7 +6,7 @@ export interface Tick {
 	text: string;
 }
 
-/** Where a figure lies on its paper [px]. */
+/** Position of a figure on its paper [px]. */
 export interface Frame {
 	left: number;
 	right: number;
@@ -16,7 +16,7 @@ export interface Frame {
 	y: (value: number) => number;
 	xTicks: Tick[];
 	yTicks: Tick[];
-	/** Names along x are too long to stand side by side. */
+	/** Names along x are too long for horizontal text. */
 	slanted: boolean;
 	/** Width of one bar. */
 	bar: number;
@@ -24,7 +24,7 @@ export interface Frame {
 
 const LEFT = 62;
 const LETTER = 6.1;
-/** How far a slanted name goes down for each of its letters. */
+/** Slope of slanted names, and the height of each of their letters. */
 export const SLANT_DEG = 32;
 const DOWN = LETTER * Math.sin((SLANT_DEG * Math.PI) / 180);
 
@@ -71,7 +71,7 @@ function widened([low, high]: Span, by: number, share: number): Span {
 	return [low - more, high + more];
 }
 
-/** Room above and below, except under bars that stand on zero. */
+/** Margin above and below, except at the zero line of bars. */
 function aired([low, high]: Span, standing: boolean): Span {
 	const more = (high - low) * 0.07 || Math.abs(high) * 0.1 || 1;
 	return [standing && low === 0 ? 0 : low - more, standing && high === 0 ? 0 : high + more];

@@ -1,10 +1,13 @@
 import type { Table } from '../api/types';
 
-/** A plot as the daemon describes it, in SI units: what it holds, and how it is told apart. Where it lies on paper is `cartesian` and `polar`. */
+/**
+ * A plot as the daemon describes it, in SI units: its data and the styles of its series. Its geometry is in `cartesian`
+ * and `polar`.
+ */
 export interface Axis {
 	label: string;
 	unit: string;
-	/** Where the axis counts things that have names: 0 is the first. */
+	/** Names of the positions on an axis of named things: position 0 has the first name. */
 	names?: string[];
 }
 
@@ -29,22 +32,27 @@ export interface Figure {
 export interface Style {
 	/** Custom property of the colour. */
 	stroke: string;
-	/** Of a line. */
+	/** Dash of a line. */
 	dash: string;
-	/** Of points. */
+	/** Glyph of points. */
 	glyph: Glyph;
-	/** Among the bars of the figure. */
+	/** Position among the bars of the figure. */
 	bar: number;
 }
 
 export type Glyph = 'dot' | 'ring' | 'square' | 'cross' | 'triangle';
 
-/** Okabe & Ito's seven; six dashes and five glyphs, so that a colour that comes again comes with another. */
+/**
+ * The seven colours of Okabe & Ito; six dashes and five glyphs, so that a repeated colour has another dash or glyph.
+ */
 const STROKES = ['--oi-blue', '--oi-vermillion', '--oi-green', '--oi-purple', '--oi-orange', '--oi-sky', '--oi-black'];
 const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2', '14 3'];
 const GLYPHS: Glyph[] = ['dot', 'ring', 'square', 'cross', 'triangle'];
 
-/** What is of a run is in its colour. `model, positive` and `line at 0.2 A` are drawn in the colours of `positive` and `0.2 A`: a model and its points belong together. */
+/**
+ * Series of one run have the colour of the run. `model, positive` and `line at 0.2 A` have the colours of `positive`
+ * and `0.2 A`, because a model and its points belong together.
+ */
 function family(labels: readonly string[], i: number): string {
 	const label = labels[i]!;
 	const run = /^#\d+/.exec(label);
@@ -53,14 +61,14 @@ function family(labels: readonly string[], i: number): string {
 	return kin ?? label.split(', ').at(-1)!;
 }
 
-/** `runs`: in whose colours and dashes another plot is drawn. */
+/** `runs`: runs in the order in which another plot assigns its colours and dashes. */
 export function styles(series: readonly Series[], runs: readonly string[] = []): Style[] {
 	const labels = series.map((one) => one.label);
 	const kin = labels.map((_, i) => family(labels, i));
 	const families = [...new Set([...runs, ...kin])];
-	/** Its place among the series of its mark; what has one name is one thing, drawn alike. */
+	/** Position among the series with the same mark. Series with the same name look the same. */
 	const before = (i: number) => [...new Set(series.filter((one) => one.mark === series[i]!.mark).map((one) => one.label))].indexOf(labels[i]!);
-	/** A run's second curve has a dash that no first one has. */
+	/** The second curve of a run has a dash that no first curve has. */
 	const dash = (i: number) => (runs.length ? families.indexOf(kin[i]!) + runs.length * labels.slice(0, i).filter((_, k) => kin[k] === kin[i]).length : before(i));
 	return series.map((_, i) => ({
 		stroke: STROKES[families.indexOf(kin[i]!) % STROKES.length]!,
@@ -70,7 +78,7 @@ export function styles(series: readonly Series[], runs: readonly string[] = []):
 	}));
 }
 
-/** The figure with each axis in the unit that is shown. */
+/** The figure with each axis in the displayed unit. */
 export function inUnits(figure: Figure, scaleOf: (unit: string) => { factor: number; unit: string }): Figure {
 	const [x, y] = [scaleOf(figure.x.unit), scaleOf(figure.y.unit)];
 	if (x.factor === 1 && y.factor === 1) return figure;
@@ -83,7 +91,7 @@ export function inUnits(figure: Figure, scaleOf: (unit: string) => { factor: num
 	return { ...figure, x: { ...figure.x, unit: x.unit }, y: { ...figure.y, unit: y.unit }, series };
 }
 
-/** Along which axis it is told what was before and what is after. */
+/** The axis along which the series `before` and `after` are compared. */
 const told = ({ series, x }: Figure) => (!x.names && series.some((one) => one.mark === 'bars') ? 'x' : 'y');
 
 function room(figure: Figure): number {
@@ -94,10 +102,13 @@ function room(figure: Figure): number {
 	return factor >= 5 && factor < Infinity ? factor : 1;
 }
 
-/** A small remainder beside what it was before would be a flat line or a single bar: so many times as large it is drawn, in all figures that have room for it. */
+/**
+ * A small remainder compared with its original value would be a flat line or a single bar. It is magnified by this
+ * factor in all figures that have room for it.
+ */
 export const magnification = (figures: readonly Figure[]) => Math.min(...figures.map(room).filter((factor) => factor > 1));
 
-/** The figure with what is after `factor` times as large. A line that bars are held against is there for both. */
+/** The figure with the series `after` magnified by `factor`. A reference line of bars is drawn for both series. */
 export function magnified(figure: Figure, factor: number): Figure {
 	if (room(figure) < factor) return figure;
 	const along = told(figure);
@@ -113,7 +124,7 @@ export function magnified(figure: Figure, factor: number): Figure {
 
 export type Span = readonly [low: number, high: number];
 
-/** From the smallest to the largest number; `[0, 1]` where there is none. */
+/** From the smallest to the largest number; `[0, 1]` without numbers. */
 export function spanOf(values: Iterable<number>): Span {
 	let [low, high] = [Infinity, -Infinity];
 	for (const value of values) {
@@ -124,7 +135,7 @@ export function spanOf(values: Iterable<number>): Span {
 	return low <= high ? [low, high] : [0, 1];
 }
 
-/** Everything that the y axis must show: bars stand on zero. */
+/** Range of the y axis: bars start at zero. */
 export function reachOf(series: readonly Series[]): Span {
 	const ends = series.flatMap((one) => [...one.y, ...(one.band ?? []).flat()]);
 	return spanOf(series.some((one) => one.mark === 'bars') ? [0, ...ends] : ends);
@@ -138,7 +149,7 @@ export interface Row {
 	high: number | null;
 }
 
-/** Exactly what is drawn, one row for each point. */
+/** The displayed data, one row per point. */
 export function rowsOf(figure: Figure): Row[] {
 	return figure.series.flatMap((one) =>
 		one.x.map((x, i) => ({

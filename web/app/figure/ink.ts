@@ -1,4 +1,4 @@
-/** Paths of a figure: from points on paper to what SVG and canvas both draw. */
+/** Paths of a figure: converts points on paper to path data for SVG and canvas. */
 import type { Glyph } from './figure';
 
 type Point = readonly [x: number, y: number];
@@ -16,7 +16,7 @@ export function line(points: readonly Point[]): string {
 	return path;
 }
 
-/** Between a lower and an upper line. */
+/** Area between a lower and an upper line. */
 export function ribbon(lower: readonly Point[], upper: readonly Point[]): string {
 	const around = line([...lower, ...upper.toReversed()]);
 	return around && `${around}Z`;
@@ -39,7 +39,7 @@ export function glyphs(points: readonly Point[], glyph: Glyph): string {
 		.join('');
 }
 
-/** Upright intervals with their feet. */
+/** Vertical intervals with end marks. */
 export function whiskers(ends: readonly (readonly [x: number, low: number, high: number])[], foot: number): string {
 	return ends.map(([x, low, high]) => `M${n(x - foot)} ${n(low)}h${n(2 * foot)}M${n(x)} ${n(low)}V${n(high)}M${n(x - foot)} ${n(high)}h${n(2 * foot)}`).join('');
 }

@@ -1,4 +1,4 @@
-/** Entries of a legend on paper, side by side while they fit. */
+/** Entries of a legend on paper, side by side if they fit. */
 const LETTER = 6.4;
 const SAMPLE = 26;
 const GAP = 14;

@@ -1,9 +1,12 @@
-/** A figure on the screen as a file. The page's policy lets no picture be loaded from memory, so the shapes are read and drawn once more. */
+/**
+ * Converts a displayed figure to a file. The content security policy of the page forbids images from memory, so the
+ * shapes are read and drawn again.
+ */
 
 import { escaped } from '../plot/svg';
 
 interface Ink {
-	/** Path data, or none for a text. */
+	/** Path data, or empty for a text. */
 	d: string;
 	text: string;
 	matrix: DOMMatrix;
@@ -13,7 +16,7 @@ interface Ink {
 	dash: number[];
 	font: string;
 	anchor: CanvasTextAlign;
-	/** It is cut off there. */
+	/** Clipping area. */
 	clip?: string;
 }
 
@@ -38,11 +41,11 @@ function dataOf(shape: Element): string {
 	}
 }
 
-/** `rgb(…)` with the opacity that stands beside it. */
+/** `rgb(…)` combined with a separate opacity. */
 const faded = (colour: string, opacity: string) =>
 	colour === 'none' || opacity === '1' ? colour : colour.replace(/^rgb\((.+)\)$/, (_all, parts: string) => `rgba(${parts}, ${opacity})`);
 
-/** From a shape's own numbers to the place in what is taken. */
+/** From the coordinates of a shape to those of the figure. */
 const within = (host: Element) => new DOMMatrix().translate(-host.getBoundingClientRect().left, -host.getBoundingClientRect().top);
 
 function shapesOf(host: Element): Ink[] {
@@ -67,7 +70,7 @@ function shapesOf(host: Element): Ink[] {
 
 const fontOf = (style: CSSStyleDeclaration) => `${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
 
-/** The words around the drawings, each where it stands. */
+/** The texts around the drawings, each at its position. */
 function wordsOf(host: Element): Ink[] {
 	const inks: Ink[] = [];
 	const texts = document.createTreeWalker(host, NodeFilter.SHOW_TEXT);
@@ -93,7 +96,7 @@ interface Sheet {
 	inks: Ink[];
 }
 
-/** The figure with its title above it and a margin around it. */
+/** The figure with its title above and a margin around it. */
 function sheetOf(host: Element, title: string): Sheet {
 	const root = getComputedStyle(document.documentElement);
 	const inks = [...shapesOf(host), ...wordsOf(host)].map((ink) => ({ ...ink, matrix: new DOMMatrix().translate(MARGIN, TITLE + MARGIN).multiply(ink.matrix) }));
@@ -128,7 +131,7 @@ export function svgFile(host: Element, title: string): Blob {
 	return new Blob([`${head}\n<title>${escaped(title)}</title>\n<path d="M0 0h${width}v${height}H0Z" fill="${paper}"/>\n${body.join('\n')}\n</svg>\n`], { type: 'image/svg+xml' });
 }
 
-/** Twice as fine as the screen: for slides and papers. */
+/** Twice the resolution of the screen, for slides and papers. */
 const FINE = 2;
 
 export async function pngFile(host: Element, title: string): Promise<Blob> {

@@ -2,7 +2,7 @@ import { tickText, ticks } from '../plot/ticks';
 import { type Figure, reachOf } from './figure';
 import type { Tick } from './cartesian';
 
-/** A figure about a centre: angle from the right, anticlockwise, as the maths has it. */
+/** A figure around a centre: angle from the right, anticlockwise, as in mathematics. */
 export interface Disc {
 	centre: { x: number; y: number };
 	outer: number;
@@ -10,11 +10,11 @@ export interface Disc {
 	radius: (value: number) => number;
 	at: (angle: number, value: number) => readonly [x: number, y: number];
 	rings: Tick[];
-	/** The circle of zero, where values lie on both sides of it. */
+	/** The circle of zero, if there are values on both sides of it. */
 	zero: number | null;
 }
 
-/** Below the disc: what its radius is. */
+/** Height of the title of the radius, below the disc. */
 const TITLE = 16;
 
 export const SPOKES = Array.from({ length: 12 }, (_, i) => i * 30);
@@ -24,7 +24,8 @@ export function polar(figure: Figure, width: number, height: number, factor: num
 	const centre = { x: width / 2, y: (height - TITLE) / 2 };
 	const [least, most] = reachOf(figure.series);
 	const span = most - Math.min(0, least) || Math.abs(most) || 1;
-	// An error lies on both sides of its circle: the centre is left free, or everything below zero would crowd there.
+	// An error has values on both sides of its circle. The centre stays free, because values below zero would overlap
+	// there.
 	const low = least < 0 ? least - 0.6 * span : 0;
 	const high = most + 0.06 * span;
 	const radius = (value: number) => Math.max(0, ((value - low) / (high - low)) * outer);

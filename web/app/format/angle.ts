@@ -1,6 +1,6 @@
 import type { Scale } from './number';
 
-/** Angles as a person wants to read them; what is sent and stored stays in rad. */
+/** Display units of angles. Sent and stored values stay in rad. */
 export const ANGLES = ['rad', '°', 'arcmin', 'arcsec'] as const;
 export type Angle = (typeof ANGLES)[number];
 
@@ -8,7 +8,7 @@ const PER_RAD: Record<Angle, number> = { rad: 1, '°': 180 / Math.PI, arcmin: (6
 
 export const readAngle = (text: string | null): Angle => ANGLES.find((one) => one === text) ?? 'rad';
 
-/** An angle, a compliance in it or a stiffness against it; every other unit stays as it is. */
+/** Scale of an angle, a compliance in it or a stiffness against it; other units are unchanged. */
 export function angleScale(unit: string, angle: Angle): Scale {
 	const per = PER_RAD[angle];
 	if (unit === 'rad') return { factor: per, unit: angle };

@@ -1,4 +1,4 @@
-/** Column names as people read them. The unit is the suffix of the name. */
+/** Column names for display. The unit is the suffix of the name. */
 
 const SUFFIXES: [string, string][] = [
 	['_nm_per_rad', 'Nm/rad'],
@@ -39,7 +39,7 @@ export function label(column: string, unit?: string | null): Label {
 	return { title: SAID[column] ?? bare.replaceAll('_', ' '), unit: unit ?? suffix?.[1] ?? '' };
 }
 
-/** What a unit reads on an axis that slides. */
+/** The unit on a sliding axis. */
 export const linear = (unit: string): string => unit.replace('kg·m²', 'kg').replace('Nm', 'N').replace('rad', 'm');
 
 /** `motor velocity [rad/s]` */
@@ -59,15 +59,18 @@ export function words(id: string): string {
 	return WORDS[id] ?? id.replaceAll('_', ' ');
 }
 
-/** A unit that can be nothing else; `tau_c` is no temperature. */
+/** A suffix that can only be a unit; `tau_c` is not a temperature. */
 const SPELT_UNIT = /_(nm_rad|rad_s2?|rad|nm|hz)$|(?<=current)_a$|(?<=temperature)_c$|(?<=time)_s$/;
-/** A minus, where a number follows and none goes before. */
+/** A minus sign before a number that is not after another number. */
 const SIGN = /(?<![\w.,)\]])-(?=\d)/g;
 
-/** A text of the daemon with minus signs that are as long as a plus. */
+/** Replaces hyphens by minus signs in a text of the daemon. */
 export const signed = (text: string): string => text.replace(SIGN, '−');
 
-/** A sentence of the daemon as people write it: effects by their titles, other ids as words, without the unit at their end; a capital at its start. */
+/**
+ * A sentence of the daemon for display: effects by their titles, other ids as words without their unit, with a capital
+ * at its start.
+ */
 export function prose(sentence: string, effects: readonly { id: string; title: string }[] = []): string {
 	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])|(?<=issing effects?(?: \(weak evidence\))?: |, then |Adding )[a-z]+(?=[.,]| \(or| reduces)/g, (id) => {
 		const title = effects.find((one) => one.id === id)?.title;
@@ -76,13 +79,13 @@ export function prose(sentence: string, effects: readonly { id: string; title: s
 	return spoken.charAt(0).toUpperCase() + signed(spoken.slice(1));
 }
 
-/** The end of a path, which tells more than its beginning; names stay whole. */
+/** The end of a path, which says more than its beginning. Names stay complete. */
 export const tail = (name: string): string => (/[\\/]/.test(name) ? `…/${name.split(/[\\/]/).filter(Boolean).slice(-2).join('/')}` : name);
 
-/** Width of a letter of the small print, on average [px]. */
+/** Average width of a letter of the small print [px]. */
 export const LETTER_PX = 6.1;
 
-/** As much of a text as has room, for drawings that cannot wrap; give the whole text in a title. */
+/** Cuts a text to the available width, for drawings that cannot wrap. The full text belongs in a title. */
 export function cut(text: string, width_px: number): string {
 	const letters = Math.max(2, Math.floor(width_px / LETTER_PX));
 	return text.length <= letters ? text : `${text.slice(0, letters - 1).trimEnd()}…`;

@@ -1,4 +1,4 @@
-/** Numbers as an instrument shows them: few digits, true minus, units apart. */
+/** Numbers in the style of instruments: few digits, true minus sign, separate unit. */
 
 const MINUS = '−';
 
@@ -17,7 +17,7 @@ function exponent(value: number, decimals: number): string {
 	return `${mantissa.replace('-', MINUS)}·10${superscript(Number(power))}`;
 }
 
-/** A figure as somebody wrote it down: its own digits, seven at most. */
+/** A number with its own digits, at most seven. */
 export function written(value: number): string {
 	const own = Number(value.toPrecision(7));
 	const size = Math.abs(own);
@@ -38,11 +38,14 @@ export interface Scale {
 	unit: string;
 }
 
-/** Units that take a prefix on what they begin with: `mNm·s/rad`, `µrad`. Large ones are stiffnesses and rates only: nobody says `krad/s`. */
+/**
+ * Units that accept a prefix: `mNm·s/rad`, `µrad`. Only stiffnesses and rates accept large prefixes; `krad/s` is not in
+ * use.
+ */
 const SMALL = /^(Nm|rad|N|A|V|W|m|s)([·/].*)?$/;
 const LARGE = /^(Nm?\/.*|Hz)$/;
 
-/** One prefix for everything that is shown together, chosen by its largest magnitude. */
+/** One prefix for all values that are displayed together, chosen by the largest magnitude. */
 export function scaleFor(unit: string, largest: number): Scale {
 	const size = Math.abs(largest);
 	if (LARGE.test(unit) && size >= 1e4) return size >= 1e7 ? { factor: 1e-6, unit: `M${unit}` } : { factor: 1e-3, unit: `k${unit}` };
@@ -62,7 +65,7 @@ export function percent(share: number, digits = 0): string {
 	return `${Number(text) === 0 ? text.replace('-', '') : text.replace('-', MINUS)} %`;
 }
 
-/** `+0.3 %`, `−83 %`: by which share something has grown. */
+/** Relative change: `+0.3 %`, `−83 %`. */
 export const change = (share: number) => (share >= 0 ? '+' : '') + percent(share, Math.abs(share) < 0.1 ? 1 : 0);
 
 /** `1 step`, `1,204 steps` */
@@ -70,17 +73,20 @@ export function counted(n: number, one: string): string {
 	return `${n.toLocaleString('en')} ${one}${n === 1 ? '' : 's'}`;
 }
 
-/** `p < 10⁻⁹` rather than a row of zeros. */
+/** `p < 10⁻⁹` instead of many zeros. */
 export function chance(p: number, atMost = false): string {
 	if (p <= 0) return 'p < 10⁻¹⁶';
 	if (p < 1e-3) return `p < 10${superscript(Math.ceil(Math.log10(p)))}`;
 	return `p ${atMost ? '≤' : '='} ${p.toFixed(p < 0.1 ? 3 : 2)}`;
 }
 
-/** Ends of an interval; `null` where the data sets no bound. */
+/** Ends of an interval; `null` if the data sets no bound. */
 export type Interval = readonly (number | null)[];
 
-/** A value (or an end of its interval) with as many digits as the interval deserves, written as its larger end is. */
+/**
+ * A value (or an end of its interval) with the number of digits that the interval justifies, in the notation of its
+ * larger end.
+ */
 export function estimate(value: number | null, interval: Interval): string {
 	const [low, high] = interval;
 	const width = low == null || high == null ? 0 : Math.abs(high - low) / 2;

@@ -1,6 +1,6 @@
 import type { Scale } from './number';
 
-/** Speeds as a person wants to read them. Everything else stays as it is. */
+/** Display unit of speeds. Other units are unchanged. */
 export const RPM_PER_RAD_S = 30 / Math.PI;
 
 export function speedScale(unit: string, rpm: boolean): Scale {
@@ -9,7 +9,7 @@ export function speedScale(unit: string, rpm: boolean): Scale {
 
 const PREFIX: Record<string, number> = { '': 1, m: 1e-3, µ: 1e-6, k: 1e3 };
 
-/** A sentence of the daemon, with its speeds as they are read. */
+/** A sentence of the daemon with its speeds in the displayed unit. */
 export function spokenSpeeds(sentence: string, rpm: boolean): string {
 	if (!rpm) return sentence;
 	return sentence.replace(/([-−]?)(\d[\d.]*) ([mµk]?)rad\/s(?![\w²^])/g, (_all, sign: string, figure: string, prefix: string) => {
@@ -18,7 +18,7 @@ export function spokenSpeeds(sentence: string, rpm: boolean): string {
 	});
 }
 
-/** A column in the shown unit; the same column where there is nothing to do. */
+/** A column in the displayed unit; the same column if the unit is unchanged. */
 export function scaled<T extends ArrayLike<number | null>>(column: T, { factor }: Scale): ArrayLike<number | null> {
 	if (factor === 1) return column;
 	const out = new Array<number | null>(column.length);

@@ -1,4 +1,4 @@
-/** Durations and moments. */
+/** Durations and times. */
 
 /** `6 min 20 s`, `43 s`, `0.4 s`. */
 export function duration(seconds: number | null | undefined): string {
@@ -11,14 +11,14 @@ export function duration(seconds: number | null | undefined): string {
 	return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
-/** `3:51`, as a count-down reads. */
+/** `3:51`, in the style of a count-down. */
 export function countdown(seconds: number): string {
 	const whole = Math.max(0, Math.round(seconds));
 	const tail = `${String(Math.floor(whole / 60) % 60)}:${String(whole % 60).padStart(2, '0')}`;
 	return whole < 3600 ? tail : `${Math.floor(whole / 3600)}:${tail.padStart(5, '0')}`;
 }
 
-/** Local date and time to the minute; the whole stamp belongs into a title. */
+/** Local date and time to the minute; the full time stamp belongs in a title. */
 export function moment(iso: string | null | undefined): string {
 	if (!iso) return '–';
 	const at = new Date(iso);

@@ -1,7 +1,7 @@
 import { expect, it } from 'vitest';
 import { type Node, pieces, typeset } from './typeset';
 
-/** Back to one line, with what was understood marked. */
+/** Converts the nodes back to one line that marks how the text was parsed. */
 function say(nodes: readonly Node[]): string {
 	return nodes
 		.map((node) => {

@@ -1,6 +1,6 @@
 /**
- * Formulas as the daemon writes them, `τ_s·exp(−(|ω|/ω_s)^δ)·sign ω`, taken apart for MathML. Words between formulas stay words. The
- * line stays a line: no fraction is stacked, so that nothing is drawn that the text leaves open.
+ * Parses formulas of the daemon, such as `τ_s·exp(−(|ω|/ω_s)^δ)·sign ω`, for MathML. Words between formulas stay words.
+ * The formula stays on one line without stacked fractions, so that the drawing adds no interpretation to the text.
  */
 export type Node =
 	| { is: 'name' | 'number' | 'sign' | 'function' | 'words'; text: string }
@@ -19,13 +19,13 @@ const OPENS = new Map([
 function tokensOf(text: string): string[] {
 	return [...text.matchAll(TOKEN)].flatMap(([part]) => {
 		if (part.trim() === '') return [];
-		// Letters side by side: a word, or one quantity after the other as in `pθ` and `dθ`.
+		// Adjacent letters: a word, or several quantities as in `pθ` and `dθ`.
 		const letters = /^[A-Za-zα-ωΑ-Ω]{2}/u.test(part) && !isWord(part);
 		return letters ? part.match(/.\u0307?/gu)! : [part];
 	});
 }
 
-/** Two Latin letters or more, but not `dz`. */
+/** Two or more Latin letters, but not `dz`. */
 const isWord = (text: string) => /^[A-Za-z]{2,}$/.test(text) && !/^d[A-Za-z]$/.test(text);
 
 export function typeset(text: string): Node[] {
@@ -50,7 +50,7 @@ export function typeset(text: string): Node[] {
 		return { is: 'sign', text };
 	}
 
-	/** What stands below or above the atom before. */
+	/** Subscript and superscript of the atom before. */
 	function raised(base: Node): Node {
 		let [sub, sup]: [Node | null, Node | null] = [null, null];
 		for (;;) {
@@ -72,7 +72,7 @@ export function typeset(text: string): Node[] {
 		const nodes: Node[] = [];
 		while (at < tokens.length) {
 			const text = tokens[at]!;
-			// A bar closes where something stands before it, and opens after a sign.
+			// A bar closes after an atom, and opens after a sign.
 			if (until !== null && text === until && (until !== '|' || nodes.at(-1)?.is !== 'sign')) break;
 			const before = nodes.at(-1);
 			const next = raised(atom());
@@ -85,7 +85,7 @@ export function typeset(text: string): Node[] {
 	return row(null);
 }
 
-/** A piece that stays in one line: words, or a formula up to its comma. */
+/** A piece that stays on one line: words, or a formula up to its comma. */
 export type Piece = { words: string } | { nodes: Node[] };
 
 /** Words, also in brackets. */
@@ -95,7 +95,7 @@ function wordsOf(node: Node): string | null {
 	return node.is === 'group' && only?.is === 'words' ? node.open + only.text + node.close : null;
 }
 
-/** Where a formula may be broken: at its words, and after a comma or a semicolon. */
+/** A formula may be broken at its words, and after a comma or a semicolon. */
 export function pieces(nodes: readonly Node[]): Piece[] {
 	const list: Piece[] = [];
 	let open: Node[] | null = null;

@@ -2,10 +2,13 @@ import type { Choices } from '../api/upload';
 import type { ImportPreview } from '../api/types';
 import type { Mapping } from './columns';
 
-/** Parts of a request that hold one value. */
+/** Parts of a request with a single value. */
 const SINGLE = new Set(['rate', 'time_from_rate', 'names', 'spread_time', 'operating_points', 'split_runs', 'leave_empty_rows']);
 
-/** `--unit time_s=ms --map 'time_s=Time [ms]'`, as the daemon proposes it for the command line, as parts of a request. */
+/**
+ * Converts a proposed option of the command line, such as `--unit time_s=ms --map 'time_s=Time [ms]'`, to parts of a
+ * request.
+ */
 export function parseOption(text: string): [part: string, value: string][] {
 	const words = text.match(/'(?:[^']|'\\'')*'|[^\s']+/g) ?? [];
 	const bare = words.map((word) => (word.startsWith("'") ? word.slice(1, -1).replaceAll("'\\''", "'") : word));
@@ -16,7 +19,7 @@ export function parseOption(text: string): [part: string, value: string][] {
 	});
 }
 
-/** With what an option does; one that says the same of the same column is exchanged. */
+/** Adds an option. It replaces an option for the same part and column. */
 export function withOption(choices: Choices, text: string): Choices {
 	const next = { ...choices };
 	for (const [part, value] of parseOption(text)) {
@@ -27,17 +30,17 @@ export function withOption(choices: Choices, text: string): Choices {
 	return next;
 }
 
-/** Without one value of a part. */
+/** Removes one value of a part. */
 export function without(choices: Choices, part: string, value: string): Choices {
 	const rest = (choices[part] ?? []).filter((one) => one !== value);
 	const { [part]: _gone, ...others } = choices;
 	return rest.length ? { ...others, [part]: rest } : others;
 }
 
-/** Whether a proposal can be carried out as it stands: `--rate HZ` lacks its number, and names are chosen in the table. */
+/** Whether a proposal can be applied unchanged: `--rate HZ` lacks its number, and names are chosen in the table. */
 export const isWhole = (option: string) => parseOption(option).every(([part, value]) => (part !== 'rate' || Number.isFinite(+value)) && part !== 'names' && !value.includes('counts/N'));
 
-/** Where the time of a table comes from. */
+/** The source of the time of a table. */
 export type Timing = 'column' | 'rate' | 'spread_time' | 'operating_points';
 const TIMINGS = ['rate', 'time_from_rate', 'spread_time', 'operating_points'];
 
@@ -46,14 +49,14 @@ export function timingOf(choices: Choices): Timing {
 	return part === 'time_from_rate' ? 'rate' : ((part as Timing | undefined) ?? 'column');
 }
 
-/** The time from another place. `rate`: rows a second, which replace the time of the file where it `hasTime`. */
+/** Selects another source of the time. `rate`: rows per second, which replace the time of the file if it `hasTime`. */
 export function withTiming(choices: Choices, timing: Timing, rate: string, hasTime: boolean): Choices {
 	const others = Object.fromEntries(Object.entries(choices).filter(([part]) => !TIMINGS.includes(part)));
 	if (timing === 'column' || (timing === 'rate' && !rate.trim())) return others;
 	return { ...others, ...(timing === 'rate' ? { [hasTime ? 'time_from_rate' : 'rate']: [rate] } : { [timing]: ['true'] }) };
 }
 
-/** A choice in words: what a button does, and what was done. */
+/** A choice in words, for buttons and for the list of choices. */
 export function inWords(part: string, value: string): string {
 	const [column, what = ''] = value.includes('=') ? [value.slice(0, value.lastIndexOf('=')), value.slice(value.lastIndexOf('=') + 1)] : [value];
 	switch (part) {
@@ -93,7 +96,7 @@ export const optionInWords = (option: string) =>
 		.map(([part, value]) => inWords(part, value))
 		.join(', ');
 
-/** What was chosen for a file, to be chosen again for the next one of its shape. */
+/** Choices for a file that are offered again for the next file with the same columns. */
 export interface Remembered {
 	kind: string;
 	mapping: Mapping;
@@ -103,10 +106,10 @@ export interface Remembered {
 }
 
 const KEY = 'jointbench.imports';
-/** Shapes that are kept; the oldest go first. */
+/** Number of stored column sets; the oldest are deleted first. */
 const MOST = 30;
 
-/** Files are of one shape where their columns have the same names. */
+/** Files with the same column names have the same shape. */
 const shapeOf = (preview: ImportPreview) => preview.columns.map(({ name }) => name).join('\n');
 
 function kept(storage: Storage): [shape: string, what: Remembered][] {

@@ -1,11 +1,11 @@
-/** What a run table holds, by kind of measurement; as the daemon's file format says. */
+/** Content of a run table by kind of measurement, as in the daemon's file format. */
 export interface Kind {
 	id: string;
 	required: string[];
 	optional: string[];
 	/** Facts about the set-up that the models of this kind need or use. */
 	facts: string[];
-	/** Without these nothing is fitted. */
+	/** A fit is impossible without these facts. */
 	must?: string[];
 	baseline: string[];
 }
@@ -45,17 +45,17 @@ export const KINDS: Kind[] = [
 	},
 ];
 
-/** Where a column of the daemon comes from. */
+/** The source of a column of the daemon. */
 export interface Source {
-	/** Name in the file; empty: not there. */
+	/** Name in the file; empty: missing. */
 	from: string;
-	/** Name of the unit there; empty: as the file says, or as the daemon asks. */
+	/** Name of the unit in the file; empty: the unit that the file states, or that the daemon asks for. */
 	unit: string;
 }
 
 export type Mapping = Record<string, Source>;
 
-/** Units to choose from; the first is the daemon's own. The daemon knows more of them (docs/your-files.md). */
+/** Units to choose from; the first one is the daemon's own. The daemon supports more units (docs/your-files.md). */
 const UNITS: [suffix: string, units: string[]][] = [
 	['_rad_s', ['rad/s', 'rpm', 'deg/s', 'rev/s']],
 	['_rad', ['rad', 'deg', 'rev', 'mrad', 'arcmin', 'counts/4096', 'counts/8192', 'counts/16384', 'counts/65536']],
@@ -65,13 +65,13 @@ const UNITS: [suffix: string, units: string[]][] = [
 	['_c', ['°C', 'K', '°F']],
 ];
 
-/** Units that a column may come in, `stated` among them; none for a whole number. */
+/** Possible units of a column, including `stated`; none for a whole number. */
 export function unitsOf(column: string, stated = ''): string[] {
 	const found = UNITS.find(([suffix]) => column.endsWith(suffix))?.[1] ?? [];
 	return stated && !found.includes(stated) ? [...found, stated] : found;
 }
 
-/** What the daemon is told of where columns come from. */
+/** The mapping as options for the daemon. */
 export function instructions(mapping: Mapping): { map: string[]; unit: string[] } {
 	const used = Object.entries(mapping).filter(([, source]) => source.from !== '');
 	return {

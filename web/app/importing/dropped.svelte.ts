@@ -1,18 +1,21 @@
 import { router } from '../state/router.svelte';
 import { filesOf } from './unpack';
 
-/** Files that were let fall on whatever page: people miss small targets, and a browser would leave the dashboard for them. */
+/**
+ * Files that were dropped on any page. Small targets are easy to miss, and a browser would leave the dashboard for a
+ * missed file.
+ */
 class Dropped {
 	files: File[] = $state.raw([]);
 
-	/** Files are held over the page. */
+	/** Files are dragged over the page. */
 	over = $state(false);
 	private gone: ReturnType<typeof setTimeout> | undefined;
 
 	hold(event: DragEvent): void {
 		if (!event.dataTransfer?.types.includes('Files')) return;
 		event.preventDefault();
-		// It is told again and again; nothing tells for sure that it has ended.
+		// This event repeats while files are dragged, but no event reliably marks the end.
 		this.over = true;
 		clearTimeout(this.gone);
 		this.gone = setTimeout(() => (this.over = false), 300);
@@ -27,13 +30,13 @@ class Dropped {
 		if (router.route.page !== 'runs') router.go('/runs');
 	}
 
-	/** Folders with what is in them; a browser that knows no entries gives the files alone. */
+	/** Folders with their content. A browser without support for entries gives only the files. */
 	private async takeAll(entries: FileSystemEntry[], files: File[]): Promise<void> {
 		const found = entries.some((entry) => entry.isDirectory) ? (await Promise.all(entries.map(filesOf))).flat() : files;
 		this.files = found;
 	}
 
-	/** Hands the files over, once. */
+	/** Returns the files once. */
 	take(): File[] {
 		const { files } = this;
 		if (files.length) this.files = [];

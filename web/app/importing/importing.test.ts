@@ -54,7 +54,7 @@ describe('what a person chose', () => {
 	});
 });
 
-/** A zip archive of one file, as `zip` writes it. */
+/** A zip archive of one file, in the format of `zip`. */
 async function zip(name: string, text: string, method: 0 | 8): Promise<File> {
 	const plain = new TextEncoder().encode(text);
 	const packed = method === 0 ? plain : new Uint8Array(await new Response(new Blob([plain]).stream().pipeThrough(new CompressionStream('deflate-raw'))).arrayBuffer());

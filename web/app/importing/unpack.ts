@@ -1,20 +1,23 @@
-/** Files that a run table or its facts can be in. */
+/** File names of run tables and facts. */
 const TAKEN = /\.(csv|tsv|txt|dat|asc|log|lvm|parquet|arrow|feather|json)(\.gz)?$/i;
 
-/** Every file of a drop: folders with what is in them, zip archives unpacked. Others than tables and facts stay out of both. */
+/**
+ * All files of a drop: the content of folders, and unpacked zip archives. Both ignore other files than tables and
+ * facts.
+ */
 export async function unpack(files: readonly File[]): Promise<File[]> {
 	const all = await Promise.all(files.map(async (file) => (/\.zip$/i.test(file.name) ? await unzip(file) : [file])));
 	return all.flat();
 }
 
-/** The files of a folder that was dropped, and of the folders in it. */
+/** The files of a dropped folder and of its subfolders. */
 export async function filesOf(entry: FileSystemEntry): Promise<File[]> {
 	if (entry.isFile) return [await new Promise<File>((resolve, reject) => (entry as FileSystemFileEntry).file(resolve, reject))];
 	const reader = (entry as FileSystemDirectoryEntry).createReader();
 	const found: File[] = [];
 	for (;;) {
 		const some = await new Promise<FileSystemEntry[]>((resolve, reject) => reader.readEntries(resolve, reject));
-		// It gives a hundred at a time, and none behind the last.
+		// The reader returns a hundred entries at a time, and none after the last.
 		if (some.length === 0) break;
 		for (const one of some) found.push(...(await filesOf(one)));
 	}
@@ -23,9 +26,9 @@ export async function filesOf(entry: FileSystemEntry): Promise<File[]> {
 
 const END = 0x06054b50;
 const ENTRY = 0x02014b50;
-/** The end record lies in so many last bytes: its 22, and a comment. */
+/** Range of the end record at the end of the file: its 22 bytes and a comment. */
 const TAIL_BYTES = 22 + 0xffff;
-/** All files of an archive together, unpacked. */
+/** Limit for all unpacked files of an archive together. */
 const MOST_BYTES = 4 * 2 ** 30;
 
 /** The tables of a zip archive. Source: PKWARE APPNOTE.TXT 6.3.10, 4.3.12 and 4.3.16. */

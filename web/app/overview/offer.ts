@@ -7,7 +7,10 @@ export interface Offer {
 
 const UNAVAILABLE = 'Not available with the default settings';
 
-/** Procedures by the kind of run, encoders first where one is under test; those that the bench refuses stand apart. */
+/**
+ * Procedures by kind of run; encoders come first on a bench with an encoder under test. Procedures that the bench
+ * refuses are separate.
+ */
 export function offers(procedures: readonly Procedure[]): Offer[] {
 	const can = procedures.filter((one) => !one.refused);
 	const kinds = [...new Set(can.map((one) => one.kind))].sort((a, b) => Number(b === 'encoder') - Number(a === 'encoder'));

@@ -1,4 +1,6 @@
-/** A value that follows another once that has stood still: a question is not asked at every key stroke. */
+/**
+ * A value that follows another after it has been constant for a while, so that not every key stroke sends a request.
+ */
 export function settle<T>(source: () => T, wait_ms: number): { readonly value: T } {
 	let value: T = $state.raw(source());
 	$effect(() => {

@@ -7,7 +7,7 @@ export interface Parsed {
 	error: string | null;
 }
 
-/** What a person typed, as the number that the procedure wants. A decimal comma is understood. */
+/** Converts the user's text to the number of the procedure. A decimal comma is accepted. */
 export function parse({ type, min, max }: ProcedureParameter, text: string): Parsed {
 	const plain = text.trim().replace(',', '.');
 	const value = plain === '' ? Number.NaN : Number(plain);
@@ -27,7 +27,7 @@ export function asText(value: unknown): string {
 	return Array.isArray(value) ? value.join(', ') : String(value);
 }
 
-/** The bench page with a procedure and its settings filled in; nothing starts by itself. */
+/** The bench page with a procedure and its settings filled in; it starts nothing. */
 export function planAddress(procedure: string, parameters: Record<string, unknown>): string {
 	const settings = Object.entries(parameters).map(([name, value]) => [`p.${name}`, asText(value)]);
 	return `/?${new URLSearchParams([['procedure', procedure], ...settings] as [string, string][]).toString()}`;

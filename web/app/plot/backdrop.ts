@@ -1,16 +1,16 @@
-/** What lies behind the curves of a plot. */
+/** The background of a plot, behind its curves. */
 import type uPlot from 'uplot';
 import { colour } from './colour';
 
-/** A set point over time, or a limit at one height. It moves no scale: the curves decide what is in view. */
+/** A set-point over time, or a constant limit. It does not change the scale, which depends only on the curves. */
 export interface BackLine {
 	label: string;
-	/** In words, such as `± 20 rad/s`; empty for a course. */
+	/** In words, such as `± 20 rad/s`; empty for a set-point. */
 	said: string;
 	/** Custom property of the colour. */
 	stroke: string;
 	dash: number[];
-	/** A limit is at the same height everywhere. */
+	/** Heights of a constant limit. */
 	levels: readonly number[];
 	x: readonly number[];
 	y: readonly number[];
@@ -19,21 +19,21 @@ export interface BackLine {
 export interface Backdrop {
 	gaps: readonly (readonly [number, number])[];
 	region: readonly [number, number] | null;
-	/** Half height of a band about zero. */
+	/** Half height of a band around zero. */
 	band: number | null;
-	/** Moments about which somebody has written something down. */
+	/** Times of notes. */
 	notes: readonly number[];
-	/** Where steps begin, in order. */
+	/** Start times of steps, in order. */
 	steps: readonly number[];
 	lines: readonly BackLine[];
 }
 
 export const BARE: Backdrop = { gaps: [], region: null, band: null, notes: [], steps: [], lines: [] };
 
-/** Steps narrower than this are not told apart [px]. */
+/** Smallest width of a step that is marked [px]. */
 const NARROWEST = 5;
 
-/** The stretches of every other step within the view; none where they are too narrow to be told apart on average. */
+/** Time ranges of every second step in the view; none if the steps are too narrow on average. */
 export function everyOther(steps: readonly number[], [from, to]: readonly [number, number], width_px: number): [number, number][] {
 	const seen = steps.filter((at) => at > from && at < to).length;
 	if (steps.length < 2 || width_px / (seen + 1) < NARROWEST) return [];
@@ -94,5 +94,5 @@ function stroke(ctx: CanvasRenderingContext2D, line: BackLine, { left, width, x,
 	ctx.setLineDash([]);
 }
 
-/** On the axis, with a hair over the whole height. */
+/** A mark on the axis, with a thin line over the whole height. */
 const flag = (x: number, top: number, height: number, size: number) => new Path2D(`M${x} ${top}h${size / 2}v${height - 8 * size}l${4 * size} ${8 * size}h${-8 * size}l${3.5 * size} ${-8 * size}Z`);

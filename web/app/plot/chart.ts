@@ -8,7 +8,7 @@ import { type Cursors, type Moved, rulers } from './measure';
 import { powerText, tickText } from './ticks';
 import { trace } from './trace';
 
-/** `line` joins the points, `chord` only the first and the last; the others mark each point by itself. */
+/** `line` joins the points, `chord` only the first and the last; the others mark each point separately. */
 export type Mark = 'line' | 'chord' | 'dot' | 'ring' | 'dash';
 
 export interface Curve {
@@ -18,9 +18,9 @@ export interface Curve {
 	/** Custom property of the colour. */
 	stroke: string;
 	dash?: number[];
-	/** Half height of the band about a `chord`, and of the box that a `dash` stands in: how far repeats scatter about it. */
+	/** Half height of the band around a `chord`, or of the box around a `dash`: the scatter of repeats. */
 	spread?: number;
-	/** Its marks stand a little to the right, beside those that they would cover. */
+	/** Its marks are shifted to the right, so that they do not cover others. */
 	aside?: boolean;
 }
 
@@ -30,32 +30,34 @@ export interface Frame {
 	xTitle: string;
 	yTitle: string;
 	curves: Curve[];
-	/** Plots of one key share a cursor. */
+	/** Plots with the same key share a cursor. */
 	sync?: string;
 	height: number;
-	/** The axis below says it already. */
+	/** The axis below has the labels. */
 	bareX?: boolean;
-	/** The cursors of the plots above are the same. */
+	/** The plots above have the same cursors. */
 	cursorsAbove?: boolean;
-	/** There is a band about zero: it is in view however far the curves are from it. */
+	/** There is a band around zero, which is always in view. */
 	banded?: boolean;
-	/** Both axes show the same stretch. */
+	/** Both axes have the same range. */
 	square?: boolean;
-	/** The values are powers of ten: the axis says what they stand for. */
+	/** The values are exponents of ten: the axis shows the powers. */
 	log?: boolean;
 }
 
 export interface Chart {
 	draw: (data: uPlot.AlignedData, view: View | null, backdrop: Backdrop) => void;
-	/** What the axes show. */
+	/** Ranges of the axes. */
 	shows: () => { x: View; y: View };
-	/** Two cursors to measure between, or none. */
+	/** Two cursors for measuring, or none. */
 	measure: (cursors: Cursors | null) => void;
 	resize: (width: number, height: number) => void;
 	destroy: () => void;
 }
 
-/** The one place that knows uPlot. The zoom is ours: data never moves it (uPlot issues 505 and 942). */
+/**
+ * The only module that uses uPlot. The zoom is controlled here, and data never changes it (uPlot issues 505 and 942).
+ */
 export function makeChart(
 	host: HTMLElement,
 	frame: Frame,
@@ -68,7 +70,7 @@ export function makeChart(
 	let whole: View = [0, 1];
 	let lines: ReturnType<typeof rulers> | null = null;
 	const hands = gestures(asked);
-	/** Points at the ends are drawn whole. */
+	/** Points at the ends are drawn completely. */
 	const marked = frame.curves.some(({ mark }) => mark !== 'line');
 	const plot = new uPlot(
 		{

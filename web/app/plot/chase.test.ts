@@ -3,7 +3,7 @@ import { chase } from './chase';
 
 const PICTURE_MS = 1000 / 60;
 
-/** The ends of two seconds of pictures beside a stream of 1 s each second that comes in frames of `every_ms`. */
+/** End times of two seconds of images, for a stream in real time with one frame every `every_ms`. */
 function ends(every_ms: number): number[] {
 	const list: number[] = [];
 	for (let now_ms = 0; now_ms < 2000; now_ms += PICTURE_MS) {

@@ -1,9 +1,12 @@
-/** A tenth of a second behind the newest sample: frames come in gusts, and what scrolls should not. */
+/** Delay behind the newest sample: frames arrive irregularly, but the plot must scroll smoothly. */
 const BEHIND_MS = 100;
-/** [s] Nearer than this it has arrived. */
+/** [s] Distance below which the end of the stream is reached. */
 const THERE_S = 1e-4;
 
-/** Where live plots end, `passed_ms` after they ended at `shown_s`: it follows the newest sample smoothly at any pace of the bench. */
+/**
+ * End time of live plots, `passed_ms` after they ended at `shown_s`. It follows the newest sample smoothly at any rate
+ * of the bench.
+ */
 export function chase(shown_s: number | null, newest_s: number, passed_ms: number): number {
 	if (shown_s === null) return newest_s;
 	const left_s = (newest_s - shown_s) * Math.exp(-passed_ms / BEHIND_MS);

@@ -1,4 +1,4 @@
-/** Colours for canvases: the custom properties of the style sheet, looked up once for each theme. */
+/** Colours for canvases: the custom properties of the style sheet, read once per theme. */
 const known = new Map<string, string>();
 
 export function colour(property: string): string {
@@ -10,12 +10,12 @@ export function colour(property: string): string {
 	return value;
 }
 
-/** After a change of theme. */
+/** Called after a change of theme. */
 export function forgetColours(): void {
 	known.clear();
 }
 
-/** Colour and dash for the i-th curve: never colour alone. */
+/** Colour and dash of the i-th curve: curves never differ only in colour. */
 const CURVES: [string, number[]][] = [
 	['--oi-blue', []],
 	['--oi-vermillion', [7, 4]],
@@ -35,7 +35,7 @@ export function rgb(hex: string): [number, number, number] {
 	return [(value >> 16) & 255, (value >> 8) & 255, value & 255];
 }
 
-/** Diverging: −1 is `low`, 0 `middle`, +1 `high`; from there to ±2 the deep end of the same side. */
+/** Diverging colour scale: −1 is `low`, 0 `middle`, +1 `high`; up to ±2 `lowest` and `highest`. */
 export function diverging(at: number, [lowest, low, middle, high, highest]: readonly [string, string, string, string, string]): string {
 	const size = Math.min(2, Math.abs(at));
 	const [full, deep] = at < 0 ? [low, lowest] : [high, highest];

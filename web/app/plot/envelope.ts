@@ -7,8 +7,8 @@ export interface Drawn {
 }
 
 /**
- * The daemon's smallest and largest value of each pixel as one line: down and up at the same time, so that a spike of a
- * single sample is seen. A pause much longer than the others is a gap.
+ * The daemon's minimum and maximum of each pixel as one line. Both have the same time, so that a spike of one sample
+ * stays visible. A pause much longer than the others is a gap.
  */
 export function envelope(samples: Samples): Drawn {
 	const gaps = findGaps(samples.time_s);
@@ -25,12 +25,12 @@ export function findGaps(time_s: readonly number[]): [number, number][] {
 	return steps.flatMap((step, i) => (step > 5 * typical ? [[time_s[i]!, time_s[i + 1]!] as [number, number]] : []));
 }
 
-/** Columns, and behind them those that follow: what overlaps is taken from the latter. */
+/** Joins earlier and later columns. In the overlap the later columns are used. */
 export function follow(early: readonly (readonly (number | null)[])[], late: readonly ArrayLike<number | null>[]): ArrayLike<number | null>[] {
 	const begins = late[0]?.[0] ?? Infinity;
 	const count = early[0]!.filter((at) => at! < begins).length;
 	return late.map((column, c) => {
-		// What nobody kept begins with nothing: a scale cannot begin with NaN.
+		// Missing values at the start are null, because a scale cannot start with NaN.
 		if (!early[c]?.length) return [...Array<null>(count).fill(null), ...Array.from(column)];
 		const both = new Float64Array(count + column.length).fill(Number.NaN);
 		for (let i = 0; i < count; i++) both[i] = early[c]?.[i] ?? Number.NaN;

@@ -2,13 +2,15 @@ import type uPlot from 'uplot';
 import { touch } from './touch';
 
 export type View = [from: number, to: number];
-/** How a view was asked for: a live plot goes on following after a zoom, but not after the others. */
+/**
+ * The gesture that asked for a view: a live plot continues to follow after a zoom, but not after the other gestures.
+ */
 export type Hand = 'zoom' | 'box' | 'pan' | 'all' | 'back';
 export type Asked = (view: View | null, hand: Hand) => void;
 
 /**
- * The hands on a plot: wheel zooms about the pointer, drag chooses a stretch, shift-drag moves, double click goes back.
- * The chart keeps no zoom of its own; it says which view was asked for.
+ * Gestures on a plot: the wheel zooms around the pointer, a drag selects a range, a shift-drag moves, a double click
+ * returns. The chart stores no zoom; it only reports the requested view.
  */
 export function gestures(asked: Asked): Pick<uPlot.Options, 'cursor' | 'hooks'> {
 	return {
@@ -39,7 +41,7 @@ export function gestures(asked: Asked): Pick<uPlot.Options, 'cursor' | 'hooks'> 
 	};
 }
 
-/** How each key moves the two ends of the view, in parts of it. */
+/** Movement of both ends of the view per key, as fractions of its width. */
 const MOVES: Partial<Record<string, [from: number, to: number, Hand]>> = {
 	ArrowLeft: [-0.1, -0.1, 'pan'],
 	ArrowRight: [0.1, 0.1, 'pan'],

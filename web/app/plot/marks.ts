@@ -1,18 +1,21 @@
 import type uPlot from 'uplot';
 import { placesOf } from './trace';
 
-/** More points than this are drawn as squares, one for each place: the picture costs what it shows, not what it was made of. */
+/** Above this number, points are drawn as squares, one per position, so that the cost depends on the visible area. */
 const MANY = 1500;
-/** Width of such a square, and of half a dash. */
+/** Width of such a square, and half width of a dash. */
 const SIDE = 3;
 const HALF = 5;
 
-/** Calls back with the places of the points that are shown; of those that share a cell of `wide` × `high` pixels, with the first. */
+/**
+ * Calls `put` for the positions of the visible points. Of points that share a cell of `wide` × `high` pixels, only for
+ * the first.
+ */
 function each(u: uPlot, index: number, from: number, to: number, cell: readonly [number, number] | null, put: (x: number, y: number, value: number) => void): void {
 	const { left, top, x0, y1, kx, ky } = placesOf(u);
 	const [xs, ys] = [u.data[0]!, u.data[index]!];
 	const { width, height } = u.bbox;
-	// A page that is still being laid out may be narrower than the axis alone.
+	// During layout a page may be narrower than the axis.
 	if (!(width > 0 && height > 0)) return;
 	const columns = cell ? Math.ceil(width / cell[0]) + 1 : 0;
 	const rows = cell ? Math.ceil(height / cell[1]) + 1 : 0;
@@ -30,7 +33,7 @@ function each(u: uPlot, index: number, from: number, to: number, cell: readonly 
 	}
 }
 
-/** Each point by itself: circles, or squares where there are many. A point alone is seen in either. */
+/** Each point separately: circles, or squares if there are many. A single point is visible in both cases. */
 export function points(u: uPlot, index: number, from: number, to: number, filled: boolean, aside: number): uPlot.Series.Paths {
 	const path = new Path2D();
 	const ratio = devicePixelRatio;
@@ -47,7 +50,7 @@ export function points(u: uPlot, index: number, from: number, to: number, filled
 	return filled ? { stroke: null, fill: path } : { stroke: path };
 }
 
-/** A short level stroke at each point: where the model says the point should be, and the box that repeats would fill. */
+/** A short horizontal line at each point for the value of the model, and a box for the scatter of repeats. */
 export function dashes(u: uPlot, index: number, from: number, to: number, spread: number, aside: number): uPlot.Series.Paths {
 	const [path, boxes] = [new Path2D(), new Path2D()];
 	const half = HALF * devicePixelRatio;

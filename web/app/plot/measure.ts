@@ -1,6 +1,6 @@
 import type uPlot from 'uplot';
 
-/** Where the two measuring cursors stand along x. Either may be the left one. */
+/** Positions of the two measuring cursors along x, in any order. */
 export type Cursors = readonly [a: number, b: number];
 export type Moved = (cursors: Cursors) => void;
 
@@ -11,10 +11,10 @@ export function readCursors(text: string | null): Cursors | null {
 
 export const writeCursors = (cursors: Cursors): string => cursors.map((at) => Number(at.toPrecision(9))).join(':');
 
-/** A third of what is seen from each end: where cursors begin. */
+/** Initial positions of the cursors: a third of the view from each end. */
 export const within = ([from, to]: readonly [number, number]): Cursors => [from + (to - from) / 3, to - (to - from) / 3];
 
-/** The rows next to a moment; `null` beyond the ends. */
+/** Index of the row nearest to `at`; `null` without rows. */
 export function nearest(x: ArrayLike<number>, at: number): number | null {
 	let best: number | null = null;
 	for (let i = 0; i < x.length; i++) {
@@ -25,11 +25,11 @@ export function nearest(x: ArrayLike<number>, at: number): number | null {
 
 export interface Rulers {
 	put: (cursors: Cursors | null) => void;
-	/** After every painting: the scale may have moved. */
+	/** Called after every painting, because the scale may have changed. */
 	place: () => void;
 }
 
-/** Two lines over a plot: dragged by hand, or moved by the arrow keys, a pixel a stroke, with Shift ten. */
+/** Two lines over a plot. They are dragged, or moved by the arrow keys: one pixel per key stroke, ten with Shift. */
 export function rulers(u: uPlot, title: string, moved: Moved, reachable: boolean): Rulers {
 	let now: Cursors | null = null;
 	const lines = (['A', 'B'] as const).map((name, which) => {

@@ -1,4 +1,4 @@
-/** A plot as a drawing of lines: what is on the canvas, to be scaled and edited. */
+/** A plot as a vector drawing with the content of the canvas, to scale and edit. */
 import { type Backdrop, everyOther } from './backdrop';
 import type { Curve } from './chart';
 import type { View } from './gestures';
@@ -9,13 +9,13 @@ export interface Drawing {
 	yTitle: string;
 	curves: readonly Curve[];
 	data: readonly ArrayLike<number | null>[];
-	/** What the axes show. */
+	/** Ranges of the axes. */
 	x: View;
 	y: View;
 	backdrop: Backdrop;
 	width: number;
 	height: number;
-	/** The values are powers of ten. */
+	/** The values are exponents of ten. */
 	log?: boolean;
 }
 
@@ -23,7 +23,7 @@ const [LEFT, RIGHT, HEAD, FOOT] = [76, 10, 26, 44];
 export const escaped = (text: string) => text.replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
 const short = (pixels: number) => String(Number(pixels.toFixed(2)));
 
-/** `ink` gives the colour of a custom property. */
+/** `ink` returns the colour of a custom property. */
 export function svgOf(drawing: Drawing, ink: (property: string) => string): string {
 	const { curves, data, backdrop, width, height } = drawing;
 	const [right, foot] = [width - RIGHT, height - FOOT];
@@ -91,7 +91,7 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 
 type Point = readonly [x: number, y: number | null];
 
-/** What lies in the window, and one more on each side, so that lines reach its border. */
+/** The points in the view and one more on each side, so that lines reach the border. */
 function pointsOf(xs: ArrayLike<number | null>, ys: ArrayLike<number | null>, [from, to]: View): Point[] {
 	const points: Point[] = [];
 	for (let i = 0; i < xs.length; i++) {

@@ -1,4 +1,4 @@
-/** The numbers that a plot shows, to take away. */
+/** Exports the numbers of a plot. */
 import type { Curve } from './chart';
 import type { View } from './gestures';
 

@@ -1,6 +1,6 @@
 /**
- * The newest samples of a run in memory: contiguous columns, so that a window is a view and never a copy.
- * Missing stretches are kept as intervals, for the plot to leave blank.
+ * The newest samples of a run in memory, as contiguous columns, so that a window needs no copy. Missing ranges are
+ * stored as intervals; the plot keeps them blank.
  */
 export class Tape {
 	private readonly capacity: number;

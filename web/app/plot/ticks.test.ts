@@ -4,7 +4,7 @@ import { tickText, ticks } from './ticks';
 it('finds round positions', () => {
 	expect(ticks(0, 1, 5)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
 	expect(ticks(-7, 7, 3)).toEqual([-5, 0, 5]);
-	// One step of 200 would leave a single position.
+	// A single step of 200 would give only one position.
 	expect(ticks(-187, 187, 2)).toEqual([-100, 0, 100]);
 	expect(ticks(0.1, 14.9, 2)).toEqual([2.5, 5, 7.5, 10, 12.5]);
 	expect(ticks(3, 3, 5)).toEqual([3]);

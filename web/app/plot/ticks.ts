@@ -1,9 +1,9 @@
 import { figure } from '../format/number';
 
-/** Three are the fewest by which a scale can be read. */
+/** The smallest number of ticks for a readable scale. */
 const FEWEST = 3;
 
-/** Round positions for an axis, about `count` of them and never fewer than three: steps of 1, 2, 2.5 or 5 times a power of ten. */
+/** About `count` round positions for an axis, at least three: steps of 1, 2, 2.5 or 5 times a power of ten. */
 export function ticks(low: number, high: number, count: number): number[] {
 	const span = high - low;
 	if (!(span > 0) || !Number.isFinite(span)) return Number.isFinite(low) ? [low] : [];
@@ -21,12 +21,12 @@ export function ticks(low: number, high: number, count: number): number[] {
 	return Array.from({ length: last - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
 }
 
-/** A tick without needless zeros. */
+/** A tick without unnecessary zeros. */
 export function tickText(tick: number): string {
 	const size = Math.abs(tick);
 	if (size !== 0 && (size < 1e-4 || size >= 1e6)) return figure(tick, 2);
 	return String(Number(tick.toPrecision(6))).replace('-', '−');
 }
 
-/** A tick of a logarithmic scale: what it is the power of. */
+/** A tick of a logarithmic scale: ten to the given power. */
 export const powerText = (power: number): string => figure(10 ** power, Number.isInteger(power) ? 1 : 2);

@@ -1,7 +1,10 @@
 import type uPlot from 'uplot';
 import type { Asked } from './gestures';
 
-/** Fingers on a plot (uPlot issue 13): one along x chooses a stretch, two zoom and move; up and down scrolls the page. */
+/**
+ * Touch gestures on a plot (uPlot issue 13): one finger along x selects a range, two fingers zoom and move. Vertical
+ * movement scrolls the page.
+ */
 export function touch(u: uPlot, asked: Asked): void {
 	const { over } = u;
 	const fingers = new Map<number, number>();

@@ -1,15 +1,15 @@
 import type uPlot from 'uplot';
 
-/** Up to here a curve is drawn as it is, with a true dash along its length. */
+/** Up to this number of points, a curve is drawn unreduced, with a correct dash pattern along its length. */
 const SPARSE = 600;
 
-/** Pixels of which a dashed line through dense data takes the middle. */
+/** Pixels that a dashed line through dense data combines into one middle value. */
 const STEP = 2;
 
 /**
- * A line through the points, broken at gaps and at missing values. Dense data becomes its smallest and largest value in each
- * pixel column, one pixel wide: without a graphics card, wide or dashed strokes of noise cost ten times as much. A dashed line
- * goes through the middle of that, which is filled: dashes along noise are crumbs.
+ * A line through the points, broken at gaps and at missing values. Dense data becomes its minimum and maximum in each
+ * pixel column, one pixel wide: without a graphics card, wide or dashed lines of noise cost ten times as much. A dashed
+ * line becomes the filled middle of that range, because dashes along noise are unreadable.
  */
 export function trace(dash: readonly number[] | undefined, gaps: () => readonly (readonly [number, number])[]): uPlot.Series.PathBuilder {
 	return (u, index, from, to) => {
@@ -38,11 +38,14 @@ function pieces(x: ArrayLike<number>, from: number, to: number, gaps: readonly (
 	return [...list, [begin, to]];
 }
 
-/** From the units of the data to the pixels of the canvas. A plot of ten channels asks for a million places a second. */
+/**
+ * Conversion from data units to canvas pixels. It must be fast: a plot of ten channels needs a million positions per
+ * second.
+ */
 export interface Places {
 	left: number;
 	top: number;
-	/** Smallest x and largest y that are shown, and pixels for each unit. */
+	/** Smallest displayed x, largest displayed y, and pixels per unit. */
 	x0: number;
 	y1: number;
 	kx: number;

@@ -1,6 +1,6 @@
 import type { ResidualSet } from '../api/types';
 
-/** In how many repeats what is left shrinks by what an effect would take of it. `null` where nothing was repeated. */
+/** Number of repeats whose residual an effect would reduce. `null` without repeats. */
 export function agreeing({ error, repeat, held_out }: Pick<ResidualSet, 'error' | 'repeat' | 'held_out'>, taken: readonly number[]): { yes: number; of: number } | null {
 	const gain = new Map<number, number>();
 	for (let i = 0; i < error.length; i++) {

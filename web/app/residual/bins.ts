@@ -1,21 +1,21 @@
 import { levelsOf } from './levels';
 
-/** Where an axis is cut. */
+/** Bin edges of an axis. */
 export interface Bins {
 	edges: number[];
 	/**
-	 * What each bin stands for, where the bins are the set points of the run. Set points are drawn equally wide: they are
-	 * dense where the physics is, and on a linear axis the slow speeds would be a hair.
+	 * Values of the bins, if the bins are the set-points of the run. Set-points have equal widths in the drawing,
+	 * because they are dense at low speeds. On a linear axis those would be too narrow.
 	 */
 	levels: number[] | null;
-	/** What a value is multiplied by to be read, such as rad/s as rpm. */
+	/** Factor from the stored unit to the displayed unit, such as rad/s to rpm. */
 	factor?: number;
 }
 
-/** Points for a bin that shows something. */
+/** Smallest number of points per bin. */
 const EACH = 12;
 
-/** `segment` numbers the set point at which a value was taken. Values that are not finite count nowhere. */
+/** `segment`: number of the set-point of each value. Values that are not finite are ignored. */
 export function binsFor(values: readonly number[], segment: readonly number[], kept: Uint8Array, most = 24): Bins {
 	const points: { value: number; segment: number }[] = [];
 	let low = Number.POSITIVE_INFINITY;
@@ -37,7 +37,7 @@ export function binsFor(values: readonly number[], segment: readonly number[], k
 	return { edges: Array.from({ length: count + 1 }, (_, i) => low + ((high - low) * i) / count), levels: null };
 }
 
-/** Index of the bin that holds the value, −1 outside. The last edge belongs to the last bin. */
+/** Index of the bin that contains the value, −1 outside. The last edge belongs to the last bin. */
 export function binOf(edges: readonly number[], value: number): number {
 	const last = edges.length - 1;
 	if (last < 1 || !(value >= edges[0]! && value <= edges[last]!)) return -1;
@@ -51,7 +51,7 @@ export function binOf(edges: readonly number[], value: number): number {
 	return low;
 }
 
-/** A stretch as the bins that lie in it by their middles; the one bin that it lies in where there is none. */
+/** Extends a range to the bins whose middles it contains; if there are none, to the bin that contains it. */
 export function wholeBins({ edges, levels }: Bins, stretch: readonly [number, number] | null): [number, number] | null {
 	if (!stretch || edges.length < 2) return null;
 	const [from, to] = stretch;

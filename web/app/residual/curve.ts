@@ -16,8 +16,8 @@ export function curve(values: readonly number[], edges: number[], residual: read
 }
 
 /**
- * Share of the residual's variance that depends on the axis: ω² of a one-way analysis of variance, which does not
- * reward an axis for having many bins (Hays, Statistics, 1963).
+ * Fraction of the residual's variance that depends on the axis: ω² of a one-way analysis of variance, which does not
+ * favour axes with many bins (Hays, Statistics, 1963).
  */
 export function explainedShare(values: readonly number[], edges: number[], residual: readonly number[], kept: Uint8Array): number {
 	const groups = new Map<number, { n: number; sum: number }>();

@@ -1,12 +1,12 @@
-/** A run has few set points, or the axis is not one that was set. */
+/** Largest number of set-points. An axis with more values is not a commanded quantity. */
 const MOST = 40;
-/** Set points closer than this share of the span, of their own size, or than their scatter, are one. */
+/** Set-points that are closer than this fraction of the span, of their own value, or than their scatter, are merged. */
 const APART = 0.002;
 const ALIKE = 0.05;
-/** A segment that moves over more than this share of the span sweeps; it is not at a set point. */
+/** A segment that moves over more than this fraction of the span is not at a set-point. */
 const STILL = 0.03;
 
-/** The set points of an axis in rising order, or `null` where the run does not dwell at any. */
+/** The set-points of an axis in rising order, or `null` if the run does not stay at any. */
 export function levelsOf(points: readonly { value: number; segment: number }[], span: number): number[] | null {
 	const segments = [...summaries(points)].filter((each) => each.scatter <= STILL * span);
 	const still = segments.reduce((n, each) => n + each.n, 0);

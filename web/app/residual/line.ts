@@ -3,7 +3,7 @@ import type { Point } from './curve';
 import { type Place, middle } from './place';
 import { ENOUGH } from './tally';
 
-/** One curve of means, and how it is drawn. */
+/** One curve of means, with its style. */
 export interface Line {
 	points: Point[];
 	stroke: string;
@@ -13,22 +13,25 @@ export interface Line {
 	wide?: boolean;
 }
 
-/** Points of a curve that say something, with their places. */
+/** Points of a curve with enough samples, with their positions. */
 export function seen(points: readonly Point[], bins: Bins, scale: Place): (Point & { at: number })[] {
 	return points.flatMap((p, i) => (says(p) ? [{ ...p, at: middle(bins, scale, i) }] : []));
 }
 
-/** There are points enough for a mean. */
+/** There are enough samples for a mean. */
 export const says = (p: Point) => p.n >= ENOUGH && Number.isFinite(p.se);
 
-/** Half height of an axis that shows all these curves. How unsure a few means are does not make the others small. */
+/**
+ * Half height of an axis for all these curves. Large standard errors of a few means must not reduce the scale of the
+ * others.
+ */
 export function reach(curves: readonly (readonly Point[])[]): number {
 	const points = curves.flatMap((curve) => curve.filter(says));
 	const usual = points.map((p) => p.se).sort((a, b) => a - b)[points.length >> 1] ?? 0;
 	return Math.max(1e-12, ...points.map((p) => Math.abs(p.mean) + Math.min(2 * p.se, 2 * usual))) * 1.1;
 }
 
-/** Share of each bin's points that are chosen. */
+/** Fraction of selected points per bin. */
 export function sharesOf(values: readonly number[], { edges }: Bins, kept: Uint8Array, chosen: Uint8Array | null): number[] | null {
 	if (!chosen) return null;
 	const bins = edges.slice(1).map(() => ({ all: 0, chosen: 0 }));

@@ -29,7 +29,7 @@ export function residualMap(
 	return { x: x.bins, y: y.bins, cells: sums.map((s) => s.tally(noise)) };
 }
 
-/** Indices of the cells that hold a chosen sample. */
+/** Indices of the cells that contain a selected sample. */
 export function cellsOf({ x, y }: ResidualMap, xs: readonly number[], ys: readonly number[], chosen: Uint8Array): Set<number> {
 	const columns = x.edges.length - 1;
 	const cells = new Set<number>();

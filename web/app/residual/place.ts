@@ -1,7 +1,7 @@
 import { tickText, ticks } from '../plot/ticks';
 import { type Bins, binOf } from './bins';
 
-/** From a value to its place between two pixels, and back. Set points are equally wide, everything else is linear. */
+/** Converts a value to its pixel position, and back. Set-points have equal widths; other axes are linear. */
 export interface Place {
 	at: (value: number) => number;
 	value: (px: number) => number;
@@ -37,12 +37,12 @@ export function place({ edges, levels, factor = 1 }: Bins, from: number, to: num
 			return edges[bin]! + (place - bin) * (edges[bin + 1]! - edges[bin]!);
 		},
 		ticks: levels.filter((_, i) => i % each === Math.floor(((n - 1) % each) / 2)),
-		// Set points were measured; digits beyond the third of the largest tell nothing about which one it is.
+		// Set-points are measured values. More digits than three of the largest one do not help to identify them.
 		say: (tick) => tickText(Number((tick * factor).toFixed(decimals)) || 0),
 	};
 }
 
-/** Where a bin's own value lies: the set point in the middle of its column. */
+/** Position of a bin's value: a set-point is in the middle of its column. */
 export function middle({ edges, levels }: Bins, scale: Place, bin: number): number {
 	return levels ? (scale.at(edges[bin]!) + scale.at(edges[bin + 1]!)) / 2 : scale.at((edges[bin]! + edges[bin + 1]!) / 2);
 }

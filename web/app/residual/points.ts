@@ -3,8 +3,8 @@ import type { ResidualSet } from '../api/types';
 export type Side = 'both' | 'positive' | 'negative';
 
 /**
- * Which points count: none that a person excluded; those of the fit, in the chosen direction of motion. Ramps and reversals took no part in the fit;
- * they count only where they are asked for.
+ * Points that count: those of the fit in the selected direction of motion, without those that the user excluded. Ramps
+ * and reversals are not part of the fit; they count only on request.
  */
 export function keep(set: ResidualSet, side: Side, ramps = false): Uint8Array {
 	const direction = directionOf(set);
@@ -17,7 +17,10 @@ export function keep(set: ResidualSet, side: Side, ramps = false): Uint8Array {
 	});
 }
 
-/** Positions that go on for more than a turn, folded into one, as the diagnosis does: what a position shows comes again with the next turn. */
+/**
+ * Folds a position of more than one turn into one turn, as the diagnosis does, because position errors repeat with
+ * every turn.
+ */
 export function inOneTurn(set: ResidualSet): ResidualSet {
 	const turn = 2 * Math.PI;
 	const fold = (values: number[]) => {
@@ -28,8 +31,9 @@ export function inOneTurn(set: ResidualSet): ResidualSet {
 }
 
 /**
- * With the axes along which the diagnosis looks too, and which no column is: how long ago and how far away the motion turned, and in friction
- * runs the motor's torque. Against its own noise the residual would have a slope: it is the model's, moved to the mean of what was measured in each piece.
+ * Adds the axes of the diagnosis that are not columns: time and distance since the last reversal, and the motor torque
+ * in friction runs. The residual would have a slope over its own noise, so this torque is the model's, shifted to the
+ * measured mean of each block.
  */
 export function withMore(set: ResidualSet): ResidualSet {
 	const named = (name: string) => set.axes.find((axis) => axis.name === name);
@@ -65,7 +69,7 @@ export function directionOf(set: ResidualSet): readonly number[] | null {
 	return (named ?? set.axes.find((axis) => axis.name.endsWith('velocity_rad_s')))?.values ?? null;
 }
 
-/** Axes along which the points that count differ at all; `segment` and `repeat` only number them. */
+/** Axes along which the points differ; `segment` and `repeat` are only numbers. */
 export function usefulAxes(set: ResidualSet, kept: Uint8Array): ResidualSet['axes'] {
 	return set.axes.filter((axis) => {
 		if (axis.name === 'segment' || axis.name === 'repeat') return false;

@@ -11,7 +11,7 @@ import { half, quantile, score, Sums } from './tally';
 import { wholeBins } from './bins';
 import { atDepth, depth, reachOfMap, readShading, toldOf, writeShading } from './shade';
 
-/** Repeatable noise in −1…1. */
+/** Reproducible noise in −1…1. */
 function noise(seed = 1): () => number {
 	let state = seed;
 	return () => ((state = (state * 16807) % 2147483647) / 2147483647) * 2 - 1;
@@ -120,7 +120,7 @@ describe('scores', () => {
 	});
 
 	it('counts pieces of the run, not points', () => {
-		// Sums of the three pieces about the mean 2: −2, 2, 0, as in the maps of the diagnosis.
+		// Sums of the three blocks about the mean 2: −2, 2, 0, as in the maps of the diagnosis.
 		const found = tally([1, 1, 3, 3, 2], 0, (i) => Math.floor(i / 2));
 		expect([found.mean, found.pieces]).toEqual([2, 3]);
 		expect(found.se).toBeCloseTo(Math.sqrt((8 * 3) / 2) / 5, 12);

@@ -2,13 +2,13 @@ import type { ResidualSet } from '../api/types';
 import type { Region } from '../workbench/region';
 import { type Side, keep } from './points';
 
-/** What can be brushed besides the axes: the figures of the point itself. */
+/** Quantities for selection in addition to the axes: the values of the point itself. */
 export function valuesOf(set: ResidualSet, name: string): readonly number[] | undefined {
 	if (name === 'measured' || name === 'predicted') return set[name];
 	return name === 'residual' ? set.error : set.axes.find((axis) => axis.name === name)?.values;
 }
 
-/** The samples of a region, one flag each; `null` where nothing is chosen or the run has no such axis. */
+/** The samples of a region, one flag each; `null` without a selection, or if the run has no such axis. */
 export function selected(set: ResidualSet, region: Region | null, side: Side, ramps: boolean): Uint8Array | null {
 	if (!region) return null;
 	const kept = keep(set, side, ramps);

@@ -1,13 +1,13 @@
 import { ENOUGH, type Tally, score } from './tally';
 
-/** What the colour of a cell tells, and how it grows: no end of the scale is reached before the worst cell. */
+/** Quantity and scale of the colour of a cell. Only the worst cell reaches the end of the scale. */
 export interface Shading {
 	/** Mean in standard errors, or the mean itself. */
 	of: 'errors' | 'value';
 	log: boolean;
 }
 
-/** `value-linear`, as the address carries it; standard errors on a logarithmic scale where left out. */
+/** `value-linear`, as in the address; the default is standard errors on a logarithmic scale. */
 export function readShading(text: string | null): Shading {
 	const [of, scale] = (text ?? '').split('-');
 	return { of: of === 'value' ? 'value' : 'errors', log: scale !== 'linear' };
@@ -15,29 +15,29 @@ export function readShading(text: string | null): Shading {
 
 export const writeShading = ({ of, log }: Shading): string | null => (of === 'errors' && log ? null : `${of}-${log ? 'log' : 'linear'}`);
 
-/** What is told of a cell; `null` where there are too few points. */
+/** The coloured quantity of a cell; `null` if there are too few points. */
 export const toldOf = (cell: Tally, of: Shading['of']): number | null => (of === 'errors' ? score(cell) : cell.n < ENOUGH ? null : cell.mean);
 
-/** Standard errors to which a scale goes at least: a map of noise alone is pale. */
+/** Smallest end of a scale in standard errors, so that a map of pure noise is pale. */
 const PALE = 5;
 
-/** The end of the scale: the worst cell, and no less than what noise alone reaches; `noise` in the unit of the residual. */
+/** End of the scale: the worst cell, but at least the level of pure noise; `noise` in the unit of the residual. */
 export function reachOfMap(cells: readonly Tally[], of: Shading['of'], noise: number): number {
 	const least = of === 'errors' ? PALE : noise;
 	return cells.reduce((most, cell) => Math.max(most, Math.abs(toldOf(cell, of) ?? 0)), least) || 1;
 }
 
-/** Where a logarithmic scale turns linear about zero: one standard error, or a fiftieth of the worst. */
+/** Value below which a logarithmic scale is linear: one standard error, or 1/50 of the worst cell. */
 const turn = (most: number, of: Shading['of']) => (of === 'errors' ? 1 : most / 50);
 
-/** How deep the colour is, from −2 to 2 at the ends of the scale. */
+/** Depth of the colour, −2 to 2 at the ends of the scale. */
 export function depth(value: number, most: number, { of, log }: Shading): number {
 	const share = Math.min(1, Math.abs(value) / most);
 	const at = turn(most, of);
 	return 2 * Math.sign(value) * (log ? Math.log1p((share * most) / at) / Math.log1p(most / at) : share);
 }
 
-/** The value at which the colour is so deep: the way back, for the ticks of the scale. */
+/** The value of a colour depth: the inverse, for the ticks of the scale. */
 export function atDepth(deep: number, most: number, { of, log }: Shading): number {
 	const share = Math.abs(deep) / 2;
 	const at = turn(most, of);

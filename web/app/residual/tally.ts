@@ -1,17 +1,17 @@
-/** Mean residual and its standard error of a handful of points. */
+/** Mean residual and its standard error of a group of points. */
 export interface Tally {
 	n: number;
 	mean: number;
-	/** Standard error of the mean, over pieces of the run where there are enough; infinite for fewer than two points. */
+	/** Standard error of the mean, over blocks of the run if there are enough; infinite for fewer than two points. */
 	se: number;
-	/** Pieces of the run that pass through. */
+	/** Number of blocks of the run in this group. */
 	pieces: number;
 }
 
-/** Fewer pieces say nothing about one more. */
+/** Smallest number of blocks for a standard error over blocks. */
 const FEWEST = 3;
 
-/** Points of a cell in the order of the run, with the piece of each. */
+/** Points of a cell in the order of the run, with the block of each. */
 export class Sums {
 	private n = 0;
 	private sum = 0;
@@ -19,7 +19,7 @@ export class Sums {
 	private pieces = 0;
 	private piece: number | null = null;
 	private within = { n: 0, sum: 0 };
-	/** Over the pieces: their sums squared, sums times numbers, numbers squared. */
+	/** Over the blocks: squared sums, sums times counts, squared counts. */
 	private over = [0, 0, 0] as [number, number, number];
 
 	add(value: number, piece: number): void {
@@ -41,13 +41,13 @@ export class Sums {
 		this.within = { n: 0, sum: 0 };
 	}
 
-	/** `noise`: scatter of one point that is known from elsewhere; a lucky handful must not look surer than that. */
+	/** `noise`: known scatter of one point. The standard error of a small group must not be lower than that. */
 	tally(noise = 0): Tally {
 		this.close();
 		const { n, pieces } = this;
 		if (n === 0) return { n, mean: Number.NaN, se: Number.POSITIVE_INFINITY, pieces };
 		const mean = this.sum / n;
-		// What a piece has in common is one piece of evidence, however many points it has.
+		// A block counts as one observation, independent of its number of points.
 		const [ss, sn, nn] = this.over;
 		const enough = pieces >= FEWEST;
 		const spread = enough ? ((ss - 2 * mean * sn + mean * mean * nn) * pieces) / (pieces - 1) : n > 1 ? ((this.squares - n * mean * mean) * n) / (n - 1) : 0;
@@ -56,15 +56,17 @@ export class Sums {
 	}
 }
 
-/** Half of a 95 % band that holds for so many means together (Bonferroni); `null` where too few pieces tell of it. */
+/**
+ * Half width of a 95 % band that holds for `together` means simultaneously (Bonferroni); `null` with too few blocks.
+ */
 export function half({ se, pieces }: Tally, together: number): number | null {
 	return pieces < FEWEST ? null : se * quantile(0.05 / Math.max(1, together), pieces - 1);
 }
 
-/** Cells that a band is told of. */
+/** Number of cells with a band. */
 export const judged = (cells: readonly Tally[]): number => cells.filter((cell) => score(cell) !== null && cell.pieces >= FEWEST).length;
 
-/** The mean is no accident, with as many cells as are judged. */
+/** The mean is significant, given the number of tested cells. */
 export function beyond(cell: Tally, together: number): boolean {
 	const band = score(cell) === null ? null : half(cell, together);
 	return band !== null && Math.abs(cell.mean) > band;
@@ -72,7 +74,7 @@ export function beyond(cell: Tally, together: number): boolean {
 
 const known = new Map<string, number>();
 
-/** Student's t beyond which lies the share `p` of both tails. */
+/** Quantile of Student's t for the probability `p` of both tails together. */
 export function quantile(p: number, freedom: number): number {
 	const key = `${p} ${freedom}`;
 	const found = known.get(key);
@@ -87,7 +89,10 @@ export function quantile(p: number, freedom: number): number {
 	return high;
 }
 
-/** Share of Student's t beyond ±t, as the finite series for whole degrees of freedom (Abramowitz and Stegun 26.7.3 and 26.7.4). */
+/**
+ * Probability of Student's t beyond ±t, as the finite series for integer degrees of freedom (Abramowitz and Stegun
+ * 26.7.3 and 26.7.4).
+ */
 function tails(t: number, freedom: number): number {
 	const angle = Math.atan(t / Math.sqrt(freedom));
 	const [sin, cos] = [Math.sin(angle), Math.cos(angle)];
@@ -101,12 +106,12 @@ function tails(t: number, freedom: number): number {
 	return 1 - (odd ? (2 / Math.PI) * (angle + sin * sum) : sin * sum);
 }
 
-/** Fewer points than this show no colour. */
+/** Fewer points than this get no colour. */
 export const ENOUGH = 10;
-/** Of a cell without any scatter: as far from zero as a plain one can be, in standard errors. */
+/** Score of a cell without scatter, in standard errors. */
 const EXACT = 10;
 
-/** Mean in standard errors; `null` where there are too few points to say. */
+/** Mean in standard errors; `null` with too few points. */
 export function score(tally: Tally): number | null {
 	if (tally.n < ENOUGH || !Number.isFinite(tally.se)) return null;
 	if (tally.se === 0) return tally.mean === 0 ? 0 : Math.sign(tally.mean) * EXACT;

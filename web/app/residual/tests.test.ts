@@ -1,7 +1,7 @@
 import { expect, it } from 'vitest';
 import { dependence, isWhite, shape } from './tests';
 
-/** Park and Miller's generator, and two of its numbers for a normal one. */
+/** Park and Miller's generator, with two uniform numbers for each normal one. */
 function normals(count: number, seed: number): number[] {
 	let state = seed;
 	const uniform = () => (state = (state * 48271) % 2147483647) / 2147483647;

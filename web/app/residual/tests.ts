@@ -1,28 +1,28 @@
 import type { ResidualSet } from '../api/types';
 
-/** How much points that follow each other have in common, lag 1 first, and what chance alone stays within at 95 %. */
+/** Autocorrelation of the residuals, lag 1 first, and the 95 % band of white noise. */
 export interface Dependence {
 	lags: number[];
 	band: number;
-	/** How many points there are. */
+	/** Number of points. */
 	n: number;
 }
 
-/** What the residuals' own distribution says. */
+/** Distribution of the residuals. */
 export interface Shape {
 	skewness: number;
-	/** Beyond that of the normal distribution. */
+	/** Excess over the normal distribution. */
 	kurtosis: number;
 	normal: boolean;
 }
 
 const LAGS = 20;
-/** Fewer points say nothing. */
+/** Fewer points are not sufficient. */
 const ENOUGH = 30;
 /** 95 % point of χ² with two degrees of freedom. */
 const CHI2_2 = 5.991;
 
-/** The residuals of the points that count, in the order in which they were measured. */
+/** The residuals of the points that count, in the order of measurement. */
 export function inOrder(set: ResidualSet, kept: Uint8Array): number[] {
 	const time = set.axes.find((axis) => axis.name === 'time_s')?.values;
 	const places = set.error.flatMap((_, i) => (kept[i] ? [i] : []));
@@ -30,7 +30,10 @@ export function inOrder(set: ResidualSet, kept: Uint8Array): number[] {
 	return places.map((i) => set.error[i]!);
 }
 
-/** Autocorrelation with the band of white residuals (Ljung, System Identification, 1999, section 16.6); `null` for too few points. */
+/**
+ * Autocorrelation with the band of white residuals (Ljung, System Identification, 1999, section 16.6); `null` with too
+ * few points.
+ */
 export function dependence(residual: readonly number[]): Dependence | null {
 	const n = residual.length;
 	if (n < ENOUGH) return null;
@@ -44,7 +47,7 @@ export function dependence(residual: readonly number[]): Dependence | null {
 	return { lags, band: 1.96 / Math.sqrt(n), n };
 }
 
-/** Are all lags together what chance leaves, at 95 % (Ljung and Box, 1978)? */
+/** Whether all lags together agree with white noise at 95 % (Ljung and Box, 1978). */
 export function isWhite({ lags, n }: Dependence): boolean {
 	const h = lags.length;
 	const q = n * (n + 2) * lags.reduce((sum, one, k) => sum + one ** 2 / (n - k - 1), 0);
@@ -53,7 +56,10 @@ export function isWhite({ lags, n }: Dependence): boolean {
 	return q <= h * (1 - spread + 1.645 * Math.sqrt(spread)) ** 3;
 }
 
-/** Skewness and kurtosis, held against the normal distribution's (Jarque and Bera, 1987); `null` for too few points. */
+/**
+ * Skewness and kurtosis compared with those of the normal distribution (Jarque and Bera, 1987); `null` with too few
+ * points.
+ */
 export function shape(residual: readonly number[]): Shape | null {
 	const n = residual.length;
 	if (n < ENOUGH) return null;

@@ -11,14 +11,20 @@ const VERDICTS: Record<Identification['verdict'], { word: string; icon: string; 
 
 export const sayVerdict = (verdict: Identification['verdict']) => VERDICTS[verdict];
 
-/** Held against a data sheet, the word is what came of that; the summary begins with it, and the rest follows. */
+/**
+ * The verdict in a word. If the result was compared with a data sheet, the word is the outcome of that, with which the
+ * summary starts.
+ */
 export function judged({ verdict, passes }: Pick<Identification, 'verdict' | 'passes'>, summary: string) {
 	if (verdict !== 'identified' || passes == null) return { ...VERDICTS[verdict], rest: summary };
 	const word = passes ? 'PASS' : 'OUT OF TOLERANCE';
 	return { word, icon: passes ? '✓' : '✕', mood: (passes ? 'good' : 'bad') as Mood, rest: summary.replace(new RegExp(`^${word}:? *`), '') };
 }
 
-/** A quantity with one prefix for value and interval: `32.1 ± 0.4 µNm·s/rad`; an uneven interval is said by its ends. */
+/**
+ * A quantity with one prefix for value and interval: `32.1 ± 0.4 µNm·s/rad`; an asymmetric interval is given by its
+ * ends.
+ */
 export function sayQuantity(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci95'>, shown: Scale = { factor: 1, unit: of.unit }): { value: string; interval: string; unit: string } {
 	const [value, unit] = [of.value * shown.factor, shown.unit];
 	const [low, high] = (of.ci95 ?? []).map((end) => end * shown.factor);
@@ -38,13 +44,16 @@ export function sayQuantity(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci9
 	};
 }
 
-/** What was found for each of several ways. */
+/** Results for several directions. */
 export interface Table {
 	ways: string[];
 	rows: { symbol: string; title: string; of: IdentifiedQuantity[] }[];
 }
 
-/** A column for each way, where every symbol has a figure for each: their titles are alike up to a comma, and then name the way. */
+/**
+ * A column per direction, if every symbol has a value for each. The titles agree up to a comma, followed by the
+ * direction.
+ */
 export function tableOf(quantities: readonly IdentifiedQuantity[]): Table | null {
 	const bySymbol = new Map<string, IdentifiedQuantity[]>();
 	for (const one of quantities) bySymbol.set(one.symbol, [...(bySymbol.get(one.symbol) ?? []), one]);
@@ -58,13 +67,13 @@ export function tableOf(quantities: readonly IdentifiedQuantity[]): Table | null
 	return whole && quantities.every((one) => !one.ci95) ? { ways, rows } : null;
 }
 
-/** A part of a campaign with what its figures are. */
+/** A part of a campaign with its quantities and figures. */
 export interface Part extends CampaignPart {
 	quantities: IdentifiedQuantity[];
 	figures: Identification['figures'];
 }
 
-/** The summary ends with a line for each part; the rest leads. */
+/** The summary ends with a line per part; the remaining text is the lead. */
 export function partsOf({ summary, quantities, figures, parts = [] }: Pick<Identification, 'summary' | 'quantities' | 'figures' | 'parts'>): { lead: string; parts: Part[] } {
 	const lines = summary.split('\n');
 	return {

@@ -4,18 +4,23 @@ import { moment } from '../format/time';
 import { differ } from '../runs/differ';
 import { sayQuantity } from './said';
 
-/** A figure of this run behind those of earlier runs, oldest first; heights from 0, the lowest that any interval reaches, to 1. */
+/**
+ * A quantity of this run after those of earlier runs, oldest first; heights from 0, the lowest end of any interval, to
+ * 1.
+ */
 export interface Trend {
 	of: IdentifiedQuantity;
 	dots: { run: number; at: number; ends: readonly [number, number] }[];
 	/** Every dot in words. */
 	said: string;
-	/** Against the run that is applied to the bench, else the run before, where that has the figure too. */
+	/**
+	 * Change relative to the run that is applied to the bench, else to the run before, if that has the quantity too.
+	 */
 	change: string;
 	apart: boolean | null;
 }
 
-/** What changes are told against. */
+/** The reference of changes. */
 export const against = (earlier: readonly Earlier[]): Earlier | undefined => earlier.find(({ holds }) => holds) ?? earlier[0];
 
 export function trends(run: number, quantities: readonly IdentifiedQuantity[], earlier: readonly Earlier[], scale: (unit: string) => Scale): Trend[] {

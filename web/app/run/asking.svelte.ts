@@ -5,12 +5,15 @@ import { lab } from '../state/lab.svelte';
 import type { Said } from './soFar';
 
 const EVERY_MS = 4000;
-/** A run that takes long to work out is asked less often: a tenth of the daemon's time at most. */
+/** A run with a slow evaluation is requested less often, so that it uses at most a tenth of the daemon's time. */
 const PATIENCE = 10;
-/** What takes longer is told: the answer before is not the last word. */
+/** A slower request is indicated, because the displayed answer may be outdated. */
 const SLOW_MS = 400;
 
-/** What a run says before it is over: the procedure's own figures and how it keeps to the bench's last model, asked for again and again. `null` asks nothing. Call while a component is being set up. */
+/**
+ * Preliminary results of an active run, requested repeatedly: the quantities of the procedure, and the comparison with
+ * the last model of the bench. `null` requests nothing. Call during component initialization.
+ */
 export function askSoFar(running: () => number | null) {
 	let found = $state.raw<Identification | null>(null);
 	let story: Said[] = $state.raw([]);
@@ -31,7 +34,7 @@ export function askSoFar(running: () => number | null) {
 			const begun = performance.now();
 			const slow = setTimeout(() => (busy = true), SLOW_MS);
 			try {
-				// A run without a sample is refused: it is not asked.
+				// The daemon refuses a run without samples, so it is not requested.
 				if ((await api.run(run, abort.signal)).rows > 0) {
 					found = await api.identification(run, abort.signal);
 					beside = await api.beside(run, abort.signal);

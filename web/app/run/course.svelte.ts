@@ -8,13 +8,13 @@ import type { View } from '../plot/gestures';
 import { writeLook } from './follow';
 import { stepsOf } from './planned';
 
-/** Where the plots of a run stand on its page. */
+/** Element id of the plots on the page of a run. */
 export const PLOTS = 'plots';
 
-/** What a run was to do and what it has done so far, step by step. Call while a component is being set up. */
+/** Planned and executed steps of a run. Call during component initialization. */
 export function courseOf(run: () => Run | undefined, live: () => boolean) {
 	const id = $derived(run()?.id ?? null);
-	/** A run that came in as a file has no plan; one of an earlier version may not be planned the same way any more. */
+	/** An imported run has no plan; a run of an earlier version may have another plan now. */
 	const plan = resource(
 		() => (run()?.procedure === 'import' ? null : id),
 		(of, signal) => api.plan(of, signal),
@@ -39,7 +39,7 @@ export function courseOf(run: () => Run | undefined, live: () => boolean) {
 
 export type Course = ReturnType<typeof courseOf>;
 
-/** Shows a stretch of the run in its plots, and brings them into view. */
+/** Shows a time range of the run in its plots, and scrolls them into view. */
 export function show(view: View): void {
 	router.look({ view: writeLook({ follow: false, view }) }, 'box');
 	void reveal(PLOTS);

@@ -1,9 +1,11 @@
 import type { Hand, View } from '../plot/gestures';
 
-/** What a live plot shows: the newest `width_s` seconds, all so far where they are infinite, or a stretch that stands still. */
+/** Time range of a live plot: the newest `width_s` seconds (all if infinite), or a fixed range. */
 export type Look = { follow: true; width_s: number } | { follow: false; view: View | null };
 
-/** The look after a person's hand on the plot. Zooming keeps following with a new width; the others hold still. */
+/**
+ * The range after a gesture on the plot. A zoom continues to follow with a new width; the other gestures fix the range.
+ */
 export function afterHand(look: Look, asked: View | null, hand: Hand): Look {
 	if (asked === null) return { follow: false, view: null };
 	if (look.follow && hand === 'zoom') return { follow: true, width_s: Math.max(0.05, asked[1] - asked[0]) };
@@ -32,14 +34,14 @@ export function readLook(text: string | null, live: boolean): Look {
 	return { follow: false, view: whole ? [from, to] : null };
 }
 
-/** `Nm:3:5,A:all`: looks of plots that are zoomed on their own, by unit. */
+/** `Nm:3:5,A:all`: ranges of plots with their own zoom, by unit. */
 export const writeOwns = (owns: ReadonlyMap<string, string>): string => [...owns].map(([unit, look]) => `${unit}:${look}`).join();
 
 export function readOwns(text: string | null): Map<string, string> {
 	return new Map(Array.from((text ?? '').matchAll(/([^:,]*):([^,]+)/g), ([, unit = '', look = '']) => [unit, look]));
 }
 
-/** `Nm:link torque:limit;A:brake current`: what is hidden in the plots, by unit. Names hold commas. */
+/** `Nm:link torque:limit;A:brake current`: hidden curves and lines of the plots, by unit. Names may contain commas. */
 export const writeOffs = (offs: ReadonlyMap<string, readonly string[]>): string => [...offs].flatMap(([unit, names]) => (names.length > 0 ? [[unit, ...names].join(':')] : [])).join(';');
 
 export function readOffs(text: string | null): Map<string, string[]> {

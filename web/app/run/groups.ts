@@ -3,7 +3,7 @@ import type { Channel } from '../api/types';
 import type { Curve } from '../plot/chart';
 import { curveStyle } from '../plot/colour';
 
-/** Channels that share a unit share a plot. */
+/** Channels with the same unit share a plot. */
 export interface Group {
 	unit: string;
 	title: string;
@@ -12,12 +12,15 @@ export interface Group {
 }
 
 export const COUNTERS = new Set(['time_s', 'segment', 'repeat']);
-/** What the daemon tells beside a run that is on: the torque of the motor, measured and as the bench's last model has it. Small beside what the link carries, so a plot of its own. */
+/**
+ * Motor torque during an active run, measured and as predicted by the bench's last model. It is small compared with the
+ * link torque, so it has its own plot.
+ */
 export const MODEL = 'model';
 export const TOLD = ['motor_torque_nm', 'model_torque_nm'];
-/** Angles by which a stage is moved: some mrad, which the turns of a shaft would make flat lines of. */
+/** Angles of a stage: a few mrad, which the rotation of a shaft would reduce to flat lines. */
 const STAGE = 'stage';
-/** What a unit measures, in the order in which people look at it. */
+/** The quantity of a unit, in the usual order of interest. */
 const QUANTITIES = new Map([
 	['rad/s', 'velocity'],
 	[MODEL, 'motor torque'],
@@ -32,7 +35,7 @@ const QUANTITIES = new Map([
 ]);
 const ORDER = [...QUANTITIES.keys()];
 
-/** `shown`: in which unit a unit is read; the group keeps the unit of its channels. `model`: what the model is called. */
+/** `shown`: the displayed unit of a unit; the group keeps the unit of its channels. `model`: name of the model. */
 export function groupsOf(channels: readonly Channel[], shown = (unit: string) => unit, model = MODEL): Group[] {
 	const byUnit = new Map<string, string[]>();
 	for (const channel of channels) {
@@ -46,7 +49,7 @@ export function groupsOf(channels: readonly Channel[], shown = (unit: string) =>
 
 function makeGroup(unit: string, names: string[], read: (unit: string) => string, model: string): Group {
 	const titles = unit === MODEL ? ['measured', model] : names.map((name) => label(name).title);
-	// Where a stage stands is told by its ways.
+	// The title of the shifts of a stage lists its axes.
 	const title = (names[0]?.startsWith('stage_') && unit !== STAGE ? null : QUANTITIES.get(unit)) ?? titles.join(', ');
 	const shown = unit === MODEL ? 'Nm' : unit === STAGE ? 'rad' : read(unit);
 	const curves = titles.map((title, i) => ({ label: title, unit: shown, mark: 'line' as const, ...curveStyle(i) }));

@@ -1,7 +1,7 @@
 /** [s] */
 const OVER_S = 0.2;
 
-/** Means of a difference over short stretches of time, each at its middle; rows without both count nowhere. */
+/** Means of a difference over short time intervals, each at its middle; rows without both values are ignored. */
 export function meansOf(time: ArrayLike<number | null>, first: ArrayLike<number | null>, second: ArrayLike<number | null>): [number, number][] {
 	const sums = new Map<number, [n: number, sum: number]>();
 	for (let i = 0; i < time.length; i++) {

@@ -16,7 +16,7 @@ it('takes the steps of a run from its journal', () => {
 });
 
 it('lays the plan onto the clock of the run, step by step', () => {
-	// The first step began late and took half a second longer; the second is as planned.
+	// The first step started with a delay and took 0.5 s longer; the second one is as planned.
 	const made = stepsOf([event(0, 0.5, 'a'), event(1, 3, 'b')], 4);
 	const { x, y } = onRunClock(plan, plan.setpoints.time_s, plan.setpoints.motor_velocity_rad_s, made);
 	expect(x).toEqual([0.5, 1.5, 2.5, 3, 4]);

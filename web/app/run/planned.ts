@@ -5,17 +5,17 @@ import type { Scale } from '../format/number';
 import type { BackLine } from '../plot/backdrop';
 import type { View } from '../plot/gestures';
 
-/** A step as the run has made it. */
+/** A step as executed in the run. */
 export interface StepMade {
-	/** Its place in the plan, from 0. */
+	/** Its position in the plan, from 0. */
 	step: number;
 	label: string;
 	at_s: number;
-	/** Where the next one begins, or the run ends. */
+	/** Start of the next step, or end of the run. */
 	to_s: number;
 }
 
-/** The steps of a run in the order in which they began; a step that was repeated after a pause is there twice. */
+/** The steps of a run in the order of their start; a step that was repeated after a pause occurs twice. */
 export function stepsOf(events: readonly Pick<RunEvent, 'kind' | 'at_s' | 'data'>[], end_s: number): StepMade[] {
 	const begun = events.filter(({ kind }) => kind === 'step_started');
 	return begun.map(({ at_s, data }, i) => ({
@@ -26,12 +26,12 @@ export function stepsOf(events: readonly Pick<RunEvent, 'kind' | 'at_s' | 'data'
 	}));
 }
 
-/** [s] A moment alone is shown with so much around it. */
+/** [s] Displayed time on each side of a single time. */
 const AROUND_S = 2;
-/** Of a step so much is shown before and behind it. */
+/** Displayed margin before and after a step, as a fraction of its duration. */
 const MARGIN = 0.05;
 
-/** What is shown of a moment of the run. */
+/** Time range around a time of the run. */
 export const aroundMoment = (at_s: number): View => [at_s - AROUND_S, at_s + AROUND_S];
 
 export function aroundStep({ at_s, to_s }: Pick<StepMade, 'at_s' | 'to_s'>): View {
@@ -42,8 +42,8 @@ export function aroundStep({ at_s, to_s }: Pick<StepMade, 'at_s' | 'to_s'>): Vie
 type Course = { x: number[]; y: number[] };
 
 /**
- * A planned course on the clock of the run: each step from where it began. A step takes as long as it was planned, or until
- * the next one began.
+ * A planned set-point on the clock of the run: each step from its actual start. A step lasts for its planned time, or
+ * until the start of the next one.
  */
 export function onRunClock(plan: Pick<Preview, 'steps'>, time_s: readonly number[], values: readonly number[], made: readonly StepMade[]): Course {
 	const begins = plan.steps.reduce<number[]>((list, { duration_s }) => [...list, list.at(-1)! + duration_s], [0]);
@@ -61,7 +61,7 @@ export function onRunClock(plan: Pick<Preview, 'steps'>, time_s: readonly number
 	return course;
 }
 
-/** Where a course jumps it has two corners at one moment: the value before or after it. */
+/** At a jump a set-point has two corners at one time: the value before or after it. */
 function valueAt(time_s: readonly number[], values: readonly number[], at: number, side: 'before' | 'after'): number {
 	const close = (t: number) => Math.abs(t - at) < 1e-9;
 	const corner = side === 'after' ? time_s.findLastIndex(close) : time_s.findIndex(close);
@@ -72,7 +72,10 @@ function valueAt(time_s: readonly number[], values: readonly number[], at: numbe
 	return values[next - 1]! + share * (values[next]! - values[next - 1]!);
 }
 
-/** What follows a set point of the plan, and the channel in which the run itself keeps what was commanded: then the plan adds nothing. */
+/**
+ * Quantities with a set-point in the plan, each with the channel that records its command. If a run has that channel,
+ * the plan adds nothing.
+ */
 const SET = [
 	['motor_velocity_rad_s', 'velocity_setpoint_rad_s'],
 	['brake_current_a', 'brake_current_command_a'],
@@ -80,7 +83,7 @@ const SET = [
 
 export const SET_POINT = 'set point';
 
-/** Set points of the plan that belong to these channels, in the unit that is shown. */
+/** Set-points of the plan for these channels, in the displayed unit. */
 export function setPointsOf(plan: Preview | undefined, made: readonly StepMade[], names: readonly string[], { factor }: Scale): BackLine[] {
 	if (!plan || made.length === 0) return [];
 	return SET.filter(([name, kept]) => names.includes(name) && !names.includes(kept)).flatMap(([name]) => {
@@ -90,7 +93,10 @@ export function setPointsOf(plan: Preview | undefined, made: readonly StepMade[]
 	});
 }
 
-/** Limits of the bench at the time of the run for these channels, each once. They are of magnitudes; a temperature has only an upper one. */
+/**
+ * Limits of the bench at the time of the run for these channels, each once. They apply to magnitudes; a temperature has
+ * only an upper limit.
+ */
 export function limitsOf({ provenance }: Pick<Run, 'provenance'>, names: readonly string[], { factor, unit }: Scale): BackLine[] {
 	const limits = (provenance['limits'] ?? {}) as Record<string, unknown>;
 	return names.flatMap((name) => {

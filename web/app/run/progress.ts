@@ -1,7 +1,7 @@
 import { countdown } from '../format/time';
 import type { Progress } from '../api/types';
 
-/** The step that is on, from 1: the daemon counts the steps that are done. */
+/** The active step, from 1: the daemon counts finished steps. */
 export function stepOn({ step, steps }: Progress): number {
 	return Math.min(step + 1, steps);
 }

@@ -1,16 +1,16 @@
 import type { IdentifiedQuantity } from '../api/types';
 
-/** What the samples so far say, at one moment of the run. */
+/** Preliminary results at one time of the run. */
 export interface Said {
 	at_s: number;
 	quantities: readonly IdentifiedQuantity[];
 }
 
-/** An interval so many times as wide as before is told. */
+/** Growth of an interval that is reported. */
 const WIDER = 1.5;
 const width = ({ ci95 }: IdentifiedQuantity) => ci95![1]! - ci95![0]!;
 
-/** What has last joined the quantities that the samples decide, or left them, or become less certain, and when. */
+/** The last change of the identified quantities, with its time: a quantity was added, lost, or became less certain. */
 export function changed(story: readonly Said[]): string | null {
 	const known = story.map(({ quantities }) => quantities.filter((one) => one.ci95));
 	for (let i = story.length - 1; i > 0 && known[i - 1]!.length > 0; i--) {
@@ -24,7 +24,7 @@ export function changed(story: readonly Said[]): string | null {
 	return null;
 }
 
-/** How the interval of a quantity has gone: lower and upper end in shares of the height, 0 at the top. */
+/** The interval of a quantity over time: lower and upper end as fractions of the height, 0 at the top. */
 export interface Funnel {
 	x: number;
 	low: number;
@@ -32,8 +32,8 @@ export interface Funnel {
 }
 
 /**
- * The intervals of one quantity over the run so far, on a scale that shows the second half of them whole: the first are as wide as
- * the page.
+ * The intervals of one quantity over the run so far. The scale fits their second half, because the first intervals are
+ * very wide.
  */
 export function funnel(story: readonly Said[], name: string): Funnel[] {
 	const points = story.flatMap(({ at_s, quantities }) => {

@@ -8,16 +8,19 @@ import { resource } from '../state/resource.svelte';
 import { type Look, viewOf } from './follow';
 
 const PIXELS = 1600;
-/** A run is written down every two seconds. */
+/** The daemon stores a run every two seconds. */
 const COMMITTED_MS = 2500;
-/** [s] Less than this is not missed. */
+/** [s] A shorter gap is ignored. */
 const HOLE_S = 0.1;
 
-/** What plots show of a run along time, and the samples for it: from memory while the run is on, else from the store. Call while a component is being set up. */
+/**
+ * The time range of a run's plots and its samples: from memory during the run, else from the store. Call during
+ * component initialization.
+ */
 export function stretchOf(run: () => Run, live: () => boolean, look: () => Look) {
 	const here = $derived(live() && lab.liveRun === run().id && lab.tape !== null);
 	const view: View | null = $derived(viewOf(look(), (here && look().follow ? lab.shown_s : null) ?? 0));
-	/** A stretch that is no longer in memory, or a run that is over, comes from the store. */
+	/** A range that is no longer in memory, or a finished run, is read from the store. */
 	const stored = $derived(!here || (!look().follow && (lab.tape?.first_s ?? Infinity) > (view?.[0] ?? -Infinity) + 0.05));
 	const asked = settle(() => (stored ? JSON.stringify([run().id, look(), live()]) : null), 90);
 	const load = async (from_s: number | undefined, to_s: number | undefined, signal: AbortSignal) => {
@@ -28,7 +31,7 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 		() => asked.value,
 		(_key, signal) => load(view?.[0], view?.[1], signal),
 	);
-	/** What came before the page listened. The store has the last of it two seconds later. */
+	/** Samples before the page connected. The store has the last of them two seconds later. */
 	const missed = $derived.by(() => {
 		const now = look();
 		const first_s = here && now.follow ? (lab.tape?.first_s ?? 0) : 0;
@@ -50,7 +53,7 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 		get view() {
 			return view;
 		},
-		/** The stretch on the screen, once there is one: before, nobody knows where cursors should stand. */
+		/** The visible time range, as soon as there is one: before that, cursors have no position. */
 		get seen(): View | null {
 			if (view) return view;
 			void lab.frames;
@@ -68,7 +71,7 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 			return [...(before.data?.gaps ?? []), ...hole, ...(lab.tape?.gaps ?? [])];
 		},
 		reload: history.reload,
-		/** Time, and then one column for each name. */
+		/** Time, then one column per name. */
 		columns(names: readonly string[]): ArrayLike<number | null>[] {
 			void lab.frames;
 			if (!stored && lab.tape) {

@@ -7,13 +7,13 @@ export interface Course {
 	high: (number | null)[];
 }
 
-/** A channel over time, from a moment of the run on. */
+/** A channel over time, starting at a time of the run. */
 export function courseOf(samples: Samples, channel: string, zero_s = 0): Course | null {
 	const values = samples.channels.find((one) => one.name === channel);
 	return values ? { x: zero_s === 0 ? samples.time_s : samples.time_s.map((t) => t - zero_s), low: values.min, high: values.max } : null;
 }
 
-/** What happened in every one of the runs, by its words, and when it first did. */
+/** Events that occur in every run, by their text, and their first times. */
 export function sharedMoments(runs: readonly (readonly Pick<RunEvent, 'text' | 'at_s' | 'kind'>[])[]): Map<string, number[]> {
 	const first = runs.map((events) => {
 		const times = new Map<string, number>();
@@ -21,11 +21,14 @@ export function sharedMoments(runs: readonly (readonly Pick<RunEvent, 'text' | '
 		return times;
 	});
 	const everywhere = [...(first[0]?.keys() ?? [])].filter((text) => first.every((times) => times.has(text)));
-	// What begins every run aligns nothing that time does not.
+	// An event at the start of every run aligns like time itself.
 	return new Map(everywhere.map((text) => [text, first.map((times) => times.get(text)!)] as const).filter(([, times]) => times.some((at) => at > 0)));
 }
 
-/** The event that was meant by what was typed: itself, or the first that holds these words; `null` for none, `undefined` where there is none. */
+/**
+ * The event for the typed text: an exact match, or the first that contains the text; `null` for no text, `undefined`
+ * without a match.
+ */
 export function momentOf(typed: string, moments: readonly string[]): string | null | undefined {
 	const words = typed.trim().toLowerCase();
 	if (words === '') return null;
@@ -33,8 +36,8 @@ export function momentOf(typed: string, moments: readonly string[]): string | nu
 }
 
 /**
- * All courses on one x, for a plot that has only one: smallest and largest value of each run in each bin, both at the same
- * x, so that a spike is still seen. `null` where a run has nothing.
+ * All courses on one x, for a plot with a single x: minimum and maximum of each run in each bin, both at the same x, so
+ * that a spike stays visible. `null` where a run has no data.
  */
 export function alignCourses(courses: readonly (Course | null)[], most = 500): { x: number[]; columns: (number | null)[][] } {
 	const there = courses.filter((one) => one !== null);
@@ -68,8 +71,8 @@ export function factTable(facts: readonly Record<string, unknown>[]): { name: st
 }
 
 /**
- * The mean of a channel side by side. Runs scatter: they differ where their means lie further apart than `least` and than twice
- * the deviation within any of them.
+ * The mean of a channel side by side. Runs scatter, so two means differ only if their distance exceeds `least` and
+ * twice the deviation within any run.
  */
 export function meanRow(name: string, found: readonly (Pick<ChannelStatistics, 'mean' | 'deviation'> | undefined)[], least: number) {
 	const means = found.flatMap((one) => one?.mean ?? []);
@@ -85,11 +88,11 @@ function flatten(value: unknown, name = ''): [string, string][] {
 	if (value !== null && typeof value === 'object' && !Array.isArray(value)) {
 		return Object.entries(value).flatMap(([key, inner]) => flatten(inner, name ? `${name}.${key}` : key));
 	}
-	// A part of a campaign is its procedure.
+	// A part of a campaign is displayed as its procedure.
 	return [[name, Array.isArray(value) ? value.map((one) => (one as { procedure?: string } | null)?.procedure ?? String(one)).join(', ') : String(value)]];
 }
 
-/** The channels that the address names, in its order; without a name that all runs have, the first torque or current. */
+/** The channels in the address, in its order; without a name that all runs have, the first torque or current. */
 export function chosenChannels(text: string | null, drawable: readonly Channel[]): Channel[] {
 	const named = (text ?? '').split(',').flatMap((name) => drawable.find((one) => one.name === name) ?? []);
 	if (named.length > 0) return [...new Set(named)];

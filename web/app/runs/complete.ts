@@ -1,7 +1,7 @@
-/** The terms of the search, as the daemon understands them. */
+/** The search terms that the daemon supports. */
 const TERMS = ['bench:', 'procedure:', 'kind:', 'state:', 'safe:', 'tag:', 'note:', 'simulated:yes', 'simulated:no', 'after:', 'before:', 'id>', 'rows>', 'duration>'];
 
-/** How the last term of a search may go on; `values`: what is known behind a key. Each is the whole text. */
+/** Possible completions of the last search term; `values`: known values of a key. Each completion is the whole text. */
 export function completions(text: string, values: Record<string, readonly string[]>): string[] {
 	const head = text.slice(0, text.lastIndexOf(' ') + 1);
 	const last = text.slice(head.length);

@@ -1,12 +1,12 @@
 import { change, figure } from '../format/number';
 
-/** A figure that several runs give, each with what is known of its interval. */
+/** A quantity of several runs, each with its known interval. */
 export interface Given {
 	value: number;
 	ci95?: readonly (number | null)[] | null;
 }
 
-/** Change against the base: `+17 %`, or as a number, times `factor`, where the base may be zero. */
+/** Change relative to the base: `+17 %`, or an absolute number times `factor`, if the base may be zero. */
 export function against(base: Given | null, one: Given | null, factor = 1): string {
 	if (!base || !one || base.value === 0) return '';
 	const grown = one.value - base.value;
@@ -19,8 +19,8 @@ function half({ ci95 }: Given): number | null {
 }
 
 /**
- * Whether two of the runs give figures that differ at 95 %: further apart than the two intervals together allow, taken as
- * independent. `null` where fewer than two have an interval.
+ * Whether two of the runs differ at 95 %: their distance exceeds the combined interval, with independent errors. `null`
+ * if fewer than two have an interval.
  */
 export function differ(figures: readonly (Given | null)[]): boolean | null {
 	const known = figures.flatMap((one) => {

@@ -1,7 +1,9 @@
 import type { RunSummary, Table } from '../api/types';
 import { withQuery } from '../state/route';
 
-/** What the list can show of a run beside its number and its state; a person chooses, and the browser remembers. */
+/**
+ * Columns of the list in addition to the number and state of a run. The user selects them, and the browser stores them.
+ */
 export const COLUMNS = ['procedure', 'bench', 'started', 'duration', 'rows', 'safe', 'error', 'change', 'Coulomb', 'note'] as const;
 export type Column = (typeof COLUMNS)[number];
 
@@ -9,13 +11,13 @@ const HIDDEN = 'jointbench.runs.hidden';
 const VIEWS = 'jointbench.runs.views';
 const BASE = 'jointbench.runs.base';
 
-/** Columns that are not shown: as the address says, or as this browser was left; `none` hides nothing. */
+/** Hidden columns: from the address, or from this browser; `none` hides nothing. */
 export function readHidden(address: string | null, kept: Pick<Storage, 'getItem'>): Column[] {
 	const names = (address ?? kept.getItem(HIDDEN) ?? '').split(',');
 	return COLUMNS.filter((one) => names.includes(one));
 }
 
-/** Shows or hides a column and remembers it; what the address is to say. */
+/** Shows or hides a column and stores it. Returns the value for the address. */
 export function toggleColumn(hidden: readonly Column[], column: Column, kept: Pick<Storage, 'setItem'>): string {
 	const next = hidden.includes(column) ? hidden.filter((one) => one !== column) : [...hidden, column];
 	const text = next.join(',') || 'none';
@@ -23,41 +25,41 @@ export function toggleColumn(hidden: readonly Column[], column: Column, kept: Pi
 	return text;
 }
 
-/** The run that the others are held against: as the address says, or as this browser was left; `none` for none. */
+/** The base run for comparisons: from the address, or from this browser; `none` for none. */
 export function readBase(address: string | null, kept: Pick<Storage, 'getItem'>): number | null {
 	const id = Number(address ?? kept.getItem(BASE));
 	return Number.isInteger(id) && id > 0 ? id : null;
 }
 
-/** Makes a run the base, or no longer, and remembers it; what the address is to say. */
+/** Selects or clears the base run and stores it. Returns the value for the address. */
 export function toggleBase(base: number | null, id: number, kept: Pick<Storage, 'setItem'>): string {
 	const text = base === id ? 'none' : String(id);
 	kept.setItem(BASE, text);
 	return text;
 }
 
-/** By what the list can be ordered, as the daemon calls it; figures begin with the largest. */
+/** Sort keys of the list under the daemon's names; numbers start with the largest. */
 const SORTS: Partial<Record<Column | 'state', string>> = { state: 'state', procedure: 'procedure', bench: 'bench', started: 'started', duration: '-duration', rows: '-rows', safe: 'safe', error: '-error', Coulomb: '-coulomb' };
 const turned = (sort: string) => (sort.startsWith('-') ? sort.slice(1) : `-${sort}`);
 
-/** How a column orders the list at the moment; `null` where it cannot. */
+/** Present sort order of a column; `null` if it cannot be sorted. */
 export function sorted(sort: string | null, column: Column | 'state'): 'ascending' | 'descending' | 'none' | null {
 	const own = SORTS[column];
 	if (own === undefined) return null;
 	return sort === own || sort === turned(own) ? (sort.startsWith('-') ? 'descending' : 'ascending') : 'none';
 }
 
-/** A column chosen once more: its own order, then the other way round, then the newest first again. */
+/** Order after another click on a column: its own order, then reversed, then newest first. */
 export function nextSort(sort: string | null, column: Column | 'state'): string | null {
 	const own = SORTS[column]!;
 	return sort === own ? turned(own) : sort === turned(own) ? null : own;
 }
 
-/** What makes a view of the list, as an address: what is searched for, in which order, against which run, and which columns. */
+/** A view of the list as an address: search, order, base run and columns. */
 export const viewOf = (search: string, sort: string | null, base: number | null, hidden: readonly Column[]): string =>
 	withQuery(new URLSearchParams(), { search, sort, base: base ?? 'none', hide: hidden.join(',') || 'none' });
 
-/** All that an address of a view sets, for the router. */
+/** All settings of a view's address, for the router. */
 export function ofView(view: string): Record<string, string | null> {
 	const query = new URLSearchParams(view);
 	return Object.fromEntries(['search', 'sort', 'base', 'hide'].map((key) => [key, query.get(key)]));
@@ -75,7 +77,7 @@ export function viewName(view: string): string {
 	].join(' · ');
 }
 
-/** Views that were kept, in the order in which they were. Earlier versions kept the search alone. */
+/** Saved views, in the order of saving. Earlier versions saved only the search. */
 export const readViews = (kept: Pick<Storage, 'getItem'>): string[] =>
 	(kept.getItem(VIEWS) ?? '').split('\n').filter(Boolean).map((line) => (line.startsWith('?') ? line : viewOf(line, null, null, [])));
 

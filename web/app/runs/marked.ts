@@ -1,4 +1,4 @@
-/** Runs that are compared, as the address carries them: `compare=12,9`. More than six curves cannot be told apart. */
+/** Compared runs, as in the address: `compare=12,9`. More than six curves are not distinguishable. */
 export const MOST = 6;
 export const TO_COMPARE = `2 to ${MOST} runs can be compared`;
 
@@ -7,7 +7,7 @@ export function readMarked(text: string | null): number[] {
 	return [...new Set(ids.filter((id) => Number.isInteger(id) && id > 0))].slice(0, MOST);
 }
 
-/** The first is the base, which the others are held against. */
+/** The first run is the base of the comparison. */
 export const withBase = (marked: readonly number[], id: number): number[] => [id, ...marked.filter((one) => one !== id)];
 
 export function toggleMarked(marked: readonly number[], id: number): number[] {
@@ -15,5 +15,5 @@ export function toggleMarked(marked: readonly number[], id: number): number[] {
 	return marked.length < MOST ? [...marked, id] : [...marked];
 }
 
-/** The workbench with one model of all of them; the first keeps it. */
+/** The workbench with one model of all runs; the first run stores it. */
 export const together = ([first, ...more]: readonly number[]): string => `/workbench/${first}${more.length ? `?more=${more.join(',')}` : ''}`;

@@ -24,7 +24,7 @@ it('lays a quantity over runs with its intervals, each bench by itself', () => {
 	expect(figure.x.names).toEqual(['#3', '#4', '#6']);
 	expect(figure.series.map(({ label, x, y }) => [label, x, y])).toEqual([['a', [0, 2], [0.1, 0.3]], ['b', [1], [0.2]]]);
 	expect(figure.series[0]?.band).toEqual([[0.09, 0.11], [0.2, 0.4]]);
-	// Without an interval there is nothing to draw beside the point.
+	// Without an interval, the band has zero height.
 	expect(figure.series[1]?.band).toEqual([[0.2, 0.2]]);
 });
 

@@ -7,18 +7,18 @@ export const AXES = ['run', 'time', 'temperature', 'bench', 'tag'] as const;
 export type TrendAxis = (typeof AXES)[number];
 
 type TrendRun = Trends['runs'][number];
-/** So many runs can be named along an axis. */
+/** Largest number of runs that can be named along an axis. */
 const NAMED = 30;
 
 export interface Trended {
 	name: string;
 	title: string;
 	unit: string;
-	/** Runs that have it. */
+	/** Number of runs with this quantity. */
 	n: number;
 }
 
-/** Every quantity that at least one run has, the most frequent first. */
+/** Every quantity of at least one run, the most frequent first. */
 export function quantitiesOf({ runs }: Trends): Trended[] {
 	const found = new Map<string, Trended>();
 	for (const { quantities } of runs) {
@@ -34,7 +34,7 @@ interface Along {
 	label: string;
 	unit: string;
 	names?: string[];
-	/** Where a run lies; `null` where it does not. */
+	/** Position of a run; `null` without a position. */
 	at: (one: TrendRun, i: number) => number | null;
 }
 
@@ -53,7 +53,9 @@ function along(axis: TrendAxis, runs: readonly TrendRun[]): Along {
 	return { label: `time since ${runs[0] ? moment(runs[0].created_at) : ''}`, unit, at: (one) => (seconds(one) - first) / size };
 }
 
-/** A quantity over runs with its intervals, each bench by itself; `null` where no run has it at such a place. */
+/**
+ * A quantity over runs with its intervals, one series per bench; `null` if no run has both the quantity and a position.
+ */
 export function trendFigure({ runs: all }: Trends, quantity: string, axis: TrendAxis, scale: (unit: string) => Scale): Figure | null {
 	const runs = all.filter(({ quantities }) => quantities.some(({ name }) => name === quantity));
 	const { at, ...x } = along(axis, runs);

@@ -2,7 +2,7 @@ import type { Bench } from '../api/types';
 import { lab } from './lab.svelte';
 import { role } from './role.svelte';
 
-/** Why nothing can be started on a bench at the moment, in words. */
+/** Why nothing can be started on a bench at present, in words. */
 export function barred({ blocked, run }: Bench): string | null {
 	if (role.observing) return role.barred;
 	if (lab.lost) return 'no contact with the daemon';

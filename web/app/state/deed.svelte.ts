@@ -1,6 +1,6 @@
 import { type Refusal, asRefusal } from '../api/problem';
 
-/** What a person does: one thing at a time, and why the last was refused. */
+/** An action of the user: one at a time, with the reason of the last refusal. */
 export function deed() {
 	let busy = $state(false);
 	let error: Refusal | null = $state.raw(null);

@@ -1,11 +1,11 @@
 import { keepToken, token } from '../api/token';
 
-/** The daemon wants a token that it was not given, or does not know the one it was given. Its page says so where it asks for one. */
+/** The daemon requires a token, or refused the present one. Its page contains a mark if a token is required. */
 class Entry {
 	wanted = $state(!!globalThis.document && 'token' in document.documentElement.dataset && !token());
 	private waiting: (() => void)[] = [];
 
-	/** Asks a person for another token, and waits for it. */
+	/** Asks the user for another token and waits for it. */
 	ask(): Promise<void> {
 		this.wanted = true;
 		return new Promise((go) => this.waiting.push(go));

@@ -1,10 +1,10 @@
 import { untrack } from 'svelte';
 
-/** One map of keys for the whole page. The help sheet is drawn from it, so it cannot tell of a key that does nothing. */
+/** One map of keys for the whole page. The help sheet is drawn from it, so it lists only existing keys. */
 export interface Key {
-	/** As `KeyboardEvent.key` gives it. */
+	/** The value of `KeyboardEvent.key`. */
 	key: string;
-	/** What it does, for the help sheet. */
+	/** Description for the help sheet. */
 	does: string;
 	run: () => void;
 }
@@ -12,7 +12,7 @@ export interface Key {
 class Keys {
 	groups: { name: string; keys: Key[] }[] = $state.raw([]);
 
-	/** Adds a group until the returned function is called. A later group wins over an earlier one. */
+	/** Adds a group until the returned function is called. A later group has priority over an earlier one. */
 	bind(name: string, keys: Key[]): () => void {
 		const group = { name, keys };
 		this.groups = [...untrack(() => this.groups), group];
@@ -35,11 +35,11 @@ class Keys {
 
 function isTyping(target: EventTarget | null): boolean {
 	const element = target instanceof HTMLElement ? target : null;
-	// A box to tick takes no letters; in a form with a name of its own, such as an editor, all keys are its own.
+	// A checkbox receives no letters; a form with its own name, such as an editor, receives all keys.
 	return !!element && (element.isContentEditable || element.closest('form[aria-label]') !== null || element.matches('textarea, select, input:not([type=checkbox], [type=radio], [type=range])'));
 }
 
-/** Space is its own key there. */
+/** These elements use Space themselves. */
 const isPressed = (target: EventTarget | null) => target instanceof HTMLElement && target.matches('button, summary, input');
 
 export const keys = new Keys();

@@ -9,51 +9,54 @@ import { renewed } from './benches';
 import { entry } from './entry.svelte';
 import { role } from './role.svelte';
 
-/** With nothing heard for so long, the page asks. */
+/** After this time without a message the page sends a request. */
 const QUIET_MS = 1500;
-/** Older than this is no contact. */
+/** After this time without a message the contact is lost. */
 export const STALE_MS = 4000;
 
 const calm = matchMedia('(prefers-reduced-motion: reduce)');
 
-/** What the daemon last said: the one state that every page draws. */
+/** The last state from the daemon, which all pages display. */
 class LabState {
 	benches: Bench[] | null = $state.raw(null);
 	progress: Record<number, Progress> = $state({});
 	runStates: Record<number, RunState> = $state({});
 	events: RunEvent[] = $state.raw([]);
-	/** Run that `events` and `tape` belong to. */
+	/** The run of `events` and `tape`. */
 	liveRun: number | null = $state(null);
 	channels: Channel[] = $state.raw([]);
-	/** Raised with every frame, for plots to redraw. */
+	/** Incremented with every frame, so that plots redraw. */
 	frames = $state(0);
 	dropped = $state(0);
-	/** Raised when a model version was made anywhere, or the verdict of a run. */
+	/** Incremented when any model version or verdict of a run changes. */
 	models = $state(0);
-	/** Counts what has become of users' effects, so that diagnoses that may suggest them are asked for again. */
+	/** Incremented when a user's effect changes, so that diagnoses that may suggest it are requested again. */
 	effects = $state(0);
-	/** Raised when an autopilot made a step or ended. */
+	/** Incremented when an autopilot makes a step or ends. */
 	autopilots = $state(0);
 	line = $state(false);
 	heard_ms = $state(performance.now());
 	now_ms = $state(performance.now());
-	/** Samples of the run that is on. The columns grow in place; `frames` tells of it. */
+	/** Samples of the active run. The columns grow in place; `frames` signals changes. */
 	tape: Tape | null = $state.raw(null);
-	/** Where plots end that follow the run [s]. */
+	/** End time of plots that follow the run [s]. */
 	shown_s: number | null = $state(null);
 
-	/** The bench that the pages are about: as the address says, or the run that is looked at, or a person. */
+	/** The bench of the pages: from the address, from the displayed run, or chosen by the user. */
 	chosen: string | null = $state(null);
 	bench: Bench | null = $derived(this.benches?.find((bench) => bench.name === this.chosen) ?? this.benches?.[0] ?? null);
-	/** Milliseconds since the daemon was last heard. */
+	/** Milliseconds since the last message of the daemon. */
 	silence_ms = $derived(Math.max(0, this.now_ms - this.heard_ms));
 	lost = $derived(!this.line || this.silence_ms > STALE_MS);
 
-	/** When the daemon told of a bench, and when samples last came: what is shown of them is as old as that, whatever page was looked at since. */
+	/**
+	 * Times of the last report on a bench and of the last samples. They give the age of the displayed data, on every
+	 * page.
+	 */
 	readonly told_ms = new WeakMap<Bench, number>();
 	framed_ms = 0;
 
-	/** A bench as the daemon has just told of it. */
+	/** Stores a bench from a message of the daemon. */
 	put(bench: Bench): void {
 		this.told_ms.set(bench, performance.now());
 		this.benches = renewed(this.benches ?? [], bench);
@@ -91,7 +94,7 @@ class LabState {
 			for (const bench of benches) this.told_ms.set(bench, this.heard_ms);
 			this.benches = benches;
 		} catch (failure) {
-			// Silence is shown by its age.
+			// The age of the data shows a missing answer.
 			entry.wanted ||= asRefusal(failure).status === 401;
 		}
 		this.asking = false;
@@ -105,7 +108,7 @@ class LabState {
 	private setLine(up: boolean): void {
 		this.line = up;
 		if (!up) return;
-		// The daemon may have come back without the run that was on: only what it says from now on counts.
+		// The daemon may have restarted without the active run, so the former states are discarded.
 		this.runStates = {};
 		this.progress = {};
 		void this.ask();
@@ -163,7 +166,7 @@ class LabState {
 	private fresh = false;
 	private drawn_ms = 0;
 
-	/** However many frames come, plots are drawn once for each picture of the screen, and not at all in a hidden tab. */
+	/** Plots are drawn once per image of the screen, at any rate of frames, and never in a hidden tab. */
 	private takeFrame(frame: Frame): void {
 		this.hear();
 		this.framed_ms = this.heard_ms;
@@ -176,7 +179,10 @@ class LabState {
 		requestAnimationFrame(this.draw);
 	}
 
-	/** Goes on between two frames until the newest sample is shown. Where less motion is asked for, plots move with the frames. */
+	/**
+	 * Continues between two frames until the newest sample is displayed. With reduced motion, plots move only with the
+	 * frames.
+	 */
 	private readonly draw = (now_ms: number): void => {
 		const newest_s = this.tape?.last_s ?? null;
 		const passed_ms = calm.matches ? Infinity : Math.max(0, now_ms - this.drawn_ms);

@@ -6,13 +6,13 @@ export interface Resource<T> {
 	readonly error: Refusal | null;
 	readonly loading: boolean;
 	reload: () => void;
-	/** Puts a newer value in place, as the answer of a change. */
+	/** Stores a newer value, such as the answer to a change. */
 	put: (value: T) => void;
 }
 
 /**
- * What a page asks the daemon for. Asked again when the key changes; the former answer stays on the screen until the
- * next is there, so that nothing jumps. A `null` key asks nothing.
+ * Data that a page requests from the daemon. It is requested again when the key changes. The former answer stays
+ * visible until the next one arrives, so that the layout is stable. A `null` key requests nothing.
  */
 export function resource<K, T>(key: () => K | null, load: (key: K, signal: AbortSignal) => Promise<T>): Resource<T> {
 	let data: T | undefined = $state.raw();

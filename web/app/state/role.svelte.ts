@@ -1,12 +1,13 @@
 const KEPT = 'jointbench.role';
 
 /**
- * A lock against stray clicks, kept by the browser: an observer sees everything and can stop, but starts and changes
- * nothing. It is no access control; the daemon's tokens are, and one that only reads makes an observer of whoever has it.
+ * A protection against accidental clicks, stored in the browser: an observer sees everything and can stop, but cannot
+ * start or change anything. Access control is the task of the daemon's tokens. A read-only token makes its user an
+ * observer.
  */
 class Role {
 	private chosen = $state(globalThis.localStorage?.getItem(KEPT) === 'observer');
-	/** The token only reads. */
+	/** The token is read-only. */
 	reads = $state(false);
 	observing = $derived(this.reads || this.chosen);
 

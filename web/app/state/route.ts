@@ -1,13 +1,13 @@
-/** The address is the view: which page, of what, and how it is set. Pure; the router holds the present one. */
+/** The address defines the view: page, object and settings. Pure functions; the router holds the present address. */
 export type Page = 'bench' | 'live' | 'run' | 'runs' | 'workbench' | 'alignment' | 'log' | 'settings' | 'lost';
 
-/** The pages that are a press away, in the order of their keys. */
+/** The pages with a tab, in the order of their keys. */
 export const TABS = ['Bench', 'Live', 'Workbench', 'Runs', 'Alignment', 'Log', 'Settings'];
 export const hrefOf = (tab: string): string => (tab === TABS[0] ? '/' : `/${tab.toLowerCase()}`);
 
 export interface Route {
 	page: Page;
-	/** Run of the page, where it has one. */
+	/** Run of the page, if it has one. */
 	run: number | null;
 }
 
@@ -23,7 +23,7 @@ export function parseRoute(path: string): Route {
 	return { page: 'lost', run: null };
 }
 
-/** The query with some values set; `null` and empty take a value away, so that addresses stay short. */
+/** The query with changed values; `null` or an empty value removes a key, so that addresses stay short. */
 export function withQuery(query: URLSearchParams, changes: Record<string, string | number | null>): string {
 	const next = new URLSearchParams(query);
 	for (const [key, value] of Object.entries(changes)) {

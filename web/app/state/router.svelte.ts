@@ -1,11 +1,14 @@
 import type { Hand } from '../plot/gestures';
 import { type Route, parseRoute, withQuery } from './route';
 
-/** A browser takes 200 changes of the address in ten seconds; a wheel makes more. The last one of a while is enough. */
+/**
+ * A browser accepts 200 changes of the address in ten seconds; a wheel makes more. Only the last change in this time is
+ * written.
+ */
 const REST_MS = 120;
-/** A wheel that rests so long has begun anew. */
+/** After this pause, a wheel movement is a new gesture. */
 const PAUSE_MS = 800;
-/** In the browser's history: an entry that a plot has made. */
+/** Marks an entry in the browser's history that a plot has made. */
 const STEP = 'look';
 
 class Router {
@@ -23,7 +26,7 @@ class Router {
 		document.addEventListener('click', (click) => this.follow(click));
 	}
 
-	/** Goes to an address of the dashboard. */
+	/** Opens an address of the dashboard. */
 	go(address: string, how: 'push' | 'replace' = 'push'): void {
 		this.write();
 		if (how === 'push') history.pushState(null, '', address);
@@ -31,7 +34,7 @@ class Router {
 		this.read();
 	}
 
-	/** Changes how the present view is set. */
+	/** Changes settings of the present view. */
 	set(changes: Record<string, string | number | null>, how: 'push' | 'replace' = 'replace'): void {
 		const next = withQuery(this.query, changes);
 		if (next === this.search) return;
@@ -44,7 +47,10 @@ class Router {
 
 	private moved_ms = Number.NEGATIVE_INFINITY;
 
-	/** Changes what a plot shows. What one hand does at a time is a step in the browser's history, and a double click takes one back. */
+	/**
+	 * Changes the range of a plot. Each gesture is one step in the browser's history, and a double click returns one
+	 * step.
+	 */
 	look(changes: Record<string, string | null>, hand: Hand): void {
 		if (hand === 'back' && history.state === STEP) return history.back();
 		const goes_on = hand !== 'box' && performance.now() - this.moved_ms < PAUSE_MS;
@@ -56,13 +62,13 @@ class Router {
 		this.set(changes);
 	}
 
-	/** A double click leads no further back than here. */
+	/** A double click returns at most to this point. */
 	root(): void {
 		this.write();
 		history.replaceState(null, '');
 	}
 
-	/** The view as it is becomes the address. */
+	/** Writes the present view to the address. */
 	private write(): void {
 		clearTimeout(this.late);
 		this.late = undefined;
@@ -80,7 +86,7 @@ class Router {
 		if (left !== this.path) scrollTo(0, 0);
 	}
 
-	/** Ordinary links stay ordinary links: new tab, copy address, download all work. */
+	/** Ordinary links keep all browser functions: new tab, copy address, download. */
 	private follow(click: MouseEvent): void {
 		if (click.defaultPrevented || click.button !== 0 || click.metaKey || click.ctrlKey || click.shiftKey) return;
 		const link = (click.target as Element | null)?.closest?.('a');

@@ -7,7 +7,10 @@ import { router } from './router.svelte';
 const KEPT = 'jointbench.speed';
 const ANGLE = 'jointbench.angle';
 
-/** In which units speeds and angles are read: as the address says, or as this browser was left. What is sent and stored stays in rad/s and rad. */
+/**
+ * Display units of speeds and angles: from the address, or from this browser. Sent and stored values stay in rad/s and
+ * rad.
+ */
 class Speed {
 	private kept = $state(localStorage.getItem(KEPT));
 	rpm = $derived((router.query.get('speed') ?? this.kept) === 'rpm');
@@ -29,12 +32,12 @@ class Speed {
 		return unit === 'rad/s' ? speedScale(unit, this.rpm) : angleScale(unit, this.angle);
 	}
 
-	/** A sentence with its speeds in the unit that is shown. */
+	/** A sentence with its speeds in the displayed unit. */
 	said(sentence: string): string {
 		return spokenSpeeds(sentence, this.rpm);
 	}
 
-	/** The title of an axis in the unit that is shown. */
+	/** The title of an axis in the displayed unit. */
 	title(column: string, unit?: string | null): string {
 		return axisTitle(column, this.scale(label(column, unit).unit).unit);
 	}

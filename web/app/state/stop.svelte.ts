@@ -1,19 +1,19 @@
 import { api } from '../api/client';
 import { asRefusal } from '../api/problem';
 
-/** A software stop that is not acknowledged within this time sends people to the hardware stop. */
+/** If a software stop is not acknowledged within this time, the page refers users to the hardware stop. */
 export const PATIENCE_MS = 300;
 const AGAIN_MS = 400;
 
 class SoftwareStop {
-	/** Time from the press to the daemon's word that the bench has taken it. */
+	/** Time from the press to the daemon's message that the bench has accepted the stop. */
 	acknowledged_ms: number | null = $state(null);
-	/** Nobody has acknowledged in time: the page says so, as large as it can. */
+	/** No acknowledgement in time: the page shows a full-size warning. */
 	overdue = $state(false);
 	pressed = $state(false);
 	fault: string | null = $state(null);
 
-	/** Without a question. Tries again until somebody answers or the person closes the warning. */
+	/** Stops without a confirmation dialog. Retries until the daemon answers or the user closes the warning. */
 	async press(bench: string): Promise<void> {
 		const begin = performance.now();
 		this.acknowledged_ms = null;
@@ -23,7 +23,7 @@ class SoftwareStop {
 		while (this.pressed) {
 			try {
 				await api.stopBench(bench);
-				// The page may have been busy when the answer came.
+				// The page may have been busy when the answer arrived.
 				const [answer] = performance.getEntriesByType('resource').filter((one) => one.startTime >= begin && one.name.endsWith('/stop')).slice(-1);
 				const end = answer instanceof PerformanceResourceTiming ? answer.responseEnd : performance.now();
 				this.acknowledged_ms = end - begin;
@@ -37,7 +37,7 @@ class SoftwareStop {
 		clearTimeout(late);
 	}
 
-	/** There is nobody to send the stop to. */
+	/** No daemon or bench can receive the stop. */
 	refuse(why: string): void {
 		this.fault = why;
 		this.acknowledged_ms = null;

@@ -1,19 +1,19 @@
-/** How soon the second press of Esc has to follow the first. */
+/** Longest time between two presses of Esc. */
 export const TWICE_MS = 900;
 
-/** What a key asks for: the stop, a second Esc, or nothing. */
+/** Meaning of a key: stop, a request for a second Esc, or none. */
 export type StopKey = 'stop' | 'again' | null;
 
 type Press = Pick<KeyboardEvent, 'key' | 'code' | 'ctrlKey' | 'shiftKey' | 'repeat' | 'timeStamp'>;
 
 /**
- * The software stop by keyboard. Ctrl + Shift + Space always stops: typing cannot produce this chord. Esc twice stops only
- * while the bench is active, and only where neither press leaves a field or closes a menu or dialog.
+ * The software stop by keyboard. Ctrl + Shift + Space always stops, because typing cannot produce this chord. Esc twice
+ * stops only while the bench is active, and only if neither press leaves a field or closes a menu or dialog.
  */
 export class StopKeys {
 	#first_ms = -Infinity;
 
-	/** `active`: a run or motion is on. `closes`: Esc has a meaning of its own where it is pressed. */
+	/** `active`: the bench runs or moves. `closes`: Esc has another function at its target. */
 	press(event: Press, active: boolean, closes: boolean): StopKey {
 		if (event.repeat) return null;
 		if (event.code === 'Space' && event.ctrlKey && event.shiftKey) return 'stop';
@@ -30,7 +30,7 @@ export class StopKeys {
 /** Fields, and elements that handle Esc themselves (`data-escape`). */
 const OWN_ESCAPE = 'input, textarea, select, [contenteditable], form[aria-label] *, button[data-escape], details[open][data-escape] *';
 
-/** Whether Esc pressed at `target` leaves a field, or closes a menu or dialog. */
+/** Whether Esc at `target` leaves a field, or closes a menu or dialog. */
 export function escapeCloses(target: EventTarget | null): boolean {
 	return (target instanceof Element && target.closest(OWN_ESCAPE) !== null) || document.querySelector('dialog[open]') !== null;
 }

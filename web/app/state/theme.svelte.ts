@@ -9,7 +9,7 @@ function read(): Theme {
 	return dark.matches ? 'dark' : 'light';
 }
 
-/** Follows the system until a person chooses. */
+/** Follows the system until the user selects a theme. */
 class ThemeState {
 	now: Theme = $state(read());
 
@@ -24,7 +24,7 @@ class ThemeState {
 		this.put(next);
 	}
 
-	/** The style sheet first: canvases read their colours from it as soon as the state changes. */
+	/** Changes the style sheet first, because canvases read their colours from it as soon as the state changes. */
 	private put(next: Theme): void {
 		document.documentElement.dataset.theme = next;
 		this.now = next;

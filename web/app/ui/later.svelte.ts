@@ -3,14 +3,14 @@ import { type Refusal, asRefusal } from '../api/problem';
 
 export interface Later<P extends Record<string, unknown>> {
 	readonly part: Component<P> | null;
-	/** Why it has not come; `reload` asks again. */
+	/** Why loading failed; `reload` tries again. */
 	readonly error: Refusal | null;
 	reload: () => void;
-	/** Asks for it, unless it is there. */
+	/** Loads it, if it is not loaded. */
 	want: () => void;
 }
 
-/** A part of the dashboard whose script comes when somebody wants it. Call once for each part, outside of components. */
+/** A part of the dashboard whose script is loaded on demand. Call once for each part, outside of components. */
 export function later<P extends Record<string, unknown>>(load: () => Promise<{ default: Component<P> }>): Later<P> {
 	let came: Component<P> | null = $state.raw(null);
 	let refused: Refusal | null = $state.raw(null);

@@ -1,6 +1,9 @@
 import { tick } from 'svelte';
 
-/** Brings what a press has made into view, where it is not there already, and takes the focus to it, so that it is read out. At once: a gliding page loses its aim where more is drawn meanwhile. */
+/**
+ * Scrolls the result of an action into view, if necessary, and moves the focus to it, so that a screen reader reads it.
+ * Scrolls without animation, because content that loads meanwhile would change the target.
+ */
 export async function reveal(id: string): Promise<void> {
 	await tick();
 	const node = document.getElementById(id);

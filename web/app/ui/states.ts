@@ -1,6 +1,6 @@
 export type Mood = 'good' | 'busy' | 'warn' | 'bad' | 'calm';
 
-/** Every state as word, icon and colour; a state that is not known here is still said. */
+/** Every state as word, icon and colour; an unknown state is displayed as a word. */
 const STATES: Record<string, { word: string; icon: string; mood: Mood }> = {
 	idle: { word: 'IDLE', icon: '○', mood: 'good' },
 	queued: { word: 'QUEUED', icon: '◌', mood: 'calm' },

@@ -6,7 +6,7 @@ import { router } from '../state/router.svelte';
 
 const named = () => router.query.get('table')?.split(',').filter((one) => one !== '') ?? [];
 
-/** Plots that are shown as tables: the address names them. */
+/** Plots that are displayed as tables; the address stores their names. */
 export const isTable = (file: string | undefined): boolean => file !== undefined && named().includes(file);
 
 export function turnItem(file: string | undefined) {
@@ -15,10 +15,10 @@ export function turnItem(file: string | undefined) {
 	return { name: table ? 'View as plot' : 'View as table', run: turn };
 }
 
-/** Off the loopback and without TLS a browser keeps its clipboard to itself. */
+/** Without loopback or TLS, a browser blocks access to its clipboard. */
 export const linkItems = () => (navigator.clipboard ? [{ name: 'Copy the link to this view', run: () => void navigator.clipboard.writeText(location.href) }] : []);
 
-/** `host`: what is drawn, while it is. */
+/** `host`: the drawing, while it is displayed. */
 export const takeItems = (title: string, file: string, host: Element | false | undefined, shown: () => Table) => [
 	...(host
 		? [

@@ -9,7 +9,7 @@ it('draws the joint region of two parameters, the strongest pair first', () => {
 	const found = ellipses(parameters, [{ first: 'e.a', second: 'e.b', correlation: 0.5 }, { first: 'e.b', second: 'e.a', correlation: -0.95 }]);
 	expect(found.map(({ correlation }) => correlation)).toEqual([-0.95, 0.5]);
 	const { outline } = found[0]!;
-	// The joint region reaches a quarter further than the interval of each alone, and lies along the falling diagonal.
+	// The joint region is 25 % wider than each single interval and is along the falling diagonal.
 	expect(Math.max(...outline.map(([x]) => x))).toBeCloseTo(1.249, 3);
 	expect(Math.max(...outline.map(([, y]) => y))).toBeCloseTo(1.249, 2);
 	const [, y] = outline.reduce((right, one) => (one[0] > right[0] ? one : right));

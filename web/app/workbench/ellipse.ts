@@ -1,6 +1,6 @@
 import type { Parameter, TradeOff } from '../api/types';
 
-/** Two parameters that trade off against each other, with the region in which both lie together. */
+/** Two parameters with a trade-off, and their joint region. */
 export interface Ellipse {
 	first: Parameter;
 	second: Parameter;
@@ -9,7 +9,7 @@ export interface Ellipse {
 	outline: readonly (readonly [x: number, y: number])[];
 }
 
-/** χ² with two degrees of freedom at 95 %, against 1.96 of each parameter alone. */
+/** χ² with two degrees of freedom at 95 %, relative to 1.96 for a single parameter. */
 const JOINT = Math.sqrt(-2 * Math.log(0.05)) / 1.959964;
 const POINTS = 72;
 
@@ -25,7 +25,7 @@ export function ellipses(parameters: readonly Parameter[], tradeOffs: readonly T
 		});
 }
 
-/** Half of the interval of a parameter; NaN where the data sets no bound. */
+/** Half of the interval of a parameter; NaN if the data sets no bound. */
 export const half = ({ ci95: [low, high] }: Parameter): number => (low == null || high == null ? Number.NaN : (high - low) / 2);
 
 function outline(correlation: number): [number, number][] {

@@ -1,6 +1,6 @@
 import type { Exclusion, Model, ResidualSet } from '../api/types';
 
-/** Stretches of time that hold the chosen points and no others, since the first sample. */
+/** Time ranges that contain the selected points and no others, since the first sample. */
 export function stretchesOf(set: ResidualSet, chosen: Uint8Array, each_s: number): { from_s: number; to_s: number; points: number }[] {
 	const time = set.axes.find((axis) => axis.name === 'time_s')?.values ?? [];
 	const order = time.map((_, i) => i).sort((a, b) => time[a]! - time[b]!);
@@ -20,7 +20,7 @@ export function stretchesOf(set: ResidualSet, chosen: Uint8Array, each_s: number
 	return stretches;
 }
 
-/** How long a stretch of the run one point stands for. */
+/** Duration of the run that one point represents. */
 export function pointLength_s({ fit: { preparation } }: Model): number {
 	return preparation.chunk_s ?? preparation.decimation / preparation.sample_rate_hz;
 }
@@ -31,7 +31,7 @@ export interface Reason {
 	seconds: number;
 }
 
-/** What is excluded, by its reasons. */
+/** The exclusions, grouped by reason. */
 export function reasonsOf(excluded: readonly Exclusion[]): Reason[] {
 	const all = new Map<string, Reason>();
 	for (const { reason, from_s, to_s } of excluded) {

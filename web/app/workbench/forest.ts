@@ -3,19 +3,19 @@ import type { Parameter, TradeOff } from '../api/types';
 /** A parameter on a scale of its own value: 0 is zero, 1 is the estimate. */
 export interface Row {
 	parameter: Parameter;
-	/** Ends of the interval in multiples of the value; `null` where the data gives none. */
+	/** Ends of the interval in multiples of the value; `null` if the data gives none. */
 	interval: [number, number] | null;
-	/** What a narrow interval is drawn wider by: a power of ten. */
+	/** Magnification of a narrow interval: a power of ten. */
 	zoom: number;
 	flags: string[];
 }
 
 const SAID: Partial<Record<Parameter['state'], string>> = { at_bound: 'at its bound', impossible: 'contradicts physics', unidentified: 'not decided by this data' };
 
-/** Pairs that the data can hardly tell apart are flagged from this correlation on. */
+/** Correlation from which two parameters are flagged as a trade-off. */
 const TRADING = 0.9;
 
-/** As far from the estimate as the scale goes, in multiples of it. */
+/** Largest distance from the estimate on the scale, in multiples of it. */
 export const AROUND = 1.3;
 
 export function forest(parameters: readonly Parameter[], tradeOffs: readonly TradeOff[] = []): Row[] {
@@ -30,12 +30,12 @@ export function forest(parameters: readonly Parameter[], tradeOffs: readonly Tra
 			flags.push(`ρ ${correlation.toFixed(2).replace('-', '−')} with ${name === first ? second : first}`);
 		}
 		const state = SAID[parameter.state];
-		// The daemon's own words are better than any made here.
+		// The daemon's own note has priority over the text here.
 		if (parameter.note) flags.push(parameter.note);
 		else if (state) flags.push(state);
 		if (!known) flags.push('no interval');
 		if (known && low < 0 && high > 0 && !parameter.note) flags.push('may be zero');
-		// What was chosen among whole numbers is known exactly: there is no interval to draw.
+		// A parameter chosen among whole numbers is known exactly and has no interval.
 		if (value === 0 || !known || low === high) return { parameter, interval: null, zoom: 1, flags };
 		const ends = [low / value, high / value].sort((a, b) => a - b) as [number, number];
 		const widest = Math.max(1 - ends[0], ends[1] - 1);

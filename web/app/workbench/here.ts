@@ -1,30 +1,30 @@
 import type { ResidualSet } from '../api/types';
 import { valuesOf } from '../residual/selected';
 
-/** The run that would visit a region again: `strokes` at its speeds, under its load. */
+/** The run that visits a region again: `strokes` at its speeds, under its load. */
 export interface Visit {
 	parameters: Record<string, number>;
-	/** Torque at the link that the brake is to make; 0 without load. */
+	/** Link torque that the brake has to supply; 0 without load. */
 	load_nm: number;
-	/** The brake cannot be told what to make: nothing is known of its torque. */
+	/** The brake cannot be set, because its torque is unknown. */
 	loadUnknown: boolean;
 }
 
 export const VELOCITY = 'motor_velocity_rad_s';
 export const LOAD = 'link_torque_nm';
-/** Below this share of its rated torque a brake only drags. */
+/** Below this fraction of its rated torque a brake only has drag. */
 const LEAST_SHARE = 0.04;
 const ACCELERATION_RAD_S2 = 400;
 const HELD_S = 0.7;
 /** A wider region gets more speeds, evenly spaced in their logarithm. */
 const SPEEDS_PER_DECADE = 4;
 
-/** `null` where the region holds no sample in motion. */
+/** `null` if the region contains no sample in motion. */
 export function visit(set: ResidualSet, chosen: Uint8Array, run: { parameters: Record<string, unknown>; meta: Record<string, unknown>; provenance: Record<string, unknown> }): Visit | null {
 	const inside = (name: string) => valuesOf(set, name)?.filter((value, i) => chosen[i] && Number.isFinite(value)) ?? [];
 	const speeds = inside(VELOCITY).map(Math.abs).filter((speed) => speed > 0).sort((a, b) => a - b);
 	if (speeds.length === 0) return null;
-	// A few samples at the edge are ripple of a set point that is not meant.
+	// A few samples at the edges are ripple of another set-point.
 	const [low, high] = [0.02, 0.98].map((share) => speeds[Math.round(share * (speeds.length - 1))]!);
 	const levels = high! / low! < 1.15 ? 1 : Math.max(2, Math.min(8, 1 + Math.round(SPEEDS_PER_DECADE * Math.log10(high! / low!))));
 
@@ -52,8 +52,8 @@ export function visit(set: ResidualSet, chosen: Uint8Array, run: { parameters: R
 	};
 }
 
-/** The way of a stroke at the link that reaches this speed, holds it and leaves it: `v·t + v²/a`. */
+/** Link rotation of a stroke that accelerates to this speed, holds it and decelerates: `v·t + v²/a`. */
 const wayOf = (speed_rad_s: number, gear: number) => Math.max(0.6, (speed_rad_s * HELD_S + speed_rad_s ** 2 / ACCELERATION_RAD_S2) / gear);
 
-/** What a person would type. */
+/** Rounded as a user would type it. */
 const short = (value: number) => Number(value.toPrecision(2));

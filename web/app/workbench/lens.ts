@@ -1,6 +1,6 @@
 import type { View } from '../plot/gestures';
 
-/** The stretch of x that the overlay shows, as the address carries it: `3.2:8`. */
+/** The displayed range of x in the overlay, as in the address: `3.2:8`. */
 export function readView(text: string | null): View | null {
 	const [from = Number.NaN, to = Number.NaN] = text?.split(':').map(Number) ?? [];
 	return Number.isFinite(from) && Number.isFinite(to) && from < to ? [from, to] : null;

@@ -14,7 +14,7 @@ export function axesOf(map: ResidualMap, width: number, height: number): { x: Pl
 
 export const where = (bins: Bins, scale: Place, tick: number): number => (bins.levels ? middle(bins, scale, bins.levels.indexOf(tick)) : scale.at(tick));
 
-/** Both ends in order, far enough apart to be seen. */
+/** Both ends in order, with a visible minimum distance. */
 export function widened([a = 0, b = 0]: number[]): [number, number] {
 	const [low, high] = [Math.min(a, b), Math.max(a, b)];
 	const lack = Math.max(0, 8 - (high - low)) / 2;
@@ -30,7 +30,7 @@ interface Box {
 
 export const boxed = ({ x, y, width, height }: Box): string => `M${x} ${y}h${width}v${height}h${-width}Z`;
 
-/** Strokes across a cell in which there are too few points. */
+/** Hatching of a cell with too few points. */
 export function hatch({ x, y, width, height }: Box): string {
 	let strokes = '';
 	for (let from = Math.floor((x - height) / 6) * 6; from < x + width; from += 6) {

@@ -6,21 +6,23 @@ import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
 import type { Bench } from './workbench.svelte';
 
-/** The run that a diagnosis asks for: started here, followed, and its answer shown. Call while a component is being set up. */
+/**
+ * The recommended run of a diagnosis: starts it, follows it and shows its result. Call during component initialization.
+ */
 export function measuring(bench: Bench) {
 	const begun = deed();
-	/** The flight that this page began, with the version that asked for it. */
+	/** The autopilot that this page started, with the version that requested it. */
 	let mine: { flight: number; from: number } | null = $state.raw(null);
 	const flights = resource(
 		() => `${lab.autopilots} ${lab.line}`,
 		(_key, signal) => api.autopilots(signal),
 	);
-	/** The bench that made the run, or the one that there is. */
+	/** The bench of the run, else the current bench. */
 	const where = $derived(lab.benches?.find((one) => one.name === bench.run.data?.bench) ?? lab.bench);
 	const diagnosis = $derived(bench.diagnosed ? (bench.diagnosis.data?.id ?? null) : null);
 	const flight = $derived(diagnosis === null ? null : (flights.data?.find((one) => asked(one) === diagnosis) ?? null));
 
-	/** The answer is the same model on more data: shown to whoever asked and has stayed. */
+	/** The result is the same model on more data. It is displayed if the user still displays the original version. */
 	$effect(() => {
 		const ended = flights.data?.find((one) => one.id === mine?.flight && one.state !== 'running');
 		if (!ended || !mine) return;

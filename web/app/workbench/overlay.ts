@@ -2,7 +2,7 @@ import type { ResidualSet } from '../api/types';
 
 type Column = (number | null)[];
 
-/** The points in the order of x, in one list for each way of drawing them. */
+/** The points in the order of x, in one list per drawing style. */
 export interface OverlayData {
 	x: number[];
 	measured: Column;
@@ -16,12 +16,14 @@ export interface OverlayData {
 	residualInside: Column;
 	residualOutside: Column;
 	residualExcluded: Column;
-	/** Prediction and residual of the version beside; empty without one. */
+	/** Prediction and residual of the comparison version; empty without one. */
 	other: Column;
 	otherResidual: Column;
 }
 
-/** `Inside`: chosen points. `Outside`: points that took no part in the fit. `Excluded`: those that a person took out of it. */
+/**
+ * `Inside`: selected points. `Outside`: points that are not part of the fit. `Excluded`: points that the user excluded.
+ */
 export function overlay(
 	set: ResidualSet,
 	xs: readonly number[],

@@ -1,6 +1,6 @@
 import type { EffectDefinition, Place } from '../api/types';
 
-/** One parameter as a person types it. */
+/** One parameter as typed by the user. */
 export interface ParameterDraft {
 	name: string;
 	unit: string;
@@ -8,7 +8,7 @@ export interface ParameterDraft {
 	max: string;
 }
 
-/** A user's effect as a person types it. */
+/** A user's effect as typed by the user. */
 export interface Draft {
 	title: string;
 	sentence: string;
@@ -26,13 +26,13 @@ export function idOf(title: string): string {
 		.replace(/^_+|_+$/g, '');
 }
 
-/** A bound as typed; none where nothing is typed. NaN where it is no number. */
+/** A bound as typed; `null` for an empty text, NaN for an invalid number. */
 function bound(text: string): number | null {
 	const plain = text.trim().replace(',', '.');
 	return plain === '' ? null : Number(plain);
 }
 
-/** The first thing that the page sees itself, before the daemon is asked. */
+/** The first error that the page finds itself, before a request to the daemon. */
 export function faultOf(draft: Draft): string | null {
 	if (draft.formula.trim() === '') return 'Write the formula.';
 	for (const p of draft.parameters) {
@@ -42,7 +42,7 @@ export function faultOf(draft: Draft): string | null {
 	return null;
 }
 
-/** What has no name yet is checked and tried under one. */
+/** An effect without a name is checked and tried under the name `unnamed`. */
 export function definitionOf(draft: Draft, kind: string): EffectDefinition {
 	return {
 		id: idOf(draft.title) || 'unnamed',
@@ -64,14 +64,14 @@ export function draftOf(definition: EffectDefinition): Draft {
 	};
 }
 
-/** A text in three: before the mistake, the mistake, after it. Positions count characters, not code units. */
+/** Splits a text into three parts: before, at and after the error. Positions count characters, not code units. */
 export function cut({ text, position, length }: Place): [string, string, string] {
 	const letters = [...text];
 	const part = (from: number, to?: number) => letters.slice(from, to).join('');
 	return [part(0, position), part(position, position + length), part(position + length)];
 }
 
-/** A name that the formula uses and nobody knows may become a parameter. */
+/** An unknown name in the formula may become a parameter. */
 export function unknownName(place: Place | null, draft: Draft): string | null {
 	if (place?.field !== 'formula') return null;
 	const [, name, rest] = cut(place);

@@ -7,27 +7,33 @@ import { type Side, directionOf, keep, usefulAxes } from '../residual/points';
 export interface Ranked {
 	axis: ResidualSet['axes'][number];
 	bins: Bins;
-	/** Share of the residual's variance that depends on this axis. */
+	/** Fraction of the residual's variance that depends on this axis. */
 	share: number;
-	/** The same with each direction for itself, without what the direction alone decides: what turns with it averages out over both. */
+	/**
+	 * The same per direction, without the part that the direction alone explains: a part that changes sign with the
+	 * direction averages out over both.
+	 */
 	split: number;
 	all: Point[];
 	positive: Point[];
 	negative: Point[];
 }
 
-/** Nobody sets these: they run along, and the means of the segments are no set points. */
+/** Uncontrolled quantities: means of the segments are not set-points of these axes. */
 const RUNS_ALONG = /^time|^run_order$|^temperature|position|^motor_torque/;
 
-/** What a friction run is made along. */
+/** The usual axes of a friction run. */
 const FRICTION = ['motor_velocity_rad_s', 'link_torque_nm', 'link_position_rad', 'motor_position_rad', 'time_s'];
 
-/** What is shown along until a person chooses: always the same, so that versions can be compared. In other runs that which most of what was measured depends on. */
+/**
+ * Default axes: always the same in friction runs, so that versions are comparable. Other runs use the axes on which the
+ * measured value depends most.
+ */
 export function usualAxes(set: ResidualSet, kind: string | undefined): string[] {
 	return kind === 'friction' ? FRICTION : rankAxes(set, set.measured, 'both', false, 0).map((one) => one.axis.name);
 }
 
-/** Every axis with the curve of some figure of each point, the axis that explains most of it first. */
+/** Every axis with the curve of a quantity of the points, the axis with the largest explained fraction first. */
 export function rankAxes(set: ResidualSet, figure: readonly number[], side: Side, ramps: boolean, noise: number, shown: (unit: string) => { factor: number } = () => ({ factor: 1 })): Ranked[] {
 	const kept = keep(set, side, ramps);
 	const sides = { positive: keep(set, 'positive', ramps), negative: keep(set, 'negative', ramps) };

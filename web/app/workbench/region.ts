@@ -1,13 +1,13 @@
 import type { Suggestion } from '../api/types';
 
-/** A stretch of one axis, as the address carries it: `motor_velocity_rad_s:3.2:8`. */
+/** A range of one axis, as in the address: `motor_velocity_rad_s:3.2:8`. */
 export interface Stretch {
 	axis: string;
 	from: number;
 	to: number;
 }
 
-/** Stretches that must all hold: one for a brush along an axis, two for a rectangle on the map. */
+/** Ranges that must all hold: one for a selection along an axis, two for a rectangle on the map. */
 export type Region = readonly Stretch[];
 
 export function readRegion(text: string | null): Region | null {
@@ -35,7 +35,7 @@ export function along(region: Region | null, axis: string): readonly [number, nu
 	return stretch ? [stretch.from, stretch.to] : null;
 }
 
-/** The view that shows a stretch with its surroundings, never closer than the axis bears. */
+/** The view of a range with its surroundings, with a minimum width relative to the axis. */
 export function around({ from, to }: { from: number; to: number }, low: number, high: number): [number, number] {
 	const half = Math.max((to - from) * 1.2, (high - low) * 0.06) || 0.5;
 	const middle = (from + to) / 2;
@@ -44,7 +44,7 @@ export function around({ from, to }: { from: number; to: number }, low: number, 
 
 export type Strength = 'STRONG' | 'SMALL' | 'WEAK' | 'CONFOUNDED';
 
-/** One word for the evidence; the figures stand beside it. */
+/** One word for the evidence; the numbers are displayed with it. */
 export function strength({ evidence, confounded_with }: Pick<Suggestion, 'evidence' | 'confounded_with'>): Strength {
 	return confounded_with.length > 0 ? 'CONFOUNDED' : (evidence.toUpperCase() as Strength);
 }

@@ -1,7 +1,7 @@
 import type { Model } from '../api/types';
 import { words } from '../format/label';
 
-/** From the root of the tree to a version: the story that the waterfall tells. */
+/** The versions from the root of the tree to a version, as the waterfall shows them. */
 export function chain(models: readonly Model[], id: number): Model[] {
 	const byId = new Map(models.map((model) => [model.id, model]));
 	const path: Model[] = [];
@@ -11,7 +11,7 @@ export function chain(models: readonly Model[], id: number): Model[] {
 	return path;
 }
 
-/** A child on the same data that already holds these effects: going there again needs no new fit. */
+/** A child on the same data with these effects: displaying it needs no new fit. */
 export function childWith(models: readonly Model[], parent: Model | null, effects: readonly string[]): Model | undefined {
 	const wanted = [...effects].sort().join();
 	return models.find(
@@ -22,16 +22,16 @@ export function childWith(models: readonly Model[], parent: Model | null, effect
 	);
 }
 
-/** Only errors on the same data can be set against each other. */
+/** Only errors on the same data are comparable. */
 export function sameData(one: Model, other: Model): boolean {
 	const away = ({ excluded }: Model) => excluded.map(({ from_s, to_s }) => `${from_s}:${to_s}`).join();
 	return one.run === other.run && one.more_runs.join() === other.more_runs.join() && away(one) === away(other);
 }
 
-/** Only tried, or of next to no gain, and kept by nobody: no page shows it as the run's model. */
+/** Only tried or with almost no gain, and not kept: no page shows it as the model of the run. */
 export const isAside = ({ tried, idle }: Model): boolean => tried || idle;
 
-/** What a version did to its parent, in a few words. */
+/** The change from the parent to this version, in a few words. */
 export function stepName(model: Model, before?: Model, titleOf = words): string {
 	if (model.parent == null) return 'start';
 	const parts = [...model.added.map((id) => `+ ${titleOf(id)}`), ...model.removed.map((id) => `− ${titleOf(id)}`)];
@@ -45,13 +45,16 @@ export function stepName(model: Model, before?: Model, titleOf = words): string 
 export interface Branch {
 	model: Model;
 	depth: number;
-	/** The first of a branch that leaves the line to its left. */
+	/** The first version of a branch that separates from the line at its left. */
 	forks: boolean;
-	/** Nothing grew from it. */
+	/** A version without children. */
 	ends: boolean;
 }
 
-/** All versions, each after its parent. What grew from it first stands aside; the newest goes on straight below, so that a long chain stays flat. */
+/**
+ * All versions, each after its parent. Older children are on side branches, and the newest continues straight below, so
+ * that a long chain stays flat.
+ */
 export function branches(models: readonly Model[]): Branch[] {
 	const known = new Set(models.map((model) => model.id));
 	const children = new Map<number | null, Model[]>();
@@ -72,7 +75,9 @@ export function branches(models: readonly Model[]): Branch[] {
 	return list;
 }
 
-/** What a version's data does not decide: an effect that it added, and any figure that its parent knew. */
+/**
+ * Results that the data of a version does not determine: an added effect, or a parameter that its parent determined.
+ */
 export function undecided(before: Model, after: Model): string[] {
 	const was = new Map(before.fit.parameters.map((one) => [`${one.effect}.${one.name}`, one.state]));
 	const lost = after.fit.parameters.filter((one) => one.state === 'unidentified' && was.get(`${one.effect}.${one.name}`) === 'ok').map((one) => `${one.effect}.${one.name}`);
@@ -83,16 +88,16 @@ export function undecided(before: Model, after: Model): string[] {
 	return [...open, ...lost];
 }
 
-/** Less than this is no gain. */
+/** A smaller relative gain counts as none. */
 export const WORTH = 0.005;
 
-/** `± within`: how far chance alone may take the share. */
+/** `± within`: range of the gain by chance alone. */
 export function worded(share: number, within = 0): string {
 	const least = Math.max(WORTH, within);
 	return share > least ? '↓ better' : share < -least ? '↑ worse' : '≈ no gain';
 }
 
-/** Share of the held-out error that a version took away from its parent; negative where it got worse. */
+/** Relative reduction of the validation error from the parent to this version; negative if it increased. */
 export function gain(before: Model, after: Model): number {
 	return before.validation_rms > 0 ? 1 - after.validation_rms / before.validation_rms : 0;
 }

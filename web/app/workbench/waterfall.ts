@@ -5,16 +5,16 @@ import { sameData, stepName } from './tree';
 export interface Bar {
 	key: string;
 	label: string;
-	/** Held-out RMS. */
+	/** Validation RMS. */
 	held: number;
-	/** Training RMS; unknown for a bar that is only foreseen. */
+	/** Training RMS; unknown for a predicted bar. */
 	training: number | null;
-	/** Change of the held-out RMS against the bar before, as a share; not where that one was held against other data. */
+	/** Relative change of the validation RMS from the bar before; `null` if that is of other data. */
 	change: number | null;
 	id: number | null;
 }
 
-/** One bar for each version on the way, and a last one for the effect that would come next. */
+/** One bar per version of the path, and a last one for the suggested effect. */
 export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' | 'validation_rms'> | null, titleOf = words): Bar[] {
 	const bars: Bar[] = path.map((model, i) => {
 		const before = path[i - 1];
@@ -35,18 +35,18 @@ export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' |
 	return bars;
 }
 
-/** What is left when an effect goes and the others are fitted again. */
+/** Validation error without an effect, with the others fitted again. */
 export interface Loss {
 	effect: string;
 	without: number;
 }
 
-/** The largest loss first; an effect without which nothing can be fitted has no figure. */
+/** The largest loss first; an effect without which the fit is impossible has no value. */
 export function lossesOf(worth: readonly Worth[]): Loss[] {
 	return worth.flatMap(({ effect, without_rms }) => (without_rms == null ? [] : [{ effect, without: without_rms }])).sort((a, b) => b.without - a.without);
 }
 
-/** Where the mark of a bar stands that added one effect alone: the error if that went now. */
+/** Position of the mark of a bar with one added effect: the error without this effect in the current model. */
 export function markOf(added: readonly string[], losses: readonly Loss[]): number | null {
 	return added.length === 1 ? (losses.find((one) => one.effect === added[0])?.without ?? null) : null;
 }

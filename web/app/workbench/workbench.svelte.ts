@@ -17,7 +17,7 @@ import { usualAxes } from './ranked';
 import { readRegion } from './region';
 import { WORTH, childWith, gain, isAside, sameData, undecided, worded } from './tree';
 
-/** The model of one run, as the workbench works on it. Call while a component is being set up. */
+/** The model of one run in the workbench. Call during component initialization. */
 export function openWorkbench(id: number) {
 	let busy: string | null = $state(null);
 	let notice: { text: string; good: boolean } | null = $state.raw(null);
@@ -44,22 +44,22 @@ export function openWorkbench(id: number) {
 	const versions: Model[] = $derived(models.data ?? []);
 	const asked = $derived(router.query.get('model'));
 	const named = $derived(versions.find((one) => String(one.id) === asked));
-	/** A version made elsewhere may stand in the address before the list has it: the list is asked for once more. */
+	/** A version made elsewhere may be in the address before it is in the list: the list is requested once more. */
 	let sought: string | null = $state(null);
 	$effect(() => {
 		if (models.data && asked !== null && !named && asked !== sought) untrack(() => ((sought = asked), models.reload()));
 	});
 	const awaited = $derived(asked !== null && !named && (asked !== sought || models.loading));
-	/** While the version of the address is awaited, the one that was here stays, and no other takes its place. */
+	/** While the version in the address loads, the former version stays; no other version replaces it. */
 	let former: Model | null = null;
 	const model: Model | null = $derived(
 		(former = awaited ? former : (named ?? versions.findLast((one) => !isAside(one)) ?? versions.at(-1) ?? null)),
 	);
-	/** From now on the address says which version it shows, so that a version made elsewhere does not take its place. */
+	/** Writes the version to the address, so that a version made elsewhere does not replace it. */
 	$effect(() => {
 		if (model && !router.query.has('model')) untrack(() => router.set({ model: model.id }));
 	});
-	/** A second version beside the one at hand: an effect that is being tried, or a version to compare with. */
+	/** A second version for comparison: an effect under trial, or any version. */
 	const other: Model | null = $derived(
 		versions.find((one) => String(one.id) === router.query.get('with') && one.id !== model?.id) ?? null,
 	);
@@ -68,7 +68,7 @@ export function openWorkbench(id: number) {
 	const otherResiduals = resource(() => other?.id ?? null, load);
 	const side = $derived((router.query.get('side') ?? 'both') as Side);
 	const ramps = $derived(router.query.has('ramps'));
-	/** As text first: a zoom changes the address too, and must not have everything counted again. */
+	/** Text first: a zoom changes the address too, and must not cause a new selection. */
 	const regionText = $derived(router.query.get('region'));
 	const region = $derived(readRegion(regionText));
 	const chosen = $derived(residuals.data ? selected(residuals.data.set, region, side, ramps) : null);
@@ -78,7 +78,7 @@ export function openWorkbench(id: number) {
 		(_key, signal) => api.diagnose(model?.id ?? 0, signal),
 	);
 
-	/** Everything that the page is laid out by has come, once: until then nothing is shown that it would push aside. */
+	/** All data that determines the layout has arrived once. Before that, nothing that it would move is displayed. */
 	let laid = $state(false);
 	$effect(() => {
 		laid ||= model !== null && [run, effects, residuals, diagnosis, alike].every((one) => one.data ?? one.error);
@@ -86,7 +86,7 @@ export function openWorkbench(id: number) {
 
 	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? words(effect);
 
-	/** One fit at a time; what it makes is one of the versions. */
+	/** One fit at a time; its result is a version. */
 	async function fitted(what: string, fit: () => Promise<Model>): Promise<Model | null> {
 		if (busy !== null) return null;
 		busy = what;
@@ -113,7 +113,7 @@ export function openWorkbench(id: number) {
 	async function refit(set: string[], parent: Model, what: string, anew = false): Promise<void> {
 		const next = await version(set, parent, what, { anew });
 		if (!next) return;
-		// Nothing is kept silently: what gains nothing stands beside, to be kept or dropped.
+		// A version without gain is displayed for comparison; the user keeps or drops it.
 		if (next.idle && parent.id === model?.id) return stand(next);
 		await show(next, parent);
 	}
@@ -126,7 +126,7 @@ export function openWorkbench(id: number) {
 		if (notice?.good === false) void reveal('said');
 	}
 
-	/** Fits with the effect and shows the answer beside the version at hand, which stays where it is. */
+	/** Fits with the effect and compares the result with the current version, which stays displayed. */
 	async function attempt(effect: string): Promise<void> {
 		const from = model;
 		if (!from) return;
@@ -139,7 +139,7 @@ export function openWorkbench(id: number) {
 		void reveal('beside');
 	}
 
-	/** A version that was made meanwhile: shown from its verdict on. */
+	/** Displays a version that was made meanwhile, starting at its verdict. */
 	function arrive(version: number, text: string): void {
 		router.set({ model: version, with: null, region: null, side: null, zoom: null }, 'push');
 		notice = { text, good: true };
@@ -148,7 +148,10 @@ export function openWorkbench(id: number) {
 
 	const beside = (version: number | null) => router.set({ with: version }, 'push');
 
-	/** In the words of a version beside. Of what is only tried it says what the data does not decide; the rest stands there. */
+	/**
+	 * The change in the words of a comparison. For a trial, only the undetermined results, because the comparison shows
+	 * the rest.
+	 */
 	function told(before: Model, after: Model, kept = true): { text: string; good: boolean } | null {
 		if (!sameData(before, after)) return null;
 		const share = gain(before, after);
@@ -168,10 +171,10 @@ export function openWorkbench(id: number) {
 		return said?.good ? null : said;
 	});
 	const trying = $derived(other !== null && other.parent === model?.id && isAside(other));
-	/** What columns suggest that contradict each other is no advice. */
+	/** Suggestions from contradictory columns are not reliable. */
 	const contradicts = $derived(diagnosis.data?.undecided_reason === 'contradictory_columns');
 
-	/** The same effects fitted to other data; without `excluded` it looks away where this version does. */
+	/** Fits the same effects to other data; without `excluded` it has the same exclusions as this version. */
 	async function refitOn(more: number[], what: string, excluded?: Exclusion[], told?: string): Promise<void> {
 		const from = model;
 		const made = from && (await fitted(what, () => api.fit({ run: id, effects: from.effects, parent: from.id, more_runs: more, exclude: excluded })));
@@ -180,7 +183,7 @@ export function openWorkbench(id: number) {
 		if (told) notice = { text: `${told} Undo with z.`, good: true };
 	}
 	const others = $derived(model?.more_runs ?? []);
-	/** Runs that the address wants in the data too: once, then it names the version. */
+	/** Additional runs in the address: used once, afterwards the address names the version. */
 	const wanted = () => readMarked(router.query.get('more')).filter((one) => one !== id);
 	const together = (more: number[]) => `Fitting run #${[id, ...more].join(' and #')} together`;
 	$effect(() => {
@@ -199,17 +202,20 @@ export function openWorkbench(id: number) {
 	const refitWithout = (excluded: Exclusion[], what: string, told: string) => refitOn(others, what, excluded, told);
 	const exclude = (stretches: Exclusion[], reason: string) =>
 		refitWithout([...(model?.excluded ?? []), ...stretches], 'Refitting without the chosen samples', `Fitted without the chosen samples (${reason}).`);
-	/** Takes what was excluded for a reason in again. */
+	/** Includes the samples again that were excluded for a reason. */
 	const include = (reason: string) =>
 		refitWithout((model?.excluded ?? []).filter((one) => one.reason !== reason), 'Refitting with the samples', `Fitted with the samples again that were excluded (${reason}).`);
 
 	const add = (effect: string) => model && refit([...model.effects, effect], model, `Refitting with ${titleOf(effect)}`);
-	/** Adds a user's effect. Its formula may be new under a name that the model holds already: then all is fitted again. */
+	/**
+	 * Adds a user's effect. Its formula may have changed under a name that the model already contains, so all effects
+	 * are fitted again.
+	 */
 	const addOwn = async (effect: string) =>
 		model && refit([...new Set([...model.effects, effect])], model, `Refitting with ${titleOf(effect)}`, true);
 	const remove = (effect: string) =>
 		model && refit(model.effects.filter((one) => one !== effect), model, `Refitting without ${titleOf(effect)}`);
-	/** With all runs of the address at once: where they do not go together, none is left with a version that nobody asked for. */
+	/** Fits all runs in the address at once. If they cannot be combined, no run gets an unwanted version. */
 	async function begin(set: string[]): Promise<void> {
 		const more = wanted();
 		router.set({ more: null });
@@ -218,7 +224,7 @@ export function openWorkbench(id: number) {
 		else router.set({ more: more.join() || null });
 	}
 
-	/** Back to the version that this one grew from. Nothing is lost: every version keeps its address. */
+	/** Returns to the parent version. Nothing is lost: every version keeps its address. */
 	function undo(): void {
 		if (model?.parent == null) return;
 		undone = [...undone, model.id];
@@ -254,7 +260,7 @@ export function openWorkbench(id: number) {
 		beside,
 		exclude,
 		include,
-		/** Makes the version beside the one at hand the one at hand. */
+		/** Makes the comparison version the current one. */
 		keep: () => other && model && void show(other, model),
 		remove,
 		begin,
@@ -274,17 +280,17 @@ export function openWorkbench(id: number) {
 		get other() {
 			return other;
 		},
-		/** How files of the version at hand are called. */
+		/** File names of the current version. */
 		get file() {
 			return `run-${id}-model-${model?.id}`;
 		},
-		/** Residuals of the version beside, where both versions hold the same samples. */
+		/** Residuals of the comparison version, if both versions have the same samples. */
 		get otherSet() {
 			const [mine, theirs] = [residuals.data, otherResiduals.data];
 			const alike = theirs?.version === other?.id && theirs?.set.error.length === mine?.set.error.length;
 			return other && alike ? (theirs?.set ?? null) : null;
 		},
-		/** The version beside only tries an effect on the version at hand. */
+		/** The comparison version is a trial of an effect on the current version. */
 		get trying() {
 			return trying;
 		},
@@ -313,7 +319,7 @@ export function openWorkbench(id: number) {
 		get laid() {
 			return laid;
 		},
-		/** What was just done or is being tried; or, for whoever comes later, that the last step gained nothing. */
+		/** The last action or trial, else a note that the last step had no gain. */
 		get notice() {
 			return trying && model && other ? told(model, other, false) : (notice ?? standing);
 		},
@@ -333,11 +339,11 @@ export function openWorkbench(id: number) {
 		get canRedo() {
 			return undone.length > 0;
 		},
-		/** The residuals on the screen belong to the version on the screen. */
+		/** The displayed residuals belong to the displayed version. */
 		get settled() {
 			return !awaited && residuals.data?.version === model?.id;
 		},
-		/** The diagnosis on the screen belongs to the version on the screen. */
+		/** The displayed diagnosis belongs to the displayed version. */
 		get diagnosed() {
 			return !awaited && diagnosis.data?.model_id === model?.id;
 		},

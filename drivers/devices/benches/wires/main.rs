@@ -1,6 +1,7 @@
-//! What drivers and mock bench make of a wire, beside the wire itself in the same run. Prints the table of docs/benchmarks.md.
+//! Speed of drivers and mock bench on a wire, compared with the bare wire in the same run. Prints the table of
+//! docs/benchmarks.md.
 //!
-//! `cargo bench -p jointbench-devices [-- SECONDS]`: ten minutes of the torque stream where nothing is said.
+//! `cargo bench -p jointbench-devices [-- SECONDS]`: SECONDS of the torque stream, ten minutes by default.
 
 mod raw;
 mod torque;
@@ -24,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let stream_s = std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(600.0);
     println!("| what | measured | bar |\n| --- | --- | --- |");
 
-    // In turns, so that what else the machine does falls on both.
+    // Alternating, so that other load of the machine affects both equally.
     let (path, _slave) = raw::responder();
     let mut port = raw::Port::open(&path)?;
     let (linked, _other_slave) = raw::responder();
@@ -76,7 +77,7 @@ fn median(mut measured: Vec<f64>) -> f64 {
     measured[measured.len() / 2]
 }
 
-/// Feedback of a drive at rest as often as its line lets it, and how often that could be.
+/// Rate of feedback requests to a drive at rest on its line, and the highest possible rate.
 fn polling() -> Result<(f64, f64), Box<dyn Error>> {
     let settings =
         MockSettings { transport: Transport::Terminal, paced_lines: true, ..MockSettings::new(Joint::JointA, 1) };
@@ -91,7 +92,7 @@ fn polling() -> Result<(f64, f64), Box<dyn Error>> {
     Ok((1.0 / poll_s, f64::from(baud) / BITS_OF_A_BYTE / bytes as f64))
 }
 
-/// Bytes of one request and its reply, as they were recorded.
+/// Recorded bytes of one request and its reply.
 fn exchange_bytes(link: &mut Link, record: &std::path::Path) -> Result<usize, Box<dyn Error>> {
     link.record(Some(record))?;
     link.trust();
@@ -107,7 +108,7 @@ fn exchange_bytes(link: &mut Link, record: &std::path::Path) -> Result<usize, Bo
     Ok(bytes.sum())
 }
 
-/// Set the velocity, wait, read joint, link encoder, current and torque.
+/// One control tick: set the velocity, wait, read joint, link encoder, current and torque.
 fn control_tick_s(transport: Transport) -> Result<f64, Box<dyn Error>> {
     let settings = MockSettings { transport, ..MockSettings::new(Joint::JointA, 1) };
     let mock = MockBench::start(settings.hiding(&["stribeck"]))?;
@@ -118,7 +119,8 @@ fn control_tick_s(transport: Transport) -> Result<f64, Box<dyn Error>> {
     let start_s = bench.clock.now_s();
     let start = Instant::now();
     for tick in 1..=TICKS {
-        // Alternating, so that the joint keeps within its range, and changing, so that every set is read back.
+        // The sign alternates to keep the joint within its range. The value changes, so that every set-point is read
+        // back.
         let speed = if tick / 500 % 2 == 0 { 50.0 } else { -50.0 };
         bench.joint.set_velocity(RadPerSec(speed + f64::from(tick % 10) * 0.1))?;
         bench.clock.sleep_until_s(start_s + f64::from(tick) * TICK_S);

@@ -1,4 +1,4 @@
-//! The floor: blocking reads and writes on a pseudo-terminal, without deadline, checksum or parsing.
+//! The lower bound: blocking reads and writes on a pseudo-terminal, without deadline, checksum or parsing.
 
 use rustix::fd::OwnedFd;
 use rustix::fs::{Mode, OFlags};
@@ -9,7 +9,7 @@ use std::io::{self, Read, Write};
 
 const REPLY: &[u8] = b"1.077135 1.482737*42\r\n";
 
-/// Answers every chunk with the same line. Ends when the process does: its reads never fail while the slave is open.
+/// Answers every chunk with the same line. Runs until the process ends: its reads never fail while the slave is open.
 pub fn responder() -> (String, OwnedFd) {
     let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
     grantpt(&master).unwrap();

@@ -1,4 +1,4 @@
-//! What the torque sensor's stream loses, and how well its samples are placed among the joint's, on the mock bench.
+//! Lost samples of the torque stream, and the timing error of its samples relative to the joint, on the mock bench.
 
 use super::row;
 use jointbench_devices::driver::{LorenzSettings, OdriveSettings, Range};

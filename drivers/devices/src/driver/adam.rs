@@ -22,7 +22,7 @@ pub struct AdamSettings {
     pub name: String,
     pub port: PortSettings,
     pub deadline_ms: u64,
-    /// Of several modules on one line.
+    /// Address of the module; several modules may share one line.
     pub slave: u8,
     /// Channels in use, 0 to 5.
     pub channels: Vec<u8>,
@@ -37,7 +37,7 @@ pub struct AdamThermometer {
 }
 
 impl AdamThermometer {
-    /// Opens the port, identifies the module and reads what its channels are set to. Nothing is set.
+    /// Opens the port, identifies the module and reads the configuration of its channels. Changes no setting.
     pub fn open(settings: AdamSettings) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
         if let Some(channel) = settings.channels.iter().find(|channel| **channel >= CHANNELS) {
@@ -53,7 +53,7 @@ impl AdamThermometer {
         ReadRegisters { slave: self.settings.slave, first, count }
     }
 
-    /// Which module answers, and what its channels are set to.
+    /// Identifies the module and reads the configuration of its channels.
     fn who(&mut self) -> Result<Identity, Fault> {
         let name = self.link.probe(&self.registers(MODULE_NAME, 2))?;
         if name[0] != ADAM_4015 {
@@ -63,7 +63,7 @@ impl AdamThermometer {
         let found = Identity {
             maker: "Advantech".into(),
             model: format!("ADAM-{:04X}", name[0]),
-            // A module knows no serial number.
+            // A module has no serial number.
             serial: format!("slave {}", self.settings.slave),
             firmware: String::new(),
         };
@@ -81,7 +81,7 @@ impl AdamThermometer {
     }
 }
 
-/// What 0 and 65535 mean, by type code (ADAM-4000 manual, table 5.2).
+/// The temperatures of the readings 0 and 65535, by type code (ADAM-4000 manual, table 5.2).
 fn range_c(code: u16) -> Option<(f64, f64)> {
     Some(match code {
         0x20 | 0x25 => (-50.0, 150.0),
@@ -104,7 +104,7 @@ impl Recovers for AdamThermometer {
     }
 
     fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
-        // Silence ends a frame: there is nothing to send.
+        // Silence ends a frame, so nothing has to be sent.
         self.link.drain(b"", false)?;
         self.who()
     }
@@ -137,7 +137,7 @@ impl Thermometer for AdamThermometer {
         let request = self.registers(VALUES, CHANNELS);
         let values = self.ready()?.request(&request)?;
         let temperature = |(channel, (low_c, high_c)): (&u8, &(f64, f64))| match values[usize::from(*channel)] {
-            // A broken wire shows as the end of the range.
+            // A broken wire reads as the end of the range.
             0 | u16::MAX => {
                 let what =
                     format!("channel {channel} is at the end of {low_c} to {high_c} °C: a broken sensor, or too hot");

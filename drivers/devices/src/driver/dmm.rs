@@ -1,4 +1,4 @@
-//! A SCPI multimeter on the analogue output of a torque sensor: the way when the sensor has no digital interface.
+//! A SCPI multimeter on the analogue output of a torque sensor, for a sensor without a digital interface.
 
 use super::{Recovers, same};
 use crate::protocol::scpi::{ClearStatus, Identify, ReadVoltage, Set, Terminator};
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Duration;
 
-/// The output stands for the nominal torque at this voltage, and means nothing beyond.
+/// Output voltage at the nominal torque. Voltages beyond it are invalid.
 const NOMINAL_V: f64 = 10.0;
 /// 6½ digits in the 10 V range.
 const STEP_V: f64 = 1e-5;
@@ -54,7 +54,7 @@ impl Recovers for DmmTorqueSensor {
         self.link.drain(&clear, false)?;
         let found = self.link.probe(&Identify(self.line_end))?;
         let identity = same(&mut self.link, &mut self.identity, found)?;
-        // Whatever it was set to, and after a loss of power too.
+        // Configured on every identification, because earlier settings are unknown or lost with the power.
         self.link.probe(&Set(self.line_end, "CONF:VOLT:DC 10".into()))?;
         Ok(identity)
     }

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Duration;
 
 const M_PER_MM: f64 = 1e-3;
-/// What every stop leaves in the error register.
+/// The error code that every stop sets.
 const STOPPED: u32 = 10;
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -25,7 +25,7 @@ pub struct GcsStage {
     settings: GcsSettings,
     link: Link,
     identity: Option<Identity>,
-    /// Was referenced, as far as this driver has seen.
+    /// The stage was referenced when this driver last read the flag.
     referenced: bool,
 }
 
@@ -60,7 +60,7 @@ impl Recovers for GcsStage {
             return Err(self.link.fault(FaultKind::WrongInstrument { expected: "PI C-887".into(), found }));
         }
         let identity = same(&mut self.link, &mut self.identity, found)?;
-        // What went wrong before belongs to nobody's next command.
+        // An old error must not be attributed to the next command.
         let error = self.link.probe(&QueryError)?;
         if error != 0 && error != STOPPED {
             tracing::info!(instrument = self.link.instrument(), what = %error_text(error), "an old error is cleared");
@@ -131,7 +131,7 @@ impl AlignmentStage for GcsStage {
     }
 
     fn stop(&mut self) -> Result<(), Fault> {
-        // Out first, whatever the state of the link; then the error that a stop leaves behind is read away.
+        // The stop is sent first, in any state of the link. Then the error that a stop sets is read and cleared.
         self.link.send(&StopAll)?;
         self.link.distrust();
         self.resume().map(drop)

@@ -11,14 +11,14 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Duration;
 
-/// Stator header and rotor header: type and serial number.
+/// Configuration block of the stator: type and serial number.
 const STATOR_HEADER: u8 = 0;
 
 /// One of the two channels of a dual-range sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Range {
-    /// Channel A: the whole range of the shaft.
+    /// Channel A: the full range of the shaft.
     Coarse,
     /// Channel B: the small range.
     Fine,
@@ -40,7 +40,7 @@ pub struct LorenzSensor {
     pub(super) link: Link,
     pub(super) stream: Option<Stream>,
     identity: Option<Identity>,
-    /// Full scale of the coarse and the fine range, once the rotor was asked.
+    /// Full scale of the coarse and the fine range, after the rotor was read.
     nominals_nm: Option<[f64; 2]>,
 }
 
@@ -73,7 +73,7 @@ impl LorenzSensor {
         self.settings.nominal_nm / f64::from(NOMINAL_COUNTS)
     }
 
-    /// Counts of the coarse and the fine range, of one moment.
+    /// Counts of the coarse and the fine range at the same moment.
     fn counts(&mut self) -> Result<[i16; 2], Fault> {
         if self.stream.is_some() {
             let what = "a single reading is not possible while the stream runs: collect samples, or stop the stream";
@@ -97,7 +97,7 @@ impl LorenzSensor {
 }
 
 impl Range {
-    /// Places of the range in use and of the other among a sensor's two.
+    /// Indices of the range in use and of the other range.
     pub(super) fn in_use_and_other(self) -> [usize; 2] {
         match self {
             Range::Coarse => [0, 1],
@@ -129,7 +129,7 @@ impl Instrument for LorenzSensor {
         self.link.address()
     }
 
-    /// Ends a stream.
+    /// Also ends a running stream.
     fn identify(&mut self) -> Result<Identity, Fault> {
         self.stop_stream()?;
         self.ready()?;

@@ -1,4 +1,4 @@
-//! The stream of a Lorenz sensor: both ranges on the sensor's own clock.
+//! The stream of a Lorenz sensor: both ranges at the rate of the sensor's own clock.
 
 use super::stream_clock::StreamClock;
 use super::{LorenzSensor, Range, Recovers};
@@ -10,14 +10,14 @@ use jointbench_instrument::{Clock, Fault, FaultKind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Nominal load of both channels.
+/// Configuration block of the rotor: nominal load of both channels.
 const ROTOR_HEADER: u8 = 128;
 const LOADS: [usize; 2] = [10, 14];
-/// No sample is so many periods late.
+/// Longest delay of a sample, in periods.
 const LATE_PERIODS: u32 = 3;
-/// The index of a sample counts so far.
+/// The index of a sample wraps after this many values.
 const INDICES: u64 = 256;
-/// For samples that are due and not there: another look after this long finds them, or they are late.
+/// Wait for samples that are due but missing. Samples that still do not arrive are delayed.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 pub(super) struct Stream {
@@ -25,14 +25,14 @@ pub(super) struct Stream {
     placed: StreamClock,
     frames: Frames,
     nominal_nm: [f64; 2],
-    /// Of the range in use.
+    /// The range in use.
     range: Range,
-    /// Of the next frame.
+    /// Number of the next frame.
     number: u64,
     heard_s: f64,
-    /// The same on the wall, where a bench's clock may stand still while somebody listens.
+    /// The same on the wall clock, because a bench clock may not advance while the driver listens.
     heard: Instant,
-    /// When frames were last found in what was heard.
+    /// Time when frames were last found in the received bytes.
     found_s: f64,
     gap: Option<u64>,
 }
@@ -54,7 +54,7 @@ impl Stream {
                     self.number += 1;
                 }
                 Item::Gap { count } => {
-                    // The index says how many are missing but for multiples of 256, the clock the rest.
+                    // The index gives the number of missing samples modulo 256; the clock gives the multiple of 256.
                     let known = self.number + u64::from(count) + self.frames.waiting();
                     let due = self.placed.due(now_s);
                     if known > due + INDICES / 2 {
@@ -75,14 +75,16 @@ impl Stream {
         self.number + self.frames.waiting()
     }
 
-    /// Takes in what is there, and waits a moment for what should be. Some looks are put off by a part of the period.
+    /// Reads the available bytes and waits briefly for samples that are due. Some reads are delayed by a fraction of
+    /// the period.
     fn listen(&mut self, link: &mut Link) -> Result<f64, Fault> {
         let delay_s = self.placed.delay_s();
         if delay_s > 0.0 {
             self.clock.sleep_until_s(self.clock.now_s() + delay_s);
         }
         let now_s = self.clock.now_s();
-        // A stream is due all the time: half a deadline without a byte is its end, and leaves time to know within two.
+        // A stream sends all the time, so half a deadline without a byte is its end. The fault is then known within two
+        // deadlines.
         let silent = (link.deadline() / 2).max(LATE_PERIODS * Duration::from_secs_f64(self.placed.period_s()));
         let mut bytes = Vec::new();
         let mut patience = Duration::ZERO;
@@ -110,14 +112,14 @@ impl Stream {
     }
 }
 
-/// `None` at and beyond the nominal torque, where the counts are an overload.
+/// `None` at and beyond the nominal torque, where the counts indicate an overload.
 fn in_range(counts: i16, nominal_nm: f64) -> Option<NewtonMetres> {
     let within = counts.unsigned_abs() < NOMINAL_COUNTS.unsigned_abs();
     within.then(|| NewtonMetres(f64::from(counts) / f64::from(NOMINAL_COUNTS) * nominal_nm))
 }
 
 impl LorenzSensor {
-    /// The rotor's own word for the range of each channel. It must agree with the bench description.
+    /// The range of each channel as stored in the rotor. It must agree with the bench description.
     pub(super) fn nominals(&mut self) -> Result<[f64; 2], Fault> {
         let header = self.ready()?.request(&ReadConfig { block: ROTOR_HEADER })?;
         let nominals = LOADS.map(|offset| f64::from(header.number::<2>(offset)));

@@ -24,8 +24,8 @@ use crate::transport::Link;
 use jointbench_instrument::roles::Identity;
 use jointbench_instrument::{Fault, FaultKind};
 
-/// The instrument that answers must be the one that answered when the bench was opened. Where it is another, no request is
-/// answered any more before the first one is back.
+/// The instrument must be the one that answered when the bench was opened. If it is another one, all requests are
+/// refused until the original instrument is back.
 fn same(link: &mut Link, known: &mut Option<Identity>, found: Identity) -> Result<Identity, Fault> {
     match known {
         Some(known) if *known != found => {
@@ -37,10 +37,10 @@ fn same(link: &mut Link, known: &mut Option<Identity>, found: Identity) -> Resul
     }
 }
 
-/// A reply that comes later than the silence after a drain spoils the identification: drain once more, this often.
+/// Attempts to drain and identify. A reply that arrives after the silence of a drain spoils the identification.
 const ATTEMPTS: usize = 3;
 
-/// A link that is drained and identified again before the next use, where the last one failed.
+/// After a failed exchange the link is drained and the instrument identified again before the next use.
 trait Recovers {
     fn link(&mut self) -> &mut Link;
     fn drain_and_identify(&mut self) -> Result<Identity, Fault>;

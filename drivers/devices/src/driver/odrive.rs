@@ -1,4 +1,4 @@
-//! An ODrive as the joint's controller. Axis 0 drives the motor; the encoder input of axis 1 may carry the link encoder.
+//! An ODrive as the joint's controller. Axis 0 drives the motor; the encoder input of axis 1 may read the link encoder.
 
 use super::{Recovers, same};
 use crate::protocol::odrive::{
@@ -16,16 +16,16 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Replies print millionths of a turn.
+/// Replies have a resolution of 10⁻⁶ turns.
 const MICRO_TURN_RAD: f64 = TAU * 1e-6;
-/// Without a set-point for so long the drive stands down by itself.
+/// The drive disarms by itself after this time without a set-point.
 const WATCHDOG_S: f64 = 0.25;
-/// A drive that has not closed its loop after so long will not.
+/// Longest time for the drive to close its loop.
 const ARMING_S: f64 = 0.5;
-/// The drive's control loop of 8 kHz: a reply tells what the last one has made of the encoder.
+/// Period of the drive's control loop (8 kHz). A reply contains the encoder estimate of its last cycle.
 const ESTIMATES_EVERY_S: f64 = 125e-6;
 const VELOCITY_MODE: f64 = 2.0;
-/// Set-points go straight through, without the drive's own ramp.
+/// Set-points are applied directly, without the ramp of the drive.
 const PASSTHROUGH: f64 = 1.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,12 +43,12 @@ pub struct OdriveSettings {
     pub name: String,
     pub port: PortSettings,
     pub deadline_ms: u64,
-    /// The encoder input of axis 1 carries the link encoder.
+    /// The link encoder is wired to the encoder input of axis 1.
     pub link_encoder: bool,
     pub thermistor: Option<Thermistor>,
 }
 
-/// In the drive's units.
+/// Set-point in the units of the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum SetPoint {
     Velocity { turns_s: f64, torque_nm: f64 },
@@ -60,15 +60,15 @@ pub struct OdriveJoint {
     link: Link,
     clock: Arc<dyn Clock>,
     identity: Option<Identity>,
-    /// The set-point that the drive is known to hold, and since when on the bench's clock.
+    /// The confirmed set-point of the drive, with its time on the bench clock.
     held: Option<(SetPoint, f64)>,
-    /// Torque for each ampere as the drive counts it, read when it is armed.
+    /// Torque per ampere in the drive's configuration, read when it is armed.
     torque_constant_nm_per_a: f64,
     armed: bool,
 }
 
 impl OdriveJoint {
-    /// Opens the port and identifies the drive. Nothing is commanded.
+    /// Opens the port and identifies the drive. Sends no command.
     pub fn open(settings: OdriveSettings, clock: Arc<dyn Clock>) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
         let mut joint =
@@ -81,7 +81,7 @@ impl OdriveJoint {
         self.link.request(&Set { path, value }).map(|_| ())
     }
 
-    /// Every set is read back. An unchanged set-point goes out again only as often as the watchdog needs it.
+    /// Every set-point is read back. An unchanged set-point is sent again only as often as the watchdog needs it.
     fn hold(&mut self, wanted: SetPoint) -> Result<(), Fault> {
         let (first, second) = match wanted {
             SetPoint::Velocity { turns_s, torque_nm } => (turns_s, torque_nm),
@@ -144,11 +144,11 @@ impl Recovers for OdriveJoint {
 
     fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
         self.held = None;
-        // Ends a line that broke off; its error reply is thrown away with the rest.
+        // Ends an incomplete line; its error reply is discarded with the rest.
         self.link.drain(b"\n", true)?;
         let found = self.link.probe(&ReadInfo)?;
         let identity = same(&mut self.link, &mut self.identity, found)?;
-        // Positions after a power-up count from elsewhere: no reading may follow one from before.
+        // After a power-up positions have another zero, so readings from before and after must not be mixed.
         if self.armed && self.link.probe(&ReadNumber { path: "axis0.current_state" })? != CLOSED_LOOP {
             self.armed = false;
             let what = "the drive disarmed: interrupted by its supply or its watchdog".into();
@@ -182,8 +182,8 @@ impl Instrument for OdriveJoint {
 }
 
 impl JointController for OdriveJoint {
-    /// The speed limit becomes the drive's `vel_limit`, which trips at 1.2 times its value in every mode and reduces the
-    /// torque in torque mode: raised to the bench's limit, it stays out of the way of measurements.
+    /// The speed limit becomes the drive's `vel_limit`, which trips at 1.2 times its value in every mode and reduces
+    /// the torque in torque mode. At the bench limit it does not affect measurements.
     fn arm(&mut self, speed_limit: RadPerSec, current_limit: Amperes) -> Result<(), Fault> {
         if self.state()? != IDLE {
             self.disarm()?;
@@ -195,7 +195,7 @@ impl JointController for OdriveJoint {
         self.set("axis0.motor.config.current_lim", current_limit.0)?;
         self.torque_constant_nm_per_a =
             self.link.request(&ReadNumber { path: "axis0.motor.config.torque_constant" })?;
-        // Set-points survive a disarm: an old one would move the joint at once.
+        // Set-points survive a disarm, so an old one would move the joint immediately.
         self.set("axis0.controller.input_torque", 0.0)?;
         self.set_velocity(RadPerSec(0.0))?;
         self.set("axis0.config.watchdog_timeout", WATCHDOG_S)?;

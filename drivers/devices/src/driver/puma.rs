@@ -1,8 +1,8 @@
 //! One axis of a Puma-type servo as the joint's controller.
 //!
-//! The servo takes positions: a velocity becomes a set-point each time that it is asked for, which the servo reaches
-//! `ninter` ticks later. Where it is asked for more often than that, the joint follows smoothly and a little behind. The
-//! servo tells no velocity: it is the way between two readings over the time between them.
+//! The servo accepts positions. Each velocity command is converted to a position set-point, which the servo reaches
+//! `ninter` ticks later. If commands arrive faster, the joint follows smoothly with a small delay. The servo reports no
+//! velocity: it is the position difference of two readings over their time difference.
 
 use super::{Recovers, same};
 use crate::protocol::puma::{
@@ -22,11 +22,11 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A servo whose arm power is not on after so long will not get it.
+/// Longest time for the servo to switch its arm power on.
 const ARMING_S: f64 = 1.0;
-/// Between the two positions of a first velocity.
+/// Time between the two positions of a first velocity.
 const GLANCE_S: f64 = 0.02;
-/// The servo takes arm power away where nobody asks for longer: no set-point makes up for more.
+/// The servo switches arm power off after a longer time without a request, so a set-point covers at most this time.
 const LONGEST_GAP_S: f64 = 0.25;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,17 +35,17 @@ pub struct PumaSettings {
     pub name: String,
     pub port: PortSettings,
     pub deadline_ms: u64,
-    /// Of the motor's encoder, four for each line.
+    /// Counts per turn of the motor encoder, four per line.
     pub counts_per_turn: u32,
-    /// Motor current for each volt at the A/D converter.
+    /// Motor current per volt at the A/D converter.
     pub amperes_per_volt: f64,
-    /// Clock ticks of 0.875 ms from one set-point to the next: more than the time between two commands of the bench.
+    /// Clock ticks of 0.875 ms between set-points: more than the time between two commands of the bench.
     pub ninter: u8,
     #[serde(default)]
     pub gains: PumaGains,
 }
 
-/// What the servo's position loop is set to when it is armed. `None`: as the servo has it.
+/// Gains that are written when the servo is armed. `None`: the servo keeps its own value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PumaGains {
@@ -59,7 +59,7 @@ pub struct PumaGains {
 }
 
 impl PumaGains {
-    /// Addresses and bytes.
+    /// Addresses and bytes to write.
     fn written(self) -> impl Iterator<Item = (u8, u8)> {
         let bytes = [
             (memory::PROPORTIONAL_GAIN, self.propgan),
@@ -75,11 +75,11 @@ impl PumaGains {
     }
 }
 
-/// What the servo was told last.
+/// The last command to the servo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Told {
     Nothing,
-    /// The position that it goes to, the velocity that it was asked for, and when.
+    /// Target position, commanded velocity and time of the command.
     Position {
         counts: f64,
         velocity_rad_s: f64,
@@ -88,7 +88,7 @@ enum Told {
     Current,
 }
 
-/// The newest position, without the wraps of its word.
+/// The latest position, unwrapped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Seen {
     at_s: f64,
@@ -108,7 +108,7 @@ pub struct PumaAxis {
 }
 
 impl PumaAxis {
-    /// Opens the port and identifies the servo. Nothing is commanded.
+    /// Opens the port and identifies the servo. Sends no command.
     pub fn open(settings: PumaSettings, clock: Arc<dyn Clock>) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
         let usable = settings.counts_per_turn > 0 && settings.ninter > 0 && settings.amperes_per_volt > 0.0;
@@ -127,13 +127,13 @@ impl PumaAxis {
         Numbered { number: self.number, order }
     }
 
-    /// Asks whatever the state of the link.
+    /// Sends an order in any state of the link.
     fn probe<O: Order>(&mut self, order: O) -> Result<Reply<O::Reply>, Fault> {
         let request = self.numbered(order);
         self.link.probe(&request)
     }
 
-    /// Asks a servo that still counts from where it did.
+    /// Sends an order and reports a fault if the servo has lost its position reference.
     fn ask<O: Order>(&mut self, order: O) -> Result<O::Reply, Fault> {
         let request = self.numbered(order);
         let reply = self.ready()?.request(&request)?;
@@ -144,7 +144,7 @@ impl PumaAxis {
         Ok(reply.value)
     }
 
-    /// Who answers, and whether it counts from a power-up.
+    /// Identity of the servo, and whether its position reference is from a new power-up.
     fn facts(&mut self) -> Result<(Identity, bool), Fault> {
         let [arm, axis, serial, revision] =
             [Fact::Arm, Fact::Axis, Fact::Serial, Fact::Revision].map(|fact| self.probe(Identify(fact)));
@@ -186,7 +186,7 @@ impl PumaAxis {
         Ok(seen)
     }
 
-    /// That the servo's memory has what was written there.
+    /// Verifies that the servo's memory contains the written byte.
     fn check(&mut self, address: u8, wanted: u8) -> Result<(), Fault> {
         let held = self.ask(DiagRead(address))?;
         if held == wanted {
@@ -199,7 +199,7 @@ impl PumaAxis {
         Err(self.link.fault(FaultKind::Refused { what }))
     }
 
-    /// What amperes are at the converter; the set-point ends where the converter does.
+    /// Converter counts of a current. A current beyond the range of the converter is refused.
     fn converter_counts(&self, current: Amperes) -> Result<i16, Fault> {
         let counts = (current.0 / self.settings.amperes_per_volt / VOLTS_PER_COUNT).round();
         if counts.abs() <= f64::from(MOST_COUNTS) {
@@ -263,7 +263,7 @@ impl Instrument for PumaAxis {
 }
 
 impl JointController for PumaAxis {
-    /// The servo knows no limit of speed: the bench's guard has to watch it.
+    /// The servo has no speed limit: the guard of the bench must monitor the speed.
     fn arm(&mut self, _speed_limit: RadPerSec, current_limit: Amperes) -> Result<(), Fault> {
         let ninter = self.settings.ninter;
         let limit = self.converter_counts(current_limit)?;
@@ -298,14 +298,14 @@ impl JointController for PumaAxis {
             return Err(self.link.fault(FaultKind::Refused { what }));
         }
         let at_s = self.clock.now_s();
-        // Also where a current has moved the joint: from where it is now.
+        // After current mode the motion starts from the present position.
         let (from, since_s, before_rad_s) = match self.told {
             Told::Position { counts, velocity_rad_s, at_s: told_s } => (counts, at_s - told_s, velocity_rad_s),
             Told::Nothing | Told::Current => (self.look()?.counts as f64, 0.0, velocity.0),
         };
         let mean_rad_s = 0.5 * (before_rad_s + velocity.0);
         let counts = from + mean_rad_s * since_s.min(LONGEST_GAP_S) / self.step_rad();
-        // The word wraps as the encoder's does.
+        // The word wraps like the encoder counter.
         self.ask(PositionMode(counts.round() as i64 as i16))?;
         self.told = Told::Position { counts, velocity_rad_s: velocity.0, at_s };
         Ok(())
@@ -357,7 +357,7 @@ impl JointController for PumaAxis {
         }
     }
 
-    /// It takes positions, or a current alone.
+    /// The servo accepts positions, or a current alone.
     fn feeds_forward(&self) -> bool {
         false
     }

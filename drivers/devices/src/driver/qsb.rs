@@ -13,9 +13,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Four counts a period, running freely over 32 bits, the index ignored. The factory's setting wraps at 500 counts.
+/// Four counts per period, free-running over 32 bits, index ignored. The factory setting wraps at 500 counts.
 const FREE_RUNNING_X4: u32 = 0x03;
-/// The same, but the count is 0 at every index that is passed.
+/// The same, but each passage of the index sets the count to 0.
 const ZERO_AT_INDEX: u32 = FREE_RUNNING_X4 | 0x60;
 const DOWNWARDS: u32 = 1 << 8;
 const CLEAR_COUNT: u32 = 2;
@@ -29,11 +29,11 @@ pub struct QsbSettings {
     pub name: String,
     pub port: PortSettings,
     pub deadline_ms: u64,
-    /// After the quadrature's factor of four: 16384 for 14 bit.
+    /// After the quadrature factor of four: 16384 for 14 bits.
     pub counts_per_turn: u32,
     #[serde(default)]
     pub reversed: bool,
-    /// Digital input that the encoder's status output is wired to. High: the periods are consistent.
+    /// Digital input that is wired to the encoder's status output. High: the periods are consistent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub status_input: Option<u8>,
 }
@@ -45,13 +45,13 @@ pub struct QsbCounter {
     identity: Option<Identity>,
     configured: bool,
     seeks_index: bool,
-    /// The last count as it came, and without the wraps at 32 bits.
+    /// The last raw count, and the count without the wraps at 32 bits.
     last: u32,
     total: i64,
 }
 
 impl QsbCounter {
-    /// Opens the port, identifies the counter and sets how it counts. The count goes on from where it is.
+    /// Opens the port, identifies the counter and configures its counting mode. The count is kept.
     pub fn open(settings: QsbSettings, clock: Arc<dyn Clock>) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
         if settings.counts_per_turn == 0 {
@@ -80,7 +80,7 @@ impl QsbCounter {
         Ok(())
     }
 
-    /// Who answers, and whether it still counts from where it did.
+    /// Identity of the counter, and whether it still has its position reference.
     fn who(&mut self) -> Result<Identity, Fault> {
         let version = Version::from(self.link.probe(&ReadRegister(Register::Version))?.value);
         let found = Identity {
@@ -176,7 +176,7 @@ impl PositionCounter for QsbCounter {
         let asked_s = self.clock.now_s();
         let Held { value, stamp } = self.read_register(Register::Encoder)?;
         let (at_s, uncertainty_s) = between(asked_s, self.clock.now_s());
-        // Differences are right across the wrap at 32 bits.
+        // Differences are correct across the wrap at 32 bits.
         self.total += i64::from(value.wrapping_sub(self.last) as i32);
         self.last = value;
         let turns = self.total as f64 / f64::from(self.settings.counts_per_turn);

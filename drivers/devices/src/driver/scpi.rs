@@ -27,15 +27,15 @@ pub struct ScpiSource {
     settings: ScpiSettings,
     link: Link,
     line_end: Terminator,
-    /// Told by its identity.
+    /// Determined from the identity.
     dialect: Dialect,
     identity: Option<Identity>,
-    /// The output was switched on, and not off again.
+    /// The output was switched on and not switched off since.
     on: bool,
 }
 
 impl ScpiSource {
-    /// Opens the port and identifies the supply. Nothing is commanded.
+    /// Opens the port and identifies the supply. Sends no command.
     pub fn open(settings: ScpiSettings) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
         let line_end = Terminator::for_address(&settings.port.address);
@@ -44,7 +44,7 @@ impl ScpiSource {
         Ok(source)
     }
 
-    /// Sets, asks the error queue, and where it holds anything, empties it and reports all of it.
+    /// Sends a command and reads the error queue. Reports all its entries and empties it.
     fn set(&mut self, command: String) -> Result<(), Fault> {
         let line_end = self.line_end;
         let link = self.ready()?;
@@ -74,7 +74,7 @@ impl ScpiSource {
         Ok(())
     }
 
-    /// A supply that switches off by itself, without a trip, has lost its state, or is another one.
+    /// A supply that is off without a trip or a command has lost its state, or is another supply.
     fn still_on(&mut self, on: bool) -> Result<(), Fault> {
         if std::mem::replace(&mut self.on, on) && !on {
             let found = self.link.probe(&Identify(self.line_end))?;
@@ -114,7 +114,7 @@ impl Recovers for ScpiSource {
     }
 
     fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
-        // A query that was not understood is never answered: drain, clear, ask who is there. Never "read again".
+        // An unknown query is never answered, so reading again does not help: drain, clear, identify.
         let mut clear = b"\n".to_vec();
         ClearStatus(self.line_end).encode(&mut clear);
         self.link.drain(&clear, false)?;
@@ -192,10 +192,10 @@ impl CurrentSource for ScpiSource {
     }
 
     fn output_off(&mut self) -> Result<(), Fault> {
-        // Out first, whatever the state of the link; then the question whether it was taken.
+        // The command is sent first, in any state of the link. Then its effect is verified.
         self.command_off()?;
         match self.output(false) {
-            // Whichever supply answers, it is the one that feeds the coil. It may be one of another dialect.
+            // The supply that answers feeds the coil, even if it is another one. It may have another dialect.
             Err(Fault { kind: FaultKind::WrongInstrument { .. }, .. }) => {
                 self.command_off()?;
                 self.read_back(false)

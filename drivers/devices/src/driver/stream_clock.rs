@@ -1,34 +1,34 @@
-//! When the samples of a stream were taken, on the bench's clock, from their numbers alone.
+//! Times of a stream's samples on the bench clock, computed from their numbers alone.
 //!
-//! A stream carries no time. Its first sample is one period younger than the command that started it, which left between
-//! two readings of the bench's clock. From there on the sensor's own quartz counts, at a rate of its own. Looks at the
-//! stream narrow what start and rate can be: the newest sample was taken before it was there, and not long before, where
-//! the looks are spread over the period. What is left is a polygon, and its width at a sample is how far that sample may
-//! be off (set membership; Milanese and Vicino 1991).
+//! A stream has no time stamps. Its first sample is one period later than the start command, which was sent between two
+//! readings of the bench clock. From then on the quartz of the sensor determines the rate. Each read of the stream
+//! limits start and rate: the newest sample was taken before the read and, because reads are spread over the period,
+//! not long before it. The possible values of start and drift form a polygon. Its width at a sample is the uncertainty
+//! of that sample's time (set membership; Milanese and Vicino 1991).
 
-/// Quartzes are off by less than this (assumed: 50 ppm parts on both sides).
+/// Bound of the quartz frequency error (assumed: 50 ppm parts on both sides).
 const QUARTZ_TOLERANCE: f64 = 100e-6;
-/// The shortest way from the sensor to us takes no longer (assumed: 5 bytes at 230400 baud take 0.22 ms).
+/// Upper bound of the shortest transmission time from the sensor (assumed: 5 bytes at 230400 baud take 0.22 ms).
 const SHORTEST_WAY_S: f64 = 0.25e-3;
-/// Readings of the bench's clock may be off the moment that they are for by this.
+/// Largest error of a reading of the bench clock.
 const GRAIN_S: f64 = 0.1e-3;
-/// A bench looks at a steady pace, often a multiple of the period: always at the same age of the newest sample. Every few
-/// looks one is put off, each time by another of so many parts of the period.
+/// A bench often reads at a multiple of the period, always at the same age of the newest sample. Therefore one of every
+/// `LOOKS_BETWEEN` reads is delayed, each time by another multiple of 1/`PARTS` of the period.
 const PARTS: u64 = 8;
 const LOOKS_BETWEEN: u64 = 4;
-/// The sample that was there the soonest speaks for all since the looks went through the parts.
+/// The sample with the shortest delay represents all reads of one cycle through the parts.
 const BLOCK: u64 = PARTS * LOOKS_BETWEEN;
 
 pub struct StreamClock {
     period_s: f64,
     started_s: f64,
-    /// Corners of what (start, drift for each sample) can be, relative to the nominal moments.
+    /// Corners of the possible (start, drift per sample), relative to the nominal times.
     possible: Vec<(f64, f64)>,
     looks: u64,
     soonest: Option<(u64, f64)>,
 }
 
-/// A moment on the bench's clock, and how far it may be off either way.
+/// A time on the bench clock, and its largest error in either direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment {
     pub at_s: f64,
@@ -36,7 +36,7 @@ pub struct Moment {
 }
 
 impl StreamClock {
-    /// `before_s`, `after_s`: around the command that started the stream.
+    /// `before_s`, `after_s`: times before and after the command that started the stream.
     pub fn new(period_s: f64, before_s: f64, after_s: f64) -> Self {
         let (first, last) = (-GRAIN_S, after_s - before_s + GRAIN_S);
         let drift = QUARTZ_TOLERANCE * period_s;
@@ -48,13 +48,13 @@ impl StreamClock {
         self.period_s
     }
 
-    /// By how much the next look is to be put off.
+    /// Delay of the next read.
     pub fn delay_s(&self) -> f64 {
         let part = self.looks / LOOKS_BETWEEN % PARTS;
         if self.looks.is_multiple_of(LOOKS_BETWEEN) { part as f64 / PARTS as f64 * self.period_s } else { 0.0 }
     }
 
-    /// At `now_s` sample `number`, counted from 0, was the newest.
+    /// Sample `number`, counted from 0, was the newest sample at `now_s`.
     pub fn newest(&mut self, number: u64, now_s: f64) {
         let late_s = now_s - self.nominal_s(number);
         if self.soonest.is_none_or(|(_, soonest_s)| late_s < soonest_s) {
@@ -74,7 +74,7 @@ impl StreamClock {
         Moment { at_s, uncertainty_s: 0.5 * (most_s - least_s) }
     }
 
-    /// How many samples must be there at `now_s`, unless the line is slower than usual.
+    /// Number of samples that must have arrived at `now_s`, unless the line is slower than usual.
     pub fn due(&self, now_s: f64) -> u64 {
         let count = |late_s: f64| ((now_s - self.started_s - late_s) / self.period_s).max(0.0) as u64;
         let (_, most_s) = self.range_s(count(0.0));
@@ -85,7 +85,7 @@ impl StreamClock {
         self.started_s + (number + 1) as f64 * self.period_s
     }
 
-    /// How late a sample can be, at least and at most.
+    /// Smallest and largest possible deviation of a sample from its nominal time.
     fn range_s(&self, number: u64) -> (f64, f64) {
         let late_s = self.possible.iter().map(|(start_s, drift_s)| start_s + drift_s * number as f64);
         late_s.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), late| (least.min(late), most.max(late)))
@@ -96,9 +96,9 @@ impl StreamClock {
         let least_s = late_s - self.period_s / PARTS as f64 - SHORTEST_WAY_S - GRAIN_S;
         let below = clip(&self.possible, |(start_s, drift_s)| most_s - start_s - drift_s * number);
         let mut within = clip(&below, |(start_s, drift_s)| start_s + drift_s * number - least_s);
-        // Lines that nearly meet in one point leave corners there, more with every block.
+        // Lines that nearly meet in one point add corners with every block.
         within.dedup_by(|a, b| (a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-15);
-        // Nothing left: the way was longer than assumed all through the block. Then it says nothing.
+        // Nothing left: transmission was slower than assumed for the whole block, so the block is ignored.
         if within.len() > 2 {
             self.possible = within;
         }
@@ -126,7 +126,8 @@ fn clip(polygon: &[(f64, f64)], inside: impl Fn((f64, f64)) -> f64) -> Vec<(f64,
 mod tests {
     use super::*;
 
-    /// Ten minutes of 1000 samples a second, looked at every 4 ms, over a cable that takes 0.2 ms and now and then longer.
+    /// Ten minutes at 1000 samples per second, read every 4 ms, over a cable with a delay of 0.2 ms and occasionally
+    /// more.
     fn check(quartz: f64, command_s: f64) {
         let period_s = 1e-3;
         let real_s = period_s * (1.0 + quartz);

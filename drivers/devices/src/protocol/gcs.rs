@@ -1,7 +1,7 @@
-//! PI GCS 2.0 (General Command Set), as the C-887 hexapod controller speaks it.
+//! PI GCS 2.0 (General Command Set) of the C-887 hexapod controller.
 //!
-//! Sets have no reply, so every set travels with the question for the error register. Every line of a reply but the last ends
-//! with a blank before its line feed.
+//! Set commands have no reply, so each is sent together with a query of the error register. Every line of a reply
+//! except the last ends with a space before its line feed.
 
 use crate::transport::{Command, Request, Scan, shown};
 use jointbench_instrument::FaultKind;
@@ -10,7 +10,7 @@ use jointbench_instrument::roles::Identity;
 const REPLY_LIMIT: usize = 2048;
 pub const AXES: [char; 6] = ['X', 'Y', 'Z', 'U', 'V', 'W'];
 
-/// A reply is complete at a line feed without a blank before it.
+/// A reply is complete at a line feed without a space before it.
 fn scan_reply(received: &[u8]) -> Scan {
     let ends = |at: &usize| received[*at] == b'\n' && (*at == 0 || received[at - 1] != b' ');
     match (0..received.len()).find(ends) {
@@ -66,7 +66,7 @@ query!(Identify, |_this| "*IDN?", Identity, |text| {
     Ok(Identity { maker: owned(maker), model: owned(model), serial: owned(serial), firmware: owned(firmware) })
 });
 
-/// The error since the last question; asking clears it.
+/// The error since the last query; the query clears it.
 #[derive(Debug, Clone, Copy)]
 pub struct QueryError;
 
@@ -91,7 +91,7 @@ query!(QueryAxes, |this| this.0, [f64; 6], |text| {
     if lines.next().is_some() { Err(garbled()) } else { Ok(values) }
 });
 
-/// Whether a pose can be reached.
+/// Whether a pose is within reach.
 #[derive(Debug, Clone, Copy)]
 pub struct QueryReachable(pub [f64; 6]);
 
@@ -101,12 +101,12 @@ query!(QueryReachable, |this| format!("VMO? {}", pairs(this.0)), bool, |text| ma
     _ => Err(FaultKind::Garbled { what: format!("`{text}`: expected 0 or 1") }),
 });
 
-/// A command with the question whether it was taken.
+/// A command followed by a query whether it was accepted.
 #[derive(Debug, Clone)]
 pub struct Set(pub String);
 
 impl Set {
-    /// To a pose in mm and degrees, all axes arriving together.
+    /// Moves to a pose in mm and degrees; all axes arrive together.
     pub fn move_to(axes: [f64; 6]) -> Self {
         Self(format!("MOV {}", pairs(axes)))
     }
@@ -141,7 +141,7 @@ impl Request for Set {
     }
 }
 
-/// Stops everything at once, whatever is being sent. No reply; leaves error 10 behind.
+/// Stops everything immediately, even in the middle of another command. No reply; sets error 10.
 #[derive(Debug, Clone, Copy)]
 pub struct StopAll;
 
@@ -155,7 +155,7 @@ impl Command for StopAll {
     }
 }
 
-/// The controller's words for the codes that a bench meets.
+/// The controller's texts for the codes that occur on a bench.
 pub fn error_text(code: u32) -> String {
     let text = match code {
         1 => "parameter syntax error",

@@ -1,4 +1,5 @@
-//! What the instruments speak: bytes in, bytes out, no port. One type for each command; a request knows its reply.
+//! The protocols of the instruments: bytes in, bytes out, no port. One type per command; a request knows its reply
+//! type.
 
 pub mod gcs;
 pub mod lorenz;
@@ -16,7 +17,7 @@ fn crc16(bytes: &[u8]) -> [u8; 2] {
     bytes.iter().fold(0xFFFF_u16, |sum, byte| (0..8).fold(sum ^ u16::from(*byte), |sum, _| step(sum))).to_le_bytes()
 }
 
-/// A reply line up to its line feed. Longer than `limit` without one: noise.
+/// A reply line up to its line feed. A longer input than `limit` without a line feed is noise.
 fn scan_line(received: &[u8], limit: usize) -> Scan {
     match received.iter().position(|byte| *byte == b'\n') {
         Some(end) => Scan::Packet { length: end + 1 },

@@ -1,4 +1,4 @@
-//! Modbus RTU (Modbus over Serial Line 1.02): reading holding registers, which is all that the bench's thermometer needs.
+//! Modbus RTU (Modbus over Serial Line 1.02): reads holding registers, which is enough for the thermometer.
 
 use super::crc16;
 use crate::transport::{Command, Request, Scan, shown};
@@ -9,7 +9,7 @@ const EXCEPTION: u8 = 0x80;
 /// Slave, function, exception code, checksum.
 const EXCEPTION_LENGTH: usize = 5;
 
-/// Up to 125 registers that follow each other.
+/// Up to 125 consecutive registers.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadRegisters {
     pub slave: u8,
@@ -39,7 +39,8 @@ impl Command for ReadRegisters {
 impl Request for ReadRegisters {
     type Reply = Vec<u16>;
 
-    /// A frame whose checksum is wrong is noise up to what may begin another one, and a garbled reply where nothing does.
+    /// A frame with a wrong checksum is noise up to the next possible start of a frame. Without such a start it is a
+    /// garbled reply.
     fn scan(&self, received: &[u8]) -> Scan {
         let begins = |at: &usize| {
             let function = received.get(at + 1).copied().unwrap_or(READ_HOLDING);

@@ -1,7 +1,7 @@
 //! US Digital QSB quadrature counters (QSB Command List 1.28): registers, read and written as hexadecimal lines.
 //!
-//! A driver sets the reply format first ([`FORMAT`]): line ends, spaces and a time stamp. What the unit holds by default is
-//! no line that a reader could wait for the end of with every setting.
+//! A driver sets the reply format first ([`FORMAT`]): line ends, spaces and a time stamp. With the default format a
+//! reader cannot detect the end of a line in every configuration.
 
 use super::scan_line;
 use crate::transport::{Command, Request, Scan, shown};
@@ -28,14 +28,14 @@ pub enum Register {
     Command = 0x16,
 }
 
-/// What a register holds, and when: the stamp counts 1/512 s.
+/// The value of a register and its time; the stamp counts 1/512 s.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Held {
     pub value: u32,
     pub stamp: u32,
 }
 
-/// Who a unit is, out of [`Register::Version`].
+/// Identity of a unit, from [`Register::Version`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Version {
     pub serial: u32,
@@ -51,7 +51,7 @@ impl From<u32> for Version {
     }
 }
 
-/// Stops whatever is streamed, sets the reply format. Its replies come in whatever format was set before.
+/// Stops all streams and sets the reply format. Its replies still have the previous format.
 #[derive(Debug, Clone, Copy)]
 pub struct Quieten;
 
@@ -90,7 +90,7 @@ impl Request for ReadRegister {
     }
 }
 
-/// A write is answered with the value that the register then holds.
+/// The reply to a write is the value of the register after the write.
 #[derive(Debug, Clone, Copy)]
 pub struct WriteRegister(pub Register, pub u32);
 

@@ -1,4 +1,4 @@
-//! The mock bench as its owner sees it.
+//! The mock bench as seen by its owner.
 
 use super::clock::SteppedClock;
 use super::data_sheet::{Joint, Load};
@@ -22,19 +22,19 @@ use std::io;
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
-/// Counts of a turn of encoders S1 and S2, as their owner knows them.
+/// Counts per turn of encoders S1 and S2, as known to their owner.
 pub const ENCODER_COUNTS: [u32; 2] = [1 << 14, 1 << 18];
-/// Ticks from one set-point of the Puma to the next: 28 ms, VAL's own.
+/// Ticks between the set-points of the Puma: 28 ms, as in VAL.
 const NINTER: u8 = 32;
-/// Generous: other programs share the machine with a simulated instrument.
+/// Long, because other programs share the machine with a simulated instrument.
 const DEADLINE_MS: u64 = 3000;
 
-/// What the instruments' wires are.
+/// The type of the instruments' wires.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Transport {
-    /// Within this process, for whoever holds the bench: fast, and nobody else can listen.
+    /// Inside this process, only for the owner of the bench: fast, and closed to other programs.
     Inside,
-    /// Pseudo-terminals; loopback TCP on systems that have none.
+    /// Pseudo-terminals; loopback TCP on systems without them.
     Terminal,
     Tcp,
 }
@@ -47,24 +47,26 @@ pub struct MockSettings {
     pub seed: u64,
     /// Whether the filter of the encoder under test is on.
     pub filter: bool,
-    /// Names out of [`Joint::hides`].
+    /// Names from [`Joint::hides`].
     pub effects: Vec<String>,
-    /// Bench seconds for each second of wall time. `None`: as fast as it goes.
+    /// Bench seconds per second of wall time. `None`: as fast as possible.
     pub pace: Option<f64>,
     pub transport: Transport,
-    /// Bytes take the time on the wall that they take on the instrument's line; not [`Transport::Inside`]. Otherwise none.
+    /// Bytes take the wall time that they take on the instrument's line, except with [`Transport::Inside`]. Otherwise
+    /// they take no time.
     pub paced_lines: bool,
-    /// For the drivers that [`MockBench::open_bench`] opens.
+    /// Deadline of the drivers that [`MockBench::open_bench`] opens.
     pub deadline_ms: u64,
     pub troubles: Vec<PlannedTrouble>,
-    /// Beyond the joint, and the torque sensor and the brake of a bench with a load.
+    /// Instruments in addition to the joint, and to the torque sensor and brake of a bench with a load.
     pub others: Vec<MockInstrument>,
-    /// Of the Puma's servo.
+    /// Gains of the Puma's servo.
     pub gains: PumaGains,
 }
 
 impl MockSettings {
-    /// An encoder shaft comes without a load and with the instruments of its bench, an arm with nothing but its servo.
+    /// Default bench of a joint: an encoder shaft has no load and the instruments of its bench, an arm has only its
+    /// servo.
     pub fn new(joint: Joint, seed: u64) -> Self {
         let (load, others) = match joint {
             Joint::JointA | Joint::JointB => (Load::default(), Vec::new()),
@@ -88,7 +90,7 @@ impl MockSettings {
         }
     }
 
-    /// The smallest range of the torque sensor that holds the load, and its nominal torque [Nm].
+    /// The smallest range of the torque sensor that suits the load, and its nominal torque [Nm].
     fn torque_range(&self) -> Option<(Range, f64)> {
         match self.load {
             Load::BrakeA => Some((Range::Fine, 20.0)),
@@ -97,12 +99,12 @@ impl MockSettings {
         }
     }
 
-    /// Motor current for each volt, where the joint's servo reads it as the voltage at a shunt.
+    /// Motor current per volt, if the joint's servo measures it as the voltage at a shunt.
     pub fn amperes_per_volt(&self) -> Option<f64> {
         (self.joint == Joint::Puma).then_some(AMPERES_PER_VOLT)
     }
 
-    /// Whether the joint's servo takes a motor current beside a velocity.
+    /// Whether the joint's servo accepts a feed-forward motor current in addition to a velocity.
     pub fn feeds_forward(&self) -> bool {
         self.joint != Joint::Puma
     }
@@ -184,7 +186,7 @@ impl MockBench {
         Ok(bench)
     }
 
-    /// Moves only in `sleep_until_s`.
+    /// A clock that advances only in `sleep_until_s`.
     pub fn clock(&self) -> Arc<dyn Clock> {
         Arc::clone(&self.clock) as Arc<dyn Clock>
     }
@@ -193,17 +195,17 @@ impl MockBench {
         &self.settings
     }
 
-    /// What this bench hides. Nothing of it is on any wire.
+    /// The hidden parameters of this bench. They are never sent over a wire.
     pub fn truth(&self) -> &Truth {
         &self.truth
     }
 
-    /// Gives an instrument a bad day, or ends it.
+    /// Starts or ends a trouble of an instrument.
     pub fn trouble(&self, instrument: MockInstrument, trouble: Trouble) {
         lock(&self.rig).afflict(instrument, trouble);
     }
 
-    /// Whether whoever keeps the readings of this bench is to find no room for them.
+    /// Whether the recorder of this bench is to find a full disk.
     pub fn disk_is_full(&self) -> bool {
         lock(&self.rig).trouble(MockInstrument::Disk) == Trouble::DiskFull
     }
@@ -231,7 +233,7 @@ impl MockBench {
         }
     }
 
-    /// What the ordinary drivers need to reach the instruments of this bench.
+    /// The settings with which the ordinary drivers reach the instruments of this bench.
     pub fn instruments(&self) -> InstrumentSettings {
         let deadline_ms = self.settings.deadline_ms;
         let port = |instrument: MockInstrument| {
@@ -275,23 +277,23 @@ impl MockBench {
         Ok(Bench { power: Some(self.power_switch()), ..bench })
     }
 
-    /// As if the process that has the instruments open were killed: they stay as they are, and can be opened again. Only for
-    /// instruments within this process; the system does it for its own ports.
+    /// As if the process that opened the instruments were killed: they keep their state and can be opened again. Only
+    /// for instruments inside this process; the system does it for its own ports.
     pub fn orphan(&self) {
         self.ports.iter().for_each(|(_, port)| port.release());
     }
 
-    /// Takes the power of an encoder away, with its counter's, and gives it back; by the names of [`MockBench::instruments`].
+    /// Switches the power of an encoder and its counter off and on, by the names of [`MockBench::instruments`].
     pub fn power_switch(&self) -> Box<dyn PowerSwitch> {
         Box::new(Switch(Arc::clone(&self.rig)))
     }
 
-    /// Every instrument by its name, and where it answers now.
+    /// Name and present address of every instrument.
     pub fn addresses(&self) -> Vec<(&'static str, Address)> {
         self.ports.iter().map(|(instrument, port)| (instrument.label(), port.address())).collect()
     }
 
-    /// Where an instrument answers now. `None`: this bench does not have it.
+    /// Present address of an instrument. `None`: this bench does not have it.
     pub fn address(&self, wanted: MockInstrument) -> Option<Address> {
         self.ports.iter().find(|(instrument, _)| *instrument == wanted).map(|(_, port)| port.address())
     }

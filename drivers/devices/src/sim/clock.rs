@@ -1,4 +1,4 @@
-//! The mock bench's time: it moves when somebody waits, and only then.
+//! The time of the mock bench: it advances only while a caller waits.
 
 use super::rig::Rig;
 use jointbench_instrument::Clock;
@@ -6,17 +6,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The rig is let go between slices of this length, so that instruments can be asked meanwhile.
+/// The rig is unlocked between slices of this length, so that instruments can be asked meanwhile.
 const SLICE_S: f64 = 0.02;
-/// What is made up for after a delay. A bench that nobody has waited on for minutes does not race through the next run.
+/// The longest delay to catch up. A bench that was idle for minutes must not race through the next run.
 const FORGIVEN: Duration = Duration::from_millis(100);
 
 pub struct SteppedClock {
     rig: Arc<Mutex<Rig>>,
     now_bits: AtomicU64,
-    /// Bench seconds for each second of wall time; `None`: as fast as it goes.
+    /// Bench seconds per second of wall time; `None`: as fast as possible.
     pace: Option<f64>,
-    /// When the wall's clock may show what this one does.
+    /// Wall time that corresponds to the present bench time.
     due: Mutex<Instant>,
 }
 
@@ -46,11 +46,12 @@ impl Clock for SteppedClock {
         while self.now_s() < t_s {
             let passed_s = {
                 let mut rig = self.rig.lock().unwrap_or_else(PoisonError::into_inner);
-                // Who else waits may have moved it meanwhile.
+                // Another waiting caller may have advanced it meanwhile.
                 let before_s = self.now_s();
                 let slice_s = before_s.max(t_s.min(before_s + SLICE_S));
                 rig.advance_until(slice_s);
-                // The time asked for, not the substep's: readings a period apart then differ by exactly that period.
+                // The requested time, not that of the substep: readings one period apart then differ by exactly that
+                // period.
                 self.now_bits.store(slice_s.to_bits(), Ordering::Release);
                 slice_s - before_s
             };

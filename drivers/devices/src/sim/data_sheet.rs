@@ -1,11 +1,11 @@
-//! The joints under test as their papers describe them, and the brake: what an owner of the bench knows beforehand.
+//! Data sheets of the joints under test and the brake, known to the owner of the bench.
 
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// What the drive turns: the two joints of the thesis behind the bench, the motor of its encoder bench, or an arm.
+/// The object that the drive turns: one of the two joints of the thesis, the motor of its encoder bench, or an arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Joint {
@@ -13,26 +13,26 @@ pub enum Joint {
     JointA,
     /// Two belts, 50:1, 20 Nm, no stops.
     JointB,
-    /// No gear: the shaft carries the two encoders of the encoder bench, and nothing else.
+    /// No gear: the shaft has only the two encoders of the encoder bench.
     EncoderShaft,
-    /// The shoulder of a Puma 560, 107.8:1, upright at its encoder's zero.
+    /// The shoulder of a Puma 560, 107.8:1, upright at the zero of its encoder.
     Puma,
 }
 
-/// What loads the joint.
+/// The load of the joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Load {
     /// Up to 15 Nm, the same at every speed.
     #[default]
     BrakeA,
-    /// Up to 150 Nm: brake B behind a gear 1:10, whose friction depends on speed; brake A turns along unfed.
+    /// Up to 150 Nm: brake B behind a 1:10 gear with speed-dependent friction. Brake A rotates too, without current.
     GearAndBrakeB,
-    /// Nothing, and no torque sensor either: the encoder bench.
+    /// No load and no torque sensor: the encoder bench.
     None,
 }
 
-/// Figures of the thesis: tables of the joints, of friction (motor side) and of stiffness (link side).
+/// Values of the thesis: tables of the joints, of friction (motor side) and of stiffness (link side).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DataSheet {
     pub torque_constant_nm_per_a: f64,
@@ -42,32 +42,33 @@ pub(super) struct DataSheet {
     pub coulomb_nm: f64,
     pub breakaway_nm: f64,
     pub viscous_nm_s: f64,
-    /// Half of what Coulomb friction differs by between the directions, and the same of viscous friction as a share of it.
+    /// Half the difference of Coulomb friction between the directions, and the same for viscous friction as a fraction
+    /// of it.
     pub direction_offset_nm: f64,
     pub viscous_asymmetry: f64,
-    /// Weight of a link that stands upright at 0, when it is level. 0: the joint carries nothing.
+    /// Gravity torque of a link that is upright at 0, when it is horizontal. 0: no load on the joint.
     pub upright_nm: f64,
     /// Link side.
     pub stribeck_velocity_rad_s: f64,
     pub stribeck_exponent: f64,
     pub stiffness_nm_rad: f64,
-    /// Between the joint's two encoders there is more than the joint: the bearing that carries it, in series.
+    /// Stiffness of the joint's bearing, which is in series between the two encoders of the joint.
     pub bearing_nm_rad: f64,
-    /// What the link lags behind by its way of turning, without load to either side: β₀ of the table.
+    /// Lost motion: link lag that depends on the direction, without load to either side (β₀ of the table).
     pub lost_rad: f64,
-    /// What the link turns further than a linear gear would let it, under load. Zero: a linear gear.
+    /// Additional link rotation under load compared with a linear gear. Zero: a linear gear.
     pub soft_rad: f64,
-    /// Flange, coupling and sensor shaft on the joint's side of the torque sensor, or what the shaft carries (assumed).
+    /// Flange, coupling and sensor shaft on the joint's side of the torque sensor, or the load of the shaft (assumed).
     pub link_inertia_kg_m2: f64,
-    /// Link side: what the drive's gains were tuned with.
+    /// Link side: inertia with which the drive's gains were tuned.
     pub tuned_inertia_kg_m2: f64,
-    /// Assumed: the thesis gives none.
+    /// Assumed, because the thesis gives none.
     pub rotor_inertia_kg_m2: f64,
     pub max_motor_velocity_rad_s: f64,
     pub max_motor_current_a: f64,
 }
 
-/// Motor torque of the Puma for each volt at its converter: its published Coulomb friction [Nm] over that of figure 3.2 [V].
+/// Motor torque of the Puma per volt at its converter: its published Coulomb friction [Nm] over that of figure 3.2 [V].
 const PUMA_NM_PER_V: f64 = 0.231;
 
 /// Magtrol HB-1750M, data sheet EN 04/2025.
@@ -79,10 +80,10 @@ pub(super) mod brake {
     pub const CONTINUOUS_W: f64 = 350.0;
 }
 
-/// Turns of brake B for each turn of the link.
+/// Turns of brake B per turn of the link.
 pub(super) const LINE_RATIO: f64 = 10.0;
 
-/// Holds rated current in a coil of 100 °C (40.4 V) with something to spare.
+/// Supplies rated current to a coil at 100 °C (40.4 V) with a margin.
 const COMPLIANCE_V: f64 = 45.0;
 
 impl Joint {
@@ -134,7 +135,7 @@ impl Joint {
                 max_motor_velocity_rad_s: 350.0,
                 max_motor_current_a: 8.0,
             },
-            // The thesis gives nothing but "BLDC motor": all assumed.
+            // The thesis only says "BLDC motor": all values are assumed.
             Joint::EncoderShaft => DataSheet {
                 torque_constant_nm_per_a: 0.08,
                 ratio: 1.0,
@@ -158,9 +159,9 @@ impl Joint {
                 max_motor_velocity_rad_s: 200.0,
                 max_motor_current_a: 5.0,
             },
-            // Friction: the lines of figure 3.2 of document 000, joint 2, in volts over degrees each second at the link, at
-            // PUMA_NM_PER_V. Ratio, rotor and weight: Corke and Armstrong-Hélouvry, "A search for consensus among model
-            // parameters reported for the PUMA 560 robot", ICRA 1994. The rest is assumed.
+            // Friction: the lines of figure 3.2 of document 000, joint 2, in volts over link speed in degrees per
+            // second, converted with PUMA_NM_PER_V. Ratio, rotor and weight: Corke and Armstrong-Hélouvry, "A search
+            // for consensus among model parameters reported for the PUMA 560 robot", ICRA 1994. The rest is assumed.
             Joint::Puma => {
                 let ratio = 107.815;
                 let viscous = |line: f64| line * PUMA_NM_PER_V / (ratio * 1f64.to_radians());
@@ -212,7 +213,7 @@ impl Joint {
         }
     }
 
-    /// What the bench must never exceed: the joint's, the torque range's and the brake's own limits.
+    /// The limits of the bench: the lowest of joint, torque range and brake.
     pub fn limits(self, load: Load) -> Limits {
         let sheet = self.data_sheet();
         let (sensor_nm, brakes) = match load {

@@ -1,12 +1,12 @@
 //! The mock bench: simulated instruments on real wires over one simulated plant.
 //!
-//! Each instrument's firmware answers on a pseudo-terminal (loopback TCP where there is none, or on request), in a thread of
-//! its own, over one shared plant. Time is stepped: it moves in [`Clock::sleep_until_s`] and nowhere else, in fixed
-//! substeps of the drive's own control period. Noise is a function of seed, signal and moment, so the same seed and the
-//! same conversation give the same bytes.
+//! The firmware of each instrument answers on a pseudo-terminal (loopback TCP where there is none, or on request), in
+//! its own thread, over one shared plant. Time is stepped: it advances only in [`Clock::sleep_until_s`], in fixed
+//! substeps of the drive's control period. Noise is a function of seed, signal and time, so the same seed and the same
+//! conversation give the same bytes.
 //!
-//! The plant shares no formula with the models of the project. What it hides is told by [`MockBench::truth`] alone, never on
-//! a wire.
+//! The plant shares no formula with the models of the project. Only [`MockBench::truth`] returns its hidden parameters;
+//! they are never sent over a wire.
 
 mod bench;
 mod clock;

@@ -1,5 +1,5 @@
-//! One instrument's connector: it carries bytes between a wire and the rig, and can be made to misbehave. A port of the
-//! system has a thread for that.
+//! The connector of one instrument: it transfers bytes between a wire and the rig, and can simulate faults. A port of
+//! the system has its own thread.
 
 #[cfg(unix)]
 use super::pty::Pty;
@@ -14,35 +14,36 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// How soon a thread notices that it shall end, or that its cable is pulled.
+/// Interval at which a thread checks whether it has to end, or its cable is unplugged.
 const GLANCE: Duration = Duration::from_millis(20);
 const GLANCE_STREAMING: Duration = Duration::from_micros(200);
-/// A sleep may end so much later than it should.
+/// Largest overrun of a sleep.
 const SLEEP_GRAIN: Duration = Duration::from_micros(500);
 
-/// What the bench's owner and the threads share about one connector.
+/// State of one connector, shared by the owner of the bench and the threads.
 pub struct Port {
     instrument: MockInstrument,
     address: Mutex<Address>,
     closing: Arc<AtomicBool>,
-    /// A cord is plugged in, where there is no port of the system that would know.
+    /// A cord is plugged in; used for connectors without a port of the system.
     taken: Arc<AtomicBool>,
     line: Line,
 }
 
-/// How long a byte takes on a line; none at all by default, as on a pseudo-terminal.
+/// Time of one byte on a line; zero by default, as on a pseudo-terminal.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Line {
     byte: Duration,
 }
 
 impl Line {
-    /// A byte is ten bits: start, eight of data, stop.
+    /// A byte has ten bits: start, eight data bits, stop.
     pub fn paced(baud: u32) -> Self {
         Self { byte: Duration::from_secs_f64(10.0 / f64::from(baud)) }
     }
 
-    /// Returns when `count` bytes have gone by, the first of which may go at once, or behind what is on the line until `free`.
+    /// Returns when `count` bytes are transmitted. They start at once, or after the bytes that occupy the line until
+    /// `free`.
     fn carry(self, count: usize, free: &mut Instant) {
         if self.byte.is_zero() {
             return;
@@ -71,7 +72,7 @@ impl Port {
         self.closing.store(true, Ordering::Release);
     }
 
-    /// Whoever had it open is no more.
+    /// Releases the connector of a user that no longer exists.
     pub fn release(&self) {
         self.taken.store(false, Ordering::Release);
     }
@@ -103,7 +104,7 @@ pub fn serve_terminal(
     let shared = Arc::clone(&port);
     let thread = std::thread::Builder::new().name(format!("mock {}", instrument.label())).spawn(move || {
         let mut wire = Some(pty);
-        // Another bench's port would come up where this one was, and be taken for it.
+        // Keeps the name reserved, so that another bench's port does not get it and is mistaken for this one.
         let mut pulled = Vec::new();
         while !shared.is_closing() {
             if shared.is_unplugged(&rig) {
@@ -162,7 +163,7 @@ pub fn serve_tcp(
     Ok((port, Some(thread)))
 }
 
-/// Needs no thread: the instrument is asked when its bytes are.
+/// Needs no thread: the instrument runs when its bytes are requested.
 pub fn serve_inside(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> Arc<Port> {
     let (closing, taken) = (Arc::default(), Arc::default());
     let connector = Connector { instrument, closing: Arc::clone(&closing), taken: Arc::clone(&taken), rig };
@@ -170,7 +171,7 @@ pub fn serve_inside(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> Arc<Por
     Arc::new(Port { instrument, address, closing, taken, line: Line::default() })
 }
 
-/// A connector without a port: whoever is in this process plugs a cord in.
+/// A connector without a port: code inside this process plugs a cord in.
 #[derive(Clone)]
 struct Connector {
     instrument: MockInstrument,
@@ -221,7 +222,7 @@ impl Cord for Plugged {
     }
 }
 
-/// Carries bytes until the wire breaks, is pulled, or the bench closes.
+/// Transfers bytes until the wire fails, is unplugged, or the bench closes.
 fn converse(port: &Port, rig: &Mutex<Rig>, wire: &mut impl Wire) {
     let instrument = port.instrument;
     let mut talk = Talk::default();
@@ -234,7 +235,7 @@ fn converse(port: &Port, rig: &Mutex<Rig>, wire: &mut impl Wire) {
     }
 }
 
-/// One conversation with an instrument: what it has not understood yet, and what it says.
+/// One conversation with an instrument: its unprocessed input and its output.
 #[derive(Default)]
 struct Talk {
     input: Vec<u8>,
@@ -244,7 +245,7 @@ struct Talk {
 }
 
 impl Talk {
-    /// `free`: when the last byte on the line has gone by.
+    /// `free`: time when the last byte on the line is transmitted.
     fn carry(&mut self, port: &Port, free: &mut Instant, rig: &Mutex<Rig>, wire: &mut impl Wire) -> io::Result<()> {
         let instrument = port.instrument;
         let mut chunk = [0; 1024];
@@ -259,7 +260,7 @@ impl Talk {
         Ok(())
     }
 
-    /// Hands `heard` over and takes what the instrument says, as the cable carries it.
+    /// Passes `heard` to the instrument and returns its output, as the cable transmits it.
     fn exchange(&mut self, instrument: MockInstrument, rig: &mut Rig, heard: &[u8]) -> io::Result<()> {
         let trouble = rig.trouble(instrument);
         if trouble == Trouble::Unplugged {

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 pub struct Pty {
     master: File,
-    /// Kept open: without it the instrument's reads fail as soon as a client leaves.
+    /// Kept open: without it the instrument's reads fail as soon as a client disconnects.
     slave: OwnedFd,
     path: String,
 }
@@ -23,7 +23,7 @@ impl Pty {
         unlockpt(&master)?;
         let name = ptsname(&master, Vec::new())?;
         let slave = rustix::fs::open(&name, OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC, Mode::empty())?;
-        // Raw from the start: a client that sets nothing must not get its own bytes back.
+        // Raw mode from the start: a client that configures nothing must not receive its own bytes.
         let mut attributes = tcgetattr(&slave)?;
         attributes.make_raw();
         tcsetattr(&slave, OptionalActions::Now, &attributes)?;
@@ -36,12 +36,12 @@ impl Pty {
         &self.path
     }
 
-    /// The cable is out. While what is returned is there, the name of the port is nobody else's.
+    /// Unplugs the cable. While the returned handle exists, no other port gets the same name.
     pub fn pull(self) -> OwnedFd {
         self.slave
     }
 
-    /// What came in, or nothing within `wait`.
+    /// Received bytes, or none within `wait`.
     pub fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         let timeout = Timespec { tv_sec: wait.as_secs() as i64, tv_nsec: wait.subsec_nanos().into() };
         let mut ready = [PollFd::new(&self.master, PollFlags::IN)];
@@ -56,7 +56,7 @@ impl Pty {
         }
     }
 
-    /// Bytes that nobody reads are lost, as on a cable without flow control.
+    /// Unread bytes are lost, as on a cable without flow control.
     pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         match self.master.write(bytes) {
             Err(error) if error.kind() != ErrorKind::WouldBlock => Err(error),

@@ -1,4 +1,4 @@
-//! An instrument that answers as another one did when it was recorded. A bench's bad day becomes a test.
+//! Replays a recorded instrument, so that a recorded failure becomes a test.
 
 use super::bench::Transport;
 #[cfg(unix)]
@@ -14,11 +14,11 @@ use std::time::Duration;
 
 const GLANCE: Duration = Duration::from_millis(20);
 
-/// Answers until it is dropped, as far as the questions are those of the record.
+/// Answers until it is dropped, as long as the requests match the record.
 ///
-/// What was recorded as received is sent once everything before it in the record was heard, without the delays of old: a
-/// question that was not answered then is not answered now, and the driver waits for its own deadline. At a loss of the
-/// port the replay hangs up and ends.
+/// Sends recorded replies when all requests before them have arrived, without the recorded delays. A request without a
+/// recorded reply gets none, and the driver waits for its own deadline. At a recorded loss of the port the replay
+/// disconnects and ends.
 pub struct Replay {
     address: Address,
     shared: Arc<Shared>,
@@ -58,12 +58,12 @@ impl Replay {
         &self.address
     }
 
-    /// Where the conversation left the record. `None` while it follows it.
+    /// First deviation of the conversation from the record, or `None`.
     pub fn departure(&self) -> Option<String> {
         self.shared.departure.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// The whole record was gone through.
+    /// The whole record was replayed.
     pub fn is_done(&self) -> bool {
         self.shared.done.load(Ordering::Acquire)
     }
@@ -109,7 +109,7 @@ impl Shared {
             }
         }
         self.done.store(true, Ordering::Release);
-        // Silent from here on, and still plugged in.
+        // Silent from here on, but still plugged in.
         while !self.is_closing() && wire.hear(&mut [0; 256], GLANCE).is_ok() {}
     }
 
@@ -130,7 +130,7 @@ impl Shared {
                 return Err(ErrorKind::Interrupted.into());
             }
             let count = wire.hear(&mut chunk, GLANCE)?;
-            // An instrument that was asked something else does not know what it would have said.
+            // After a deviation the recorded replies are no longer valid.
             if !departed {
                 heard.extend_from_slice(&chunk[..count]);
             }

@@ -1,4 +1,4 @@
-//! Everything behind the wires: the plant and the instruments' firmware, advanced together.
+//! The simulation behind the wires: the plant and the instruments' firmware, advanced together.
 
 use super::firmware::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Lorenz, Qsb};
 use super::plant::{Plant, STEP_S};
@@ -12,26 +12,26 @@ pub enum MockInstrument {
     Joint,
     TorqueSensor,
     Brake,
-    /// Encoder S1 of the encoder bench, on the motor's shaft.
+    /// Encoder S1 of the encoder bench, on the motor shaft.
     CounterS1,
-    /// Encoder S2, beside it; its status output is wired to the counter's first digital input.
+    /// Encoder S2 on the same shaft; its status output is wired to the counter's first digital input.
     CounterS2,
-    /// Channel 0: the brake's housing; 1: the joint's gear; the others: the room.
+    /// Channel 0: the brake housing; 1: the joint's gear; the others: the room.
     Thermometer,
     /// Holds the sensor of S2: x radial, y vertical, z axial.
     Stage,
     /// On the analogue output of the torque sensor's small range, 10 V for 20 Nm.
     Multimeter,
-    /// No instrument and on no wire: where the readings are kept. Whoever keeps them asks [`super::MockBench::disk_is_full`].
+    /// The disk for the readings: no instrument and no wire. The recorder asks [`super::MockBench::disk_is_full`].
     Disk,
 }
 
 impl MockInstrument {
-    /// What every mock bench with a load has.
+    /// The instruments of every mock bench with a load.
     pub const JOINT_BENCH: [MockInstrument; 3] =
         [MockInstrument::Joint, MockInstrument::TorqueSensor, MockInstrument::Brake];
 
-    /// What an encoder bench has beside its motor.
+    /// The instruments of an encoder bench in addition to its motor.
     pub const ENCODER_BENCH: [MockInstrument; 4] =
         [MockInstrument::CounterS1, MockInstrument::CounterS2, MockInstrument::Stage, MockInstrument::Thermometer];
 
@@ -51,7 +51,7 @@ impl MockInstrument {
         }
     }
 
-    /// Bits a second on its line.
+    /// Bits per second on its line.
     pub fn baud(self) -> u32 {
         match self {
             MockInstrument::Joint => 921_600,
@@ -62,7 +62,7 @@ impl MockInstrument {
         }
     }
 
-    /// The firmware of an instrument that not every mock bench has.
+    /// The firmware of an instrument that only some mock benches have.
     fn other(self) -> Option<Box<dyn Firmware + Send>> {
         match self {
             MockInstrument::Joint | MockInstrument::TorqueSensor | MockInstrument::Brake | MockInstrument::Disk => None,
@@ -75,17 +75,17 @@ impl MockInstrument {
     }
 }
 
-/// What feeds the brake's coil.
+/// The supply of the brake's coil.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Supply {
     #[default]
     Dp821a,
-    /// Ends at 32 V, which does not hold the rated current in a warm coil.
+    /// Ends at 32 V, which is too low for the rated current in a warm coil.
     Hmp4040,
 }
 
-/// Beyond 131 % of the small range, where the converter ends, and well within the large one.
+/// Beyond 131 % of the small range, where the converter ends, and well within the large range.
 const SENSOR_SHIFT_NM: f64 = 27.0;
 const LOOSE_CONTACT_OHM: f64 = 250.0;
 const THERMISTOR_FAULT_K: f64 = 70.0;
@@ -97,7 +97,7 @@ pub(super) struct Rig {
     brake: Box<dyn Firmware + Send>,
     others: Vec<(MockInstrument, Box<dyn Firmware + Send>)>,
     troubles: [Trouble; MockInstrument::COUNT],
-    /// What begins, or ends, at which moment. The next one last.
+    /// Start and end times of planned troubles. The next one is last.
     planned: Vec<(f64, MockInstrument, Trouble)>,
 }
 
@@ -115,7 +115,7 @@ impl Rig {
             moments.push((plan.from_s, plan.instrument, plan.trouble));
             moments.extend(plan.until_s.map(|until_s| (until_s, plan.instrument, Trouble::None)));
         }
-        // What ends at a moment ends before what begins there.
+        // At equal times, an end precedes a start.
         moments.sort_by(|(a_s, _, a), (b_s, _, b)| {
             b_s.total_cmp(a_s).then((*a == Trouble::None).cmp(&(*b == Trouble::None)))
         });
@@ -138,7 +138,7 @@ impl Rig {
         self.plant.advance();
     }
 
-    /// Substeps until the plant shows `t_s`.
+    /// Advances the plant to `t_s`.
     pub fn advance_until(&mut self, t_s: f64) {
         while self.plant.now_s() + 0.5 * STEP_S < t_s {
             self.advance();
@@ -149,7 +149,7 @@ impl Rig {
         self.troubles[instrument as usize]
     }
 
-    /// Gives an instrument a bad day, or ends it.
+    /// Starts or ends a trouble of an instrument.
     pub fn afflict(&mut self, instrument: MockInstrument, trouble: Trouble) {
         let before = std::mem::replace(&mut self.troubles[instrument as usize], trouble);
         let Some((firmware, plant)) = self.firmware(instrument) else { return };
@@ -166,7 +166,7 @@ impl Rig {
         self.plant.thermistor_fault_k = if hot { THERMISTOR_FAULT_K } else { 0.0 };
     }
 
-    /// Hands `input` to an instrument; what it does not understand yet stays in `input`.
+    /// Passes `input` to an instrument; incomplete requests remain in `input`.
     pub fn receive(&mut self, instrument: MockInstrument, input: &mut Vec<u8>, output: &mut Vec<u8>) {
         if self.trouble(instrument) == Trouble::PowerCycled {
             return input.clear();
@@ -176,7 +176,7 @@ impl Rig {
         }
     }
 
-    /// What an instrument sends without being asked.
+    /// Appends bytes that an instrument sends without a request.
     pub fn unasked(&mut self, instrument: MockInstrument, output: &mut Vec<u8>) {
         if let Some((firmware, _)) = self.firmware(instrument) {
             firmware.unasked(output);
@@ -187,7 +187,7 @@ impl Rig {
         self.firmware(instrument).is_some_and(|(firmware, _)| firmware.is_streaming())
     }
 
-    /// `None`: this bench does not have it.
+    /// `None`: this bench does not have the instrument.
     fn firmware(&mut self, instrument: MockInstrument) -> Option<(&mut dyn Firmware, &mut Plant)> {
         let firmware: &mut dyn Firmware = match instrument {
             MockInstrument::Joint => self.joint.as_mut(),

@@ -1,17 +1,17 @@
-//! Bad days by name.
+//! Simulated troubles by name.
 
 use super::rig::MockInstrument;
 use serde::{Deserialize, Serialize};
 
-/// A bad day of one instrument. Lasts until another is given.
+/// A simulated trouble of one instrument. Lasts until another one is set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Trouble {
     #[default]
     None,
-    /// Hears and does what it is told, but its replies are lost.
+    /// Receives and executes commands, but its replies are lost.
     Silent,
-    /// Replies are held back until the trouble ends, and come all at once then.
+    /// Replies are delayed until the trouble ends, then all arrive at once.
     Late,
     /// One byte of every reply is wrong.
     Garbled,
@@ -19,13 +19,13 @@ pub enum Trouble {
     Truncated,
     /// Every reply comes twice.
     Doubled,
-    /// Every reply is the one to the question before.
+    /// Every reply is that of the previous request.
     Stale,
-    /// The cable is out. A pseudo-terminal comes back under another name, a TCP port under the same.
+    /// The cable is unplugged. A pseudo-terminal returns under another name, a TCP port under the same.
     Unplugged,
-    /// Without power while it lasts, and booted afresh at its end: what is not kept in memory is lost.
+    /// Without power during the trouble, then rebooted: volatile state is lost.
     PowerCycled,
-    /// Another unit of the same model answers, on the same port and in the same state, but that it sends no stream.
+    /// Another unit of the same model answers, on the same port and in the same state, but without a running stream.
     Exchanged,
     /// Every request is refused, each protocol in its own way.
     Refusing,
@@ -33,16 +33,16 @@ pub enum Trouble {
     StreamGap,
     /// The torque sensor's zero is off by more than its small range and less than its large one.
     Saturated,
-    /// A loose contact in the circuit of the brake's coil: the supply runs out of voltage.
+    /// A loose contact in the coil circuit of the brake: the supply reaches its voltage limit.
     CurrentLost,
-    /// The joint's thermistor shows far too much.
+    /// The joint's thermistor shows a much too high temperature.
     OverTemperature,
-    /// What is recorded finds no room: not an instrument's, but [`MockInstrument::Disk`]'s.
+    /// The disk for records is full. Not for an instrument, but for [`MockInstrument::Disk`].
     DiskFull,
 }
 
 impl Trouble {
-    /// Whether an instrument can have it: some are of one kind of instrument only.
+    /// Whether an instrument can have this trouble: some apply only to one kind of instrument.
     pub fn can_strike(self, instrument: MockInstrument) -> bool {
         use MockInstrument as I;
         match self {
@@ -56,20 +56,20 @@ impl Trouble {
     }
 }
 
-/// A bad day that begins by itself.
+/// A planned trouble with its start and end.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlannedTrouble {
     pub instrument: MockInstrument,
     pub trouble: Trouble,
-    /// On the bench's clock.
+    /// Time on the bench clock.
     pub from_s: f64,
     /// `None`: for ever.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until_s: Option<f64>,
 }
 
-/// What a trouble on the cable makes of replies. Remembers what it holds back.
+/// The effect of a cable trouble on replies. Stores delayed bytes.
 #[derive(Default)]
 pub(super) struct Cable {
     held: Vec<u8>,
@@ -80,7 +80,7 @@ impl Cable {
         match trouble {
             Trouble::Silent => output.clear(),
             Trouble::Late => self.held.append(output),
-            // The middle of a line or telegram; a flipped bit of this weight is wrong in each of the protocols.
+            // The middle of a line or telegram; a flipped bit of this weight is an error in each protocol.
             Trouble::Garbled => {
                 let middle = output.len() / 2;
                 if let Some(byte) = output.get_mut(middle) {

@@ -7,7 +7,7 @@ use std::net::TcpStream;
 use std::time::Duration;
 
 pub trait Wire {
-    /// `Ok(0)`: nothing came within `wait`.
+    /// `Ok(0)`: no bytes within `wait`.
     fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
     fn say(&mut self, bytes: &[u8]) -> io::Result<()>;
 }
@@ -38,7 +38,7 @@ impl Wire for TcpStream {
     }
 }
 
-/// A connection that was accepted: blocking, and sent at once.
+/// An accepted connection: blocking, without a send delay.
 pub fn plain(stream: &TcpStream) -> io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_nodelay(true)

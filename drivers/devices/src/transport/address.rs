@@ -1,4 +1,4 @@
-//! Where an instrument is wired.
+//! The address of an instrument.
 
 use super::Inside;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// `tcp://host:port`, `usb://` and the serial number of a USB device wherever it is plugged in, or the name of a serial port
+/// `tcp://host:port`; `usb://` and the serial number of a USB device in any socket; or the name of a serial port
 /// (`/dev/ttyUSB0`, `COM3`, the path of a pseudo-terminal).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
@@ -15,7 +15,7 @@ pub enum Address {
     Serial(String),
     Usb(String),
     Tcp(String),
-    /// No text names it: only who simulates the instrument can give it away.
+    /// Has no text form: only the code that simulates the instrument can provide it.
     Inside(Inside),
 }
 
@@ -62,14 +62,14 @@ impl fmt::Display for Address {
     }
 }
 
-/// A port and its line speed. 8 data bits, no parity, 1 stop bit, no flow control: all instruments of the bench agree on it.
+/// A port and its line speed. All instruments use 8 data bits, no parity, 1 stop bit and no flow control.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PortSettings {
     pub address: Address,
-    /// Without meaning on TCP and on USB devices.
+    /// Unused for TCP and USB devices.
     pub baud: u32,
-    /// Everything that goes over the wire is written down here ([`super::Traffic`]).
+    /// File for a record of the whole traffic ([`super::Traffic`]).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub record: Option<PathBuf>,
 }

@@ -1,8 +1,8 @@
-//! What a protocol tells the link: bytes to send, and what stands at the front of the bytes received. Never a port.
+//! The interface of a protocol to the link: bytes to send, and a scan of the received bytes. Never a port.
 
 use jointbench_instrument::FaultKind;
 
-/// What stands at the front of the bytes received so far.
+/// The content at the start of the received bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scan {
     /// The beginning of a packet; more bytes are needed.
@@ -13,11 +13,11 @@ pub enum Scan {
     Noise { skip: usize },
 }
 
-/// Something an instrument is told, without a reply.
+/// A message to an instrument without a reply.
 pub trait Command {
     fn encode(&self, out: &mut Vec<u8>);
 
-    /// How the command appears in faults and logs.
+    /// Name of the command in faults and logs.
     fn name(&self) -> String;
 }
 
@@ -27,7 +27,7 @@ pub trait Request: Command {
 
     fn scan(&self, received: &[u8]) -> Scan;
 
-    /// `packet` is what [`Request::scan`] measured.
+    /// `packet` has the length that [`Request::scan`] returned.
     fn decode(&self, packet: &[u8]) -> Result<Self::Reply, FaultKind>;
 }
 

@@ -1,15 +1,15 @@
-//! Wires within this process: to an instrument that it simulates itself, without a port of the system between them.
+//! Wires inside this process: to an instrument that it simulates itself, without a port of the system.
 //!
-//! The bytes are those of any other wire. What falls away is the system's share of a round trip, which is most of it where
-//! an instrument answers at once.
+//! The bytes are the same as on any other wire. Only the system's part of a round trip is missing, which is the largest
+//! part if an instrument answers immediately.
 
 use std::fmt;
 use std::io;
 use std::sync::Arc;
 
-/// Where cords are plugged in.
+/// A connector for cords.
 pub trait Socket: Send + Sync {
-    /// For people: where the instrument sits.
+    /// Display name of the connector.
     fn name(&self) -> &str;
 
     fn plug(&self) -> io::Result<Box<dyn Cord>>;
@@ -19,11 +19,11 @@ pub trait Socket: Send + Sync {
 pub trait Cord: Send {
     fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
 
-    /// Appends what has come in.
+    /// Appends the received bytes.
     fn read(&mut self, received: &mut Vec<u8>) -> io::Result<()>;
 }
 
-/// A socket as an address. Two are equal when they are the same one.
+/// A socket as an address. Two addresses are equal if they are the same socket.
 #[derive(Clone)]
 pub struct Inside(pub Arc<dyn Socket>);
 
@@ -41,7 +41,7 @@ impl fmt::Debug for Inside {
     }
 }
 
-/// A cord with the bytes that nobody has read yet.
+/// A cord with its unread bytes.
 pub(super) struct Plugged {
     cord: Box<dyn Cord>,
     received: Vec<u8>,
@@ -70,7 +70,7 @@ impl io::Write for Plugged {
 }
 
 impl io::Read for Plugged {
-    /// `WouldBlock` where nothing has come in.
+    /// `WouldBlock` if there is no input.
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         if !self.has_input()? {
             return Err(io::ErrorKind::WouldBlock.into());

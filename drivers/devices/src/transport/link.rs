@@ -1,4 +1,4 @@
-//! A link: one instrument, one port, one owner. Request and reply with a deadline of our own.
+//! A link: one instrument, one port, one owner. Request and reply with our own deadline.
 
 use super::codec::shown;
 use super::wire::Wire;
@@ -10,19 +10,19 @@ use std::time::{Duration, Instant};
 
 /// Silence after which a line counts as drained.
 const QUIET: Duration = Duration::from_millis(20);
-/// More than any reply of any instrument: what exceeds it is noise.
+/// More than any reply of any instrument: a longer input is noise.
 const MAX_PENDING: usize = 4096;
 
-/// One call of [`Link::overhear`] ends after this much: a flooded line must not keep its owner.
+/// Limit of one call of [`Link::overhear`]: a flooded line must not block its owner.
 const MAX_OVERHEARD: usize = 1 << 16;
 
-/// How far the next reply can be trusted to belong to the next request.
+/// Whether the next reply belongs to the next request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Trust {
     Trusted,
-    /// A reply was missed or garbled: drain and identify before use.
+    /// A reply was missing or garbled: drain and identify before use.
     Stale,
-    /// The port is gone: open it again, drain and identify.
+    /// The port is lost: open it again, drain and identify.
     Lost,
 }
 
@@ -34,7 +34,8 @@ pub struct Link {
     wire: Option<Wire>,
     recorder: Option<Recorder>,
     trust: Trust,
-    /// The last exchange has failed: whoever answers again has less than a deadline, so that a fault is known within two.
+    /// The last exchange failed. The next replies get less than a deadline, so that a fault is known within two
+    /// deadlines.
     missed: bool,
     outgoing: Vec<u8>,
     received: Vec<u8>,
@@ -61,8 +62,8 @@ impl Link {
         Ok(link)
     }
 
-    /// Writes the traffic down in a new file from now on, or no more. The record begins with a drain and an identification,
-    /// as every replay does.
+    /// Records the traffic in a new file from now on; `None` ends the recording. The record starts with a drain and an
+    /// identification, as every replay does.
     pub fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
         let recorder = file.map(|path| {
             Recorder::create(path, &self.instrument, &self.address).map_err(|error| {
@@ -93,21 +94,21 @@ impl Link {
         self.trust == Trust::Trusted
     }
 
-    /// The instrument has been identified: replies belong to requests again.
+    /// The instrument is identified: replies belong to requests again.
     pub fn trust(&mut self) {
         self.trust = Trust::Trusted;
         self.missed = false;
     }
 
-    /// The next reply may belong to something else: drain and identify before the next request.
+    /// The next reply may belong to another request: drain and identify before the next request.
     pub fn distrust(&mut self) {
         if self.trust == Trust::Trusted {
             self.trust = Trust::Stale;
         }
     }
 
-    /// Appends what has come in to `bytes`, for instruments that send without being asked. Waits at most `patience` for the
-    /// first byte; returns how many came.
+    /// Appends the received bytes to `bytes`, for instruments that send without a request. Waits at most `patience` for
+    /// the first byte; returns the number of bytes.
     pub fn overhear(&mut self, bytes: &mut Vec<u8>, patience: Duration) -> Result<usize, Fault> {
         let before = bytes.len();
         bytes.append(&mut self.received);
@@ -122,7 +123,7 @@ impl Link {
         }
     }
 
-    /// Writes a command that has no reply. Goes out on a stale link too: a command to stop must not wait.
+    /// Writes a command that has no reply. Also on a stale link, because a stop command must not wait.
     pub fn send(&mut self, command: &impl Command) -> Result<(), Fault> {
         let deadline = Instant::now() + self.deadline;
         self.outgoing.clear();
@@ -139,14 +140,14 @@ impl Link {
         self.probe(request)
     }
 
-    /// Request and reply whatever the state of the link: for identification.
+    /// Request and reply in any state of the link, for identification.
     pub fn probe<R: Request>(&mut self, request: &R) -> Result<R::Reply, Fault> {
         let deadline = Instant::now() + self.patience();
         self.exchange(request, deadline).map_err(|kind| self.broken(kind))
     }
 
-    /// Opens a lost port again, ends whatever line or telegram was begun by sending `wake`, and throws away what comes in
-    /// until the line is quiet. `answered`: the wake itself has a reply, which is waited for.
+    /// Opens a lost port again, sends `wake` to end an incomplete line or telegram, and discards received bytes until
+    /// the line is quiet. `answered`: `wake` itself has a reply, which is awaited.
     pub fn drain(&mut self, wake: &[u8], answered: bool) -> Result<(), Fault> {
         self.received.clear();
         if self.trust == Trust::Lost {
@@ -199,7 +200,8 @@ impl Link {
         if self.missed { self.second_chance() } else { self.deadline }
     }
 
-    /// What one that missed its deadline is given for each of two more replies: it is given up within two deadlines in all.
+    /// Time for each of two more replies after a missed deadline: the instrument is given up within two deadlines in
+    /// total.
     fn second_chance(&self) -> Duration {
         self.deadline * 2 / 5
     }
@@ -233,14 +235,14 @@ impl Link {
         wire.write(&self.outgoing, deadline).map_err(lost)
     }
 
-    /// What waits to be read, or else what comes until `until`.
+    /// Bytes that are already received, or else bytes that arrive before `until`.
     fn next_chunk(&mut self, until: Instant) -> Result<usize, FaultKind> {
         let now = Instant::now();
         if until > now {
             return self.read(until);
         }
         let wire = self.wire.as_mut().ok_or_else(port_is_closed)?;
-        // Bytes are there: this read does not wait for them.
+        // Bytes are available, so this read does not wait.
         if wire.has_input().map_err(lost)? { self.read(now + QUIET) } else { Ok(0) }
     }
 
@@ -255,7 +257,7 @@ impl Link {
         Ok(count)
     }
 
-    /// Remembers what a failed exchange means for the next one.
+    /// Updates the state of the link after a failed exchange.
     fn broken(&mut self, kind: FaultKind) -> Fault {
         let lost = matches!(kind, FaultKind::Disconnected { .. } | FaultKind::NotOpened { .. });
         if let (true, Some(recorder)) = (lost && self.trust != Trust::Lost, &mut self.recorder) {

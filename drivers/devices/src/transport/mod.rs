@@ -1,4 +1,4 @@
-//! Ports with one owner, and links that never wait for ever.
+//! Ports with one owner, and links whose waits always end.
 
 mod address;
 mod codec;

@@ -1,4 +1,4 @@
-//! The serial ports of this computer: what is plugged in where, and what may not be opened and why. Opens none of them:
+//! The serial ports of this computer: connected devices, and why a port may not be opened. Opens none of them, because
 //! opening can reset an instrument.
 
 use super::Address;
@@ -8,7 +8,7 @@ use serialport::{SerialPortType, available_ports};
 #[cfg(unix)]
 use std::path::PathBuf;
 
-/// What a USB device says of itself.
+/// The description that a USB device gives of itself.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct UsbDevice {
     pub vendor_id: u16,
@@ -18,20 +18,20 @@ pub struct UsbDevice {
     pub product: Option<String>,
 }
 
-/// A port that is there, whether it may be used or not.
+/// A port that exists, usable or not.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FoundPort {
     pub address: Address,
     /// The address that stays the same in another socket: `usb://` and the serial number.
     pub lasting_address: Option<Address>,
     pub usb: Option<UsbDevice>,
-    /// What devices with this vendor and product are on this kind of bench.
+    /// The usual instrument with this vendor and product on such a bench.
     pub likely: Option<&'static str>,
-    /// Why it may not be opened, and the cure. `None`: nothing stands against it.
+    /// Why the port cannot be opened, and the remedy. `None`: no obstacle is known.
     pub closed: Option<String>,
 }
 
-/// Vendor, product (`None`: any), what it is on a bench.
+/// Vendor, product (`None`: any), instrument.
 const KNOWN: [(u16, Option<u16>, &str); 4] = [
     (0x10C4, Some(0x8056), "torque sensor (Lorenz)"),
     (0x1209, Some(0x0D32), "joint controller (ODrive)"),
@@ -71,7 +71,7 @@ pub fn ports() -> Result<Vec<FoundPort>, FaultKind> {
     Ok(found.into_iter().map(port).collect())
 }
 
-/// Where the device with this serial number is plugged in now.
+/// Present path of the device with this serial number.
 pub(super) fn path_of(serial_number: &str) -> Result<String, FaultKind> {
     let not_opened = |what: String| FaultKind::NotOpened { what };
     let ports = available_ports().map_err(|error| not_opened(error.to_string()))?;
@@ -88,7 +88,7 @@ pub(super) fn path_of(serial_number: &str) -> Result<String, FaultKind> {
     }
 }
 
-/// Why the port at `path` may not be opened, without opening it. `None`: nothing stands against it.
+/// Why the port at `path` cannot be opened, without opening it. `None`: no obstacle is known.
 #[cfg(unix)]
 pub fn why_closed(path: &str) -> Option<String> {
     use rustix::fs::{Access, access};
@@ -113,7 +113,7 @@ pub fn why_closed(_path: &str) -> Option<String> {
     None
 }
 
-/// A process that has the port open, where the system tells (Linux does of the user's own processes).
+/// A process that has the port open, if the system reports it (Linux: only for the user's own processes).
 #[cfg(unix)]
 fn user_of(path: &str) -> Option<String> {
     let path = std::fs::canonicalize(path).ok()?;

@@ -1,4 +1,4 @@
-//! What went over a wire, as text: one line for each piece, to read, to send to somebody, and to replay.
+//! Traffic of a wire as text, to read, send and replay. Each line is one piece.
 //!
 //! ```text
 //! # joint on /dev/ttyUSB0
@@ -8,7 +8,7 @@
 //! 3.100000 ! the port is lost
 //! ```
 //!
-//! Seconds since the link was opened; `>` to the instrument, `<` from it. The second line sets them beside other clocks.
+//! Seconds since the link was opened; `>` to the instrument, `<` from it. The second line relates them to other clocks.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -23,7 +23,7 @@ pub enum Event {
     Lost,
 }
 
-/// A recorded conversation. Pieces that followed each other in one direction may have been split elsewhere on the wire.
+/// A recorded conversation. Consecutive pieces in one direction may have been split differently on the wire.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Traffic {
     pub events: Vec<(f64, Event)>,
@@ -61,14 +61,14 @@ fn event(line: &str) -> Option<(f64, Event)> {
     Some((at_s, event))
 }
 
-/// Writes a link's traffic down as it goes. A disk that takes no more ends the record, never the measurement.
+/// Records the traffic of a link. A full disk ends the record, never the measurement.
 pub struct Recorder {
     file: Option<File>,
     opened: Instant,
 }
 
 impl Recorder {
-    /// Starts a new file: a record that is there is replaced.
+    /// Starts a new file: an existing record is replaced.
     pub fn create(path: &Path, instrument: &str, address: &str) -> io::Result<Self> {
         let mut file = File::create(path)?;
         let opened = Instant::now();

@@ -1,4 +1,5 @@
-//! One open port: a serial port held exclusively, a TCP stream, or an instrument in this process. Reads come in chunks; nothing blocks past its deadline.
+//! One open port: a serial port held exclusively, a TCP stream, or an instrument in this process. Reads return chunks;
+//! no call blocks past its deadline.
 
 use super::inside::Plugged;
 use super::ports::path_of;
@@ -21,7 +22,7 @@ pub enum Wire {
     Inside(Plugged),
 }
 
-/// How often an instrument in this process is looked at while its reply is waited for: another thread may move its time.
+/// Polling interval while waiting for an instrument in this process: another thread may advance its time.
 const GLANCE: Duration = Duration::from_micros(200);
 
 impl Wire {
@@ -34,7 +35,7 @@ impl Wire {
         }
     }
 
-    /// All of `bytes`, or an error of kind `TimedOut` when the deadline has passed.
+    /// Writes all of `bytes`. An error of kind `TimedOut` after the deadline.
     pub fn write(&mut self, mut bytes: &[u8], deadline: Instant) -> io::Result<()> {
         while !bytes.is_empty() {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -51,9 +52,9 @@ impl Wire {
         Ok(())
     }
 
-    /// What has come in, as soon as anything has. `Ok(0)` when the deadline has passed.
+    /// Received bytes as soon as there are any. `Ok(0)` after the deadline.
     ///
-    /// The port's own time-out only bounds one wait: it may end early, so the deadline is looked at again.
+    /// The port's own time-out only limits one wait. It may end early, so the deadline is checked again.
     pub fn read(&mut self, buffer: &mut [u8], deadline: Instant) -> io::Result<usize> {
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -73,7 +74,7 @@ impl Wire {
         }
     }
 
-    /// Whether bytes wait to be read. Asks the system, waits for nothing.
+    /// Whether unread bytes are available. Does not wait.
     pub fn has_input(&mut self) -> io::Result<bool> {
         match self {
             Wire::Serial(port) => Ok(serialport::SerialPort::bytes_to_read(port)? > 0),
@@ -83,7 +84,7 @@ impl Wire {
                 stream.set_nonblocking(false)?;
                 match peeked {
                     Err(error) if is_wait_over(&error) => Ok(false),
-                    // The end of the stream is for `read` to tell.
+                    // `read` reports the end of the stream.
                     result => result.map(|_| true),
                 }
             }
@@ -116,7 +117,7 @@ impl<T: Read + Write> ReadWrite for T {}
 
 #[cfg(unix)]
 impl Drop for Wire {
-    /// A terminal keeps its exclusive mark while anybody has it open, the simulator of a pseudo-terminal for one.
+    /// A terminal keeps its exclusive mark while any process has it open, such as the simulator of a pseudo-terminal.
     fn drop(&mut self) {
         if let Wire::Serial(port) = self
             && let Err(error) = port.set_exclusive(false)

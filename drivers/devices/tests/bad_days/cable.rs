@@ -1,4 +1,4 @@
-//! What a cable can do to replies.
+//! Effects of cable troubles on replies.
 
 use super::{DEADLINE, ask, start};
 use jointbench_devices::sim::{MockInstrument, Transport, Trouble};
@@ -9,7 +9,7 @@ use jointbench_instrument::FaultKind;
 use jointbench_instrument::units::{Amperes, NewtonMetres, RadPerSec};
 use std::time::{Duration, Instant};
 
-/// The fault is seen within two deadlines, stays while the trouble lasts, and is over when the trouble is.
+/// The fault is reported within two deadlines, persists during the trouble, and ends with it.
 fn check_passing(trouble: Trouble, expected: fn(&FaultKind) -> bool) {
     let check = |transport, instrument| {
         let (mock, mut bench) = start(transport);
@@ -23,7 +23,7 @@ fn check_passing(trouble: Trouble, expected: fn(&FaultKind) -> bool) {
         mock.trouble(instrument, Trouble::None);
         ask(&mut bench, instrument).unwrap_or_else(|fault| panic!("{instrument:?} does not recover: {fault}"));
     };
-    // Side by side: nearly all of it is waiting for deadlines.
+    // In parallel, because most of the time is spent waiting for deadlines.
     std::thread::scope(|scope| {
         for transport in [Transport::Terminal, Transport::Tcp, Transport::Inside] {
             for instrument in MockInstrument::JOINT_BENCH {
@@ -59,7 +59,7 @@ fn a_second_copy_of_a_reply_is_nobodys() {
         let (mock, mut bench) = start(transport);
         for instrument in MockInstrument::JOINT_BENCH {
             mock.trouble(instrument, Trouble::Doubled);
-            // The first reply is right; its copy waits for the next question, or comes with it.
+            // The first reply is right. Its copy precedes the next reply, or arrives with the first one.
             let fault = (0..2).find_map(|_| ask(&mut bench, instrument).err()).expect("the copy is noticed");
             assert!(matches!(fault.kind, FaultKind::Garbled { .. }), "{instrument:?} over {transport:?}: {fault}");
             mock.trouble(instrument, Trouble::None);
@@ -91,7 +91,7 @@ fn a_pulled_cable_is_a_lost_port() {
         for instrument in MockInstrument::JOINT_BENCH {
             mock.trouble(instrument, Trouble::Unplugged);
             let asked = Instant::now();
-            // Until the cable is out the instrument may still answer.
+            // The instrument may still answer until the cable is unplugged.
             let fault = loop {
                 match ask(&mut bench, instrument) {
                     Err(fault) => break fault,
@@ -119,7 +119,7 @@ fn a_plugged_cable_is_found_again() {
     while ask(&mut bench, MockInstrument::TorqueSensor).is_ok() {}
     drop(bench);
     mock.trouble(MockInstrument::TorqueSensor, Trouble::None);
-    // The terminal comes back under the name that the system gives it now.
+    // The terminal returns under the new name that the system gives it.
     let plugged = Instant::now();
     while mock.open_bench("again").is_err() {
         assert!(plugged.elapsed() < Duration::from_secs(5), "not back");

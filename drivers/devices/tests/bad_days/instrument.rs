@@ -1,4 +1,4 @@
-//! What instruments themselves, and the plant, can do.
+//! Troubles of the instruments and of the plant.
 
 use super::{ask, settings, start};
 use jointbench_devices::driver::{LorenzSettings, Range};
@@ -39,7 +39,7 @@ fn a_drive_that_lost_its_state_gives_no_reading_before_that_is_told() {
         assert!(matches!(fault.kind, FaultKind::Silent { .. }), "{fault}");
     }
     mock.trouble(MockInstrument::Joint, Trouble::None);
-    // The drive boots for a second, and stays silent meanwhile.
+    // The drive boots for a second and is silent meanwhile.
     wait(&bench, 1.5);
     check_reported(bench.joint.read().map(drop), "disarmed");
     assert!(!bench.joint.health().unwrap().armed);
@@ -61,7 +61,7 @@ fn a_supply_that_lost_its_state_is_told() {
     let reading = bench.brake.as_mut().unwrap().read().unwrap();
     assert_eq!(reading.regulation, Regulation::Off, "{reading:?}");
 
-    // Too short for any request to be missed: the reading itself shows it.
+    // Too short to miss a request: the reading itself shows the power cycle.
     let (mock, mut bench) = start(Transport::Terminal);
     mock.trouble(MockInstrument::Brake, Trouble::PowerCycled);
     mock.trouble(MockInstrument::Brake, Trouble::None);

@@ -1,4 +1,4 @@
-//! What drivers make of instruments that fail: the right verdict, no invented sample, a link that recovers.
+//! Drivers with failing instruments: the right fault, no invented sample, a link that recovers.
 
 mod cable;
 mod instrument;
@@ -27,7 +27,7 @@ fn start(transport: Transport) -> (MockBench, Bench) {
     (mock, bench)
 }
 
-/// Any use of an instrument that needs a reply.
+/// A use of an instrument that needs a reply.
 fn ask(bench: &mut Bench, instrument: MockInstrument) -> Result<(), Fault> {
     match instrument {
         MockInstrument::Joint => bench.joint.read().map(drop),

@@ -1,4 +1,4 @@
-//! Bad days of the counters and the thermometer.
+//! Troubles of the counters, the thermometer, the stage and the multimeter.
 
 use super::{DEADLINE, settings};
 use jointbench_devices::sim::{MockInstrument, Transport, Trouble};
@@ -94,7 +94,7 @@ fn a_passing_trouble_is_seen_and_over_when_it_is() {
         mock.trouble(instrument, Trouble::None);
         ask().unwrap_or_else(|fault| panic!("{instrument:?} does not recover from {trouble:?}: {fault}"));
     };
-    // Side by side: nearly all of it is waiting for deadlines.
+    // In parallel, because most of the time is spent waiting for deadlines.
     std::thread::scope(|scope| {
         for instrument in
             [MockInstrument::CounterS1, MockInstrument::Thermometer, MockInstrument::Stage, MockInstrument::Multimeter]
@@ -208,7 +208,7 @@ fn both_encoders_follow_the_shaft_and_differ_by_their_shape_and_delay() {
     assert!((apart_rad - expected_rad).abs() < 6e-4, "{apart_rad} rad, expected {expected_rad} rad");
 }
 
-/// Waits on the bench's clock until `done`.
+/// Waits on the bench clock until `done`.
 fn wait_until(mock: &MockBench, mut done: impl FnMut() -> bool) {
     let clock = mock.clock();
     for _ in 0..200 {

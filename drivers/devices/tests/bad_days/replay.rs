@@ -1,4 +1,4 @@
-//! A recorded conversation, had again with an instrument that only knows the record.
+//! Repeats a recorded conversation with an instrument that only has the record.
 
 use super::{DEADLINE, start};
 use jointbench_devices::driver::{LorenzSettings, Range};
@@ -11,7 +11,7 @@ use jointbench_instrument::{Fault, FaultKind};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// A day with a silent supply in the middle.
+/// A conversation with a silent supply in the middle.
 fn day(address: Address, record: Option<PathBuf>, mock: Option<&MockBench>) -> (Vec<SupplyReading>, Fault) {
     let trouble = |trouble| {
         if let Some(mock) = mock {
@@ -51,7 +51,7 @@ fn a_bad_day_can_be_had_again() {
     }
 }
 
-/// What a driver says last is on its way for a moment.
+/// The last message of a driver may still be in transit.
 fn until_done(replay: &Replay) {
     let asked = Instant::now();
     while !replay.is_done() && asked.elapsed() < DEADLINE {

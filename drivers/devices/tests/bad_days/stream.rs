@@ -1,4 +1,4 @@
-//! The torque sensor's stream on good days and bad ones.
+//! The torque sensor's stream with and without troubles.
 
 use super::{DEADLINE, settings};
 use jointbench_devices::driver::{LorenzSettings, Range};
@@ -9,7 +9,7 @@ use jointbench_instrument::units::Seconds;
 use jointbench_instrument::{Clock, Fault, FaultKind};
 use std::sync::Arc;
 
-/// How often the owner of a bench looks.
+/// Interval at which the bench owner collects samples.
 const TICK_S: f64 = 0.004;
 
 struct World {
@@ -37,7 +37,7 @@ impl World {
         Self { mock, clock, sensor, samples: Vec::new(), gaps: Vec::new() }
     }
 
-    /// Collects for so long, gaps included. Any other fault ends it.
+    /// Collects for `seconds`, gaps included. Any other fault ends the collection.
     fn collect(&mut self, seconds: f64) -> Result<(), Fault> {
         let start_s = self.clock.now_s();
         for tick in 1..=(seconds / TICK_S).round() as u32 {
@@ -62,7 +62,7 @@ fn every_sample_comes_once_and_in_its_place() {
         assert!(numbers.iter().zip(0..).all(|(number, expected)| *number == expected));
         assert!(world.gaps.is_empty());
         for sample in &world.samples {
-            // 40 ppm of 4 s, and what the placing itself claims.
+            // 40 ppm of 4 s, and the uncertainty that the timing reports.
             let off_s = (sample.at_s - 1.0 - (sample.number + 1) as f64 * 1e-3).abs();
             assert!(off_s < 0.2e-3 + sample.uncertainty_s && sample.uncertainty_s < 0.5e-3, "{sample:?}");
             assert!(sample.torque.unwrap().0.abs() < 0.1, "{sample:?}");
@@ -72,7 +72,7 @@ fn every_sample_comes_once_and_in_its_place() {
     }
 }
 
-/// The bench's clock is what the joint's readings are placed by, too: this is the skew between the two.
+/// The readings of the joint have times of the bench clock too, so this is the skew between both.
 #[test]
 fn in_ten_minutes_no_sample_is_lost_and_each_is_placed_within_half_a_millisecond() {
     let mut world = World::streaming(Transport::Inside);
@@ -89,7 +89,7 @@ fn a_gap_is_named_with_its_length_and_no_sample_stands_in_it() {
     world.collect(1.2).unwrap();
     world.mock.trouble(MockInstrument::TorqueSensor, Trouble::StreamGap);
     world.collect(2.0).unwrap();
-    // Seven frames lost, and the one before, which nothing confirms.
+    // Seven lost frames, and the frame before, which no later frame confirms.
     assert!(world.gaps.len() >= 3 && world.gaps.iter().all(|count| *count == 8), "{:?}", world.gaps);
     let steps: Vec<u64> = world.samples.windows(2).map(|pair| pair[1].number - pair[0].number).collect();
     assert_eq!(steps.iter().filter(|step| **step == 9).count(), world.gaps.len());
@@ -117,7 +117,7 @@ fn a_stream_that_ends_by_itself_is_silence() {
     assert!(world.samples.len() > before + 150, "usable again");
 }
 
-/// A stream that goes on is the word of the sensor that was told to send it: another one has to be told first.
+/// A stream that continues comes from the sensor that was commanded. Another sensor has to be commanded first.
 #[test]
 fn another_sensor_in_the_place_of_one_that_streams_is_named() {
     let mut world = World::streaming(Transport::Terminal);
@@ -150,7 +150,7 @@ fn what_cannot_be_streamed_is_refused() {
         let fault = world.sensor.start_stream(Seconds(period_s), world.clock.clone()).unwrap_err();
         assert!(matches!(fault.kind, FaultKind::Refused { .. }), "{fault}");
     }
-    // Five bytes every 200 µs are more than the line carries.
+    // Five bytes every 200 µs exceed the capacity of the line.
     let fault = world.sensor.start_stream(Seconds(2e-4), world.clock.clone()).unwrap_err();
     assert!(matches!(fault.kind, FaultKind::Refused { .. }), "{fault}");
 

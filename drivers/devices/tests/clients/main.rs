@@ -1,8 +1,8 @@
-//! The mock bench's instruments as clients see them that others wrote: PI's PIPython, LorenzTelegram, pymeasure, minimalmodbus and
-//! pymodbus. A client that is not installed is said to be missing, and its test says nothing else:
+//! The mock bench's instruments with third-party clients: PI's PIPython, LorenzTelegram, pymeasure, minimalmodbus and
+//! pymodbus. If a client is not installed, its test reports that and checks nothing:
 //!
-//! `pip install pipython LorenzTelegram pymeasure pyvisa-py minimalmodbus pymodbus`, and `JOINTBENCH_PYTHON` where that is not of
-//! the `python3` on the path.
+//! `pip install pipython LorenzTelegram pymeasure pyvisa-py minimalmodbus pymodbus`, and `JOINTBENCH_PYTHON` if they
+//! are not installed for the `python3` on the path.
 
 use jointbench_devices::sim::{MockInstrument, Supply, Transport};
 use jointbench_devices::{Joint, MockBench, MockSettings};
@@ -11,10 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/clients/clients.py");
-/// What the script ends with where a client is not installed.
+/// Exit code of the script if a client is not installed.
 const MISSING: i32 = 77;
 
-/// `pace`: bench seconds in each second of the client's.
+/// `pace`: bench seconds per second of the client.
 fn check(client: &str, instrument: MockInstrument, transport: Transport, pace: f64) {
     let joint = match instrument {
         MockInstrument::Stage | MockInstrument::Thermometer => Joint::EncoderShaft,
@@ -47,7 +47,7 @@ fn check(client: &str, instrument: MockInstrument, transport: Transport, pace: f
     };
     let said = [output.stdout, output.stderr].concat();
     assert!(output.status.success(), "{client} over {transport:?}: {}", String::from_utf8_lossy(&said));
-    // A terminal is let go a moment after its client has ended.
+    // A terminal is released a moment after its client has ended.
     std::thread::sleep(Duration::from_millis(50));
 }
 

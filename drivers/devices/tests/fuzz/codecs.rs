@@ -1,7 +1,7 @@
-//! What every codec keeps to, whatever comes over its wire: no panic, always forward, no more kept than a packet may take,
-//! and back in step a few good replies later.
+//! Invariants of every codec for any input: no panic, every step consumes input, memory is limited to one packet, and
+//! the codec resynchronizes after a few good replies.
 //!
-//! Two feed it: the property tests beside it, and the fuzzer (`fuzz/`), which looks for what they would not think of.
+//! Two sources feed it: the property tests next to it, and the fuzzer (`fuzz/`), which finds less obvious inputs.
 
 use jointbench_devices::protocol::gcs::{self, QueryAxes, QueryReachable};
 use jointbench_devices::protocol::lorenz::{
@@ -17,12 +17,12 @@ use jointbench_devices::protocol::scpi::{
 use jointbench_devices::transport::{Request, Scan, Traffic};
 use std::fmt::Debug;
 
-/// Bytes without an end that a codec may still take for the beginning of a packet. A link gives up at twice as many.
+/// Bytes without an end that a codec may still accept as the beginning of a packet. A link gives up at twice as many.
 const KEPT: usize = 2048;
-/// Good replies after which a codec is back in step: noise may have begun something that takes the first ones with it.
+/// Good replies until a codec is resynchronized: noise may have begun a packet that includes the first ones.
 const REPLIES: usize = 3;
 
-/// What the link does with what comes in. The replies found; every step takes something, and no more than there is.
+/// Consumes input as the link does and returns the replies. Every step consumes at least one byte of the input.
 fn walk<R: Request>(request: &R, mut rest: &[u8]) -> Vec<R::Reply> {
     let mut replies = Vec::new();
     while !rest.is_empty() {
@@ -46,7 +46,7 @@ fn walk<R: Request>(request: &R, mut rest: &[u8]) -> Vec<R::Reply> {
     replies
 }
 
-/// Noise alone; a good reply that noise has damaged; and good replies behind noise, of which the last is found.
+/// Noise alone; a good reply damaged by noise; and good replies after noise, of which the last one is found.
 fn withstands<R: Request>(request: &R, noise: &[u8], reply: &[u8])
 where
     R::Reply: PartialEq + Debug,
@@ -68,7 +68,7 @@ pub fn odrive(noise: &[u8]) {
     for part in Part::ALL {
         withstands(&ReadErrors(part), noise, &line("2048"));
     }
-    // Three lines: which of them is the first is known on a drained line only.
+    // Three lines: the first of them is known only on a drained line.
     walk(&ReadInfo, noise);
 }
 
@@ -90,7 +90,7 @@ pub fn qsb(noise: &[u8]) {
     withstands(&WriteRegister(Register::Mode, 0), noise, b"w 00 00000000 0000ABCD !\r\n");
 }
 
-/// An encoder's own status comes over a digital input of its counter.
+/// An encoder's own status is read from a digital input of its counter.
 pub fn encoder_status(noise: &[u8]) {
     withstands(&ReadRegister(Register::DigitalInputs), noise, b"r 01 00000003 0000ABD1 !\r\n");
 }
@@ -125,14 +125,14 @@ pub fn lorenz(noise: &[u8]) {
         wire
     };
     withstands(&Hello, noise, &telegram(0x40, &[1]));
-    // With 02 in it, which is sent twice.
+    // Contains 02, which is sent twice.
     withstands(&ReadRaw, noise, &telegram(0x41, &[0, 2, 2, 2, 0, 3, 0xFF, 2, 0]));
     withstands(&ReadStatusShort, noise, &telegram(0x43, &[0]));
     withstands(&StartStream { period: 5 }, noise, &telegram(0x06, &[]));
     withstands(&ReadConfig { block: 0 }, noise, &telegram(0x44, &[0; 33]));
 }
 
-/// 60 frames behind noise: the last that may be believed is, and neither frames nor memory come from nowhere.
+/// 60 frames after noise: the last frame that can be confirmed is found, without extra frames or memory.
 pub fn lorenz_stream(noise: &[u8]) {
     const FRAMES: i16 = 60;
     let mut frames = Frames::default();
@@ -153,7 +153,7 @@ pub fn lorenz_stream(noise: &[u8]) {
     assert_eq!((last.index, last.counts), (index(FRAMES - 3), counts(FRAMES - 3)));
 }
 
-/// A record that somebody has edited: the mistake is named at its line.
+/// An edited record: the error names its line.
 pub fn record(noise: &[u8]) {
     let text = String::from_utf8_lossy(noise);
     if let Err(error) = Traffic::parse(&text) {

@@ -1,11 +1,11 @@
-//! Every codec against bytes that no instrument would send.
+//! Every codec with bytes that no instrument would send.
 
 mod codecs;
 
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// Anything, with more of what the protocols give a meaning to.
+/// Random bytes, with more of those that have a meaning in the protocols.
 fn bytes() -> impl Strategy<Value = Vec<u8>> {
     let meant =
         prop::sample::select(b"\x02\x06\x15\x40\x41\x44\x5A\x01\x03\xFF\n\r*,;?:.-+0123456789eE naNifRSV\"".to_vec());

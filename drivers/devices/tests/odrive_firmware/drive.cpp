@@ -51,7 +51,7 @@ void Axis::advance(double now_s, float dt_s) {
     velocity += torque_nm / INERTIA_KG_M2 / TURN_RAD * dt_s;
     encoder_.pos_estimate_.value += velocity * dt_s;
     motor_.iq_measured = torque_nm / motor_.config_.torque_constant;
-    // What the link's encoder sees behind a gear.
+    // The position of the link encoder behind a gear.
     axes[1].encoder_.pos_estimate_.value = axes[0].encoder_.pos_estimate_.value / 50.0f;
 }
 
@@ -67,7 +67,7 @@ struct Terminal final : fibre::AsyncStreamSource, fibre::AsyncStreamSink {
     void cancel_read(fibre::TransferHandle) override {}
     void start_write(fibre::cbufptr_t from, fibre::TransferHandle*, fibre::Callback<void, fibre::WriteResult> done) override {
         ssize_t written = write(master, from.begin(), from.size());
-        // Bytes that nobody reads are lost, as on a cable without flow control.
+        // Unread bytes are lost, as on a cable without flow control.
         (void)written;
         done.invoke({fibre::kStreamOk, from.end()});
     }
@@ -86,7 +86,7 @@ int main() {
     if (terminal.master < 0 || grantpt(terminal.master) || unlockpt(terminal.master))
         return 1;
     const char* name = ptsname(terminal.master);
-    // Kept open: without it reads fail as soon as a client leaves.
+    // Kept open: without it reads fail as soon as a client disconnects.
     int kept = open(name, O_RDWR | O_NOCTTY);
     termios raw;
     tcgetattr(kept, &raw);

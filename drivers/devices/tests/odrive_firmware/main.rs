@@ -1,6 +1,7 @@
-//! The joint's driver on the parser of an ODrive's own firmware (0.5.6), which answers on a pseudo-terminal. The firmware's
-//! sources are not part of this project: they are compiled from the folder `Firmware` of a checkout that `JOINTBENCH_ODRIVE_FIRMWARE`
-//! names, with a drive around them that is ours. Without it the tests say that they are skipped.
+//! The joint's driver with the parser of an ODrive's own firmware (0.5.6), which answers on a pseudo-terminal. The
+//! firmware sources are not part of this project. They are compiled from the folder `Firmware` of a checkout that
+//! `JOINTBENCH_ODRIVE_FIRMWARE` names, together with our own model of the drive. Without it the tests report that they
+//! are skipped.
 #![cfg(unix)]
 
 use jointbench_devices::driver::{OdriveSettings, Thermistor};
@@ -20,12 +21,12 @@ const OURS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/odrive_firmware")
 const BUILT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/odrive_firmware");
 const PARSER: [&str; 2] = ["ascii_protocol.cpp", "ascii_protocol.hpp"];
 
-/// The program, or why there is none.
+/// The program, or the reason why it is missing.
 static PROGRAM: LazyLock<Result<PathBuf, String>> = LazyLock::new(|| {
     let firmware = std::env::var_os("JOINTBENCH_ODRIVE_FIRMWARE").ok_or("JOINTBENCH_ODRIVE_FIRMWARE is not set")?;
     let firmware = Path::new(&firmware);
     let built = Path::new(BUILT);
-    // Out of its folder: beside it lie headers of the firmware that nothing but the drive itself compiles.
+    // Copied, because the original folder contains headers of the firmware that only the drive itself can compile.
     std::fs::create_dir_all(built).unwrap();
     for name in PARSER {
         let source = firmware.join("communication").join(name);
@@ -84,7 +85,7 @@ impl Drop for Drive {
     }
 }
 
-/// Feeds a velocity for a while, as a run does.
+/// Commands a velocity for a while, as a run does.
 fn turn(joint: &mut OdriveJoint, clock: &Arc<dyn Clock>, velocity: RadPerSec, seconds: f64) {
     let end_s = clock.now_s() + seconds;
     while clock.now_s() < end_s {
@@ -117,7 +118,7 @@ fn it_is_identified_armed_turned_and_stood_down() {
         let link_rad = second.link_position.unwrap().0;
         assert!((link_rad - second.motor_position.0 / 50.0).abs() < 0.01, "{second:?}");
     }
-    // A current alone: torque mode.
+    // A current alone selects torque mode.
     joint.set_motor_current(Amperes(0.5)).unwrap();
     clock.sleep_until_s(clock.now_s() + 0.02);
     assert!((joint.read().unwrap().motor_current.0 - 0.5).abs() < 1e-3);
@@ -144,7 +145,7 @@ fn a_drive_that_nobody_feeds_stands_down_and_says_why_and_is_armed_again() {
     assert!(joint.health().unwrap().armed);
 }
 
-/// A line that is not the driver's: it swallows the next command, whose checksum is wrong then, and the parser says nothing.
+/// A foreign line absorbs the next command. The checksum of that command is then wrong, and the parser does not answer.
 #[test]
 fn what_somebody_else_leaves_on_the_line_is_gone_when_the_driver_has_recovered() {
     let Some(drive) = Drive::start() else { return };
@@ -163,7 +164,7 @@ fn what_somebody_else_leaves_on_the_line_is_gone_when_the_driver_has_recovered()
     }
 }
 
-/// Lines whose replies say nothing of the shaft: the forms of every command, and what C makes of numbers.
+/// Lines whose replies do not depend on the shaft: all forms of the commands, and C's number parsing.
 const LINES: &[&str] = &[
     "f",
     "f x",
@@ -262,7 +263,7 @@ const LINES: &[&str] = &[
     "r axis0.current_state",
     "r axis0.requested_state",
 ];
-/// What no line is answered with, after each of them.
+/// Sent after each line: its known reply marks the end of the replies to that line.
 const LAST: (&str, &str) = ("f 77\n", "invalid motor 77\r\n");
 
 fn said(port: &mut dyn serialport::SerialPort, line: &str) -> String {

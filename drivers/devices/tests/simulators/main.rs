@@ -1,8 +1,8 @@
-//! The drivers on simulators that others wrote: pymodbus' RTU server, labmcp's Rigol supply and its multimeter. One that is not
-//! installed is said to be missing, and its test says nothing else:
+//! The drivers with third-party simulators: pymodbus' RTU server, labmcp's Rigol supply and its multimeter. If one is
+//! not installed, its test reports that and checks nothing:
 //!
-//! `pip install pymodbus pyserial labmcp-bench-psu labmcp-scpi`, and `JOINTBENCH_PYTHON` where that is not of the `python3` on the
-//! path.
+//! `pip install pymodbus pyserial labmcp-bench-psu labmcp-scpi`, and `JOINTBENCH_PYTHON` if they are not installed for
+//! the `python3` on the path.
 
 use jointbench_devices::driver::{AdamSettings, DmmSettings, ScpiSettings};
 use jointbench_devices::{AdamThermometer, DmmTorqueSensor, PortSettings, ScpiSource};
@@ -13,7 +13,7 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 
 const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/simulators/simulators.py");
-/// What the script says where a simulator is not installed.
+/// Output of the script if a simulator is not installed.
 const MISSING: &str = "No module named";
 const DEADLINE_MS: u64 = 2000;
 
@@ -24,7 +24,7 @@ struct Simulator {
 }
 
 impl Simulator {
-    /// `None`: it is not installed.
+    /// `None`: the simulator is not installed.
     fn start(words: &[&str], baud: u32) -> Option<Self> {
         let python = std::env::var("JOINTBENCH_PYTHON").unwrap_or_else(|_| "python3".into());
         let mut command = Command::new(&python);
@@ -103,7 +103,7 @@ fn the_supply_on_a_rigol_of_labmcp() {
         brake.prepare(Volts(45.0)).unwrap();
         let reading = brake.read().unwrap();
         assert!(reading.current.0.abs() < 2e-3, "{reading:?}");
-        // 100 Ω: 0.25 A take 25 V, 0.6 A would take more than there is.
+        // 100 Ω: 0.25 A need 25 V, and 0.6 A would exceed the voltage limit.
         for (asked_a, volts, regulation) in
             [(0.25, 25.0, Regulation::ConstantCurrent), (0.6, 45.0, Regulation::ConstantVoltage)]
         {
@@ -113,7 +113,7 @@ fn the_supply_on_a_rigol_of_labmcp() {
             assert!((reading.voltage.0 - volts).abs() < 5e-3, "{transport}, {asked_a} A: {reading:?}");
             assert!((reading.current.0 - volts / 100.0).abs() < 2e-3, "{transport}, {asked_a} A: {reading:?}");
         }
-        // More than it has: refused, and what it held is held on.
+        // A current beyond the limit is refused, and the present current is kept.
         let refused = brake.set_current(Amperes(5.0)).unwrap_err();
         assert!(matches!(refused.kind, FaultKind::Refused { .. }), "{refused}");
         assert!((brake.read().unwrap().current.0 - 0.45).abs() < 2e-3);
@@ -131,7 +131,7 @@ fn the_torque_on_a_multimeter_of_labmcp() {
         let (name, port, deadline_ms) = ("torque_sensor".into(), meter.port.clone(), DEADLINE_MS);
         let mut sensor = DmmTorqueSensor::open(DmmSettings { name, port, deadline_ms, nominal_nm: 20.0 }).unwrap();
         assert_eq!(sensor.identify().unwrap().model, "SIM-DMM-PSU");
-        // Its supply takes a while to its voltage.
+        // The supply of the multimeter takes a while to reach its voltage.
         std::thread::sleep(std::time::Duration::from_millis(300));
         match (sensor.read(), torque_nm) {
             (Ok(felt), Some(torque_nm)) => assert!((felt.0 - torque_nm).abs() < 1e-3, "{felt:?}"),

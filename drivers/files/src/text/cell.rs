@@ -1,12 +1,12 @@
-//! One cell of a text: a number, nothing, yes or no, or words.
+//! One cell of a text: a number, empty, a truth value, or words.
 
-/// What writers put where they have no value, in lower case.
+/// Words for a missing value in files of other programs, in lower case.
 const MISSING: [&[u8]; 14] =
     [b"", b"nan", b"na", b"n/a", b"n.a.", b"n.a", b"-", b"--", b"---", b"null", b"none", b"#n/a", b"-nan", b"<na>"];
-/// Longer cells are no such word.
+/// Longer cells are not such a word.
 const LONGEST_WORD: usize = 8;
 
-/// Which of point and comma stands before the decimals. The other one may part thousands.
+/// The decimal sign: point or comma. The other sign may separate thousands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Decimal {
@@ -16,7 +16,7 @@ pub enum Decimal {
 }
 
 impl Decimal {
-    /// As an option names it.
+    /// The name of the sign in an option.
     pub fn word(self) -> &'static str {
         match self {
             Decimal::Point => "point",
@@ -39,14 +39,14 @@ impl Decimal {
     }
 }
 
-/// How sure a number is of its decimal sign.
+/// Certainty of the decimal sign of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// Neither point nor comma, or as the decimal sign says.
+    /// Neither point nor comma, or only the decimal sign.
     Plain,
-    /// The other sign parts thousands, and cannot be anything else: 1.234.567 or 1.234,5.
+    /// The other sign can only separate thousands: 1.234.567 or 1.234,5.
     Grouped,
-    /// The other sign could part thousands or decimals: 1.220 in a table with decimal commas.
+    /// The other sign could separate thousands or decimals: 1.220 in a table with decimal commas.
     Doubtful,
 }
 
@@ -67,19 +67,19 @@ pub fn truth(cell: &[u8]) -> Option<bool> {
     }
 }
 
-/// The nearest double to a plain decimal number; blanks around it are let pass.
+/// The nearest double to a plain decimal number; spaces around it are ignored.
 pub fn plain(cell: &[u8]) -> Option<f64> {
-    // The parser takes words, too.
+    // The parser accepts words, too.
     let first = cell.iter().find(|byte| !byte.is_ascii_whitespace())?;
     if !(first.is_ascii_digit() || matches!(first, b'-' | b'+' | b'.')) {
         return None;
     }
     let value: f64 = fast_float2::parse(cell.trim_ascii()).ok()?;
-    // "-inf" and "-nan" are words; 1e999 is a number beyond what a double holds.
+    // "-inf" and "-nan" are words; 1e999 is a number beyond the range of a double.
     (value.is_finite() || cell.iter().any(u8::is_ascii_digit)).then_some(value)
 }
 
-/// A number of a table whose decimal sign is known.
+/// A number in a table with a known decimal sign.
 pub fn number(cell: &[u8], decimal: Decimal) -> Option<(f64, Shape)> {
     let cell = cell.trim_ascii();
     if let Some(usual) = usual(cell) {
@@ -102,7 +102,7 @@ pub fn number(cell: &[u8], decimal: Decimal) -> Option<(f64, Shape)> {
     Some((value, if is_certain { Shape::Grouped } else { Shape::Doubtful }))
 }
 
-/// A number in the notation of Fortran (1.5D-3) or with a typographic minus as it is usually written.
+/// Converts Fortran notation (1.5D-3) or a typographic minus to the usual notation.
 fn usual(cell: &[u8]) -> Option<Vec<u8>> {
     const MINUS: &[u8] = "−".as_bytes();
     let mut usual = match cell.strip_prefix(MINUS) {
@@ -119,20 +119,20 @@ fn usual(cell: &[u8]) -> Option<Vec<u8>> {
         .then_some(usual)
 }
 
-/// A number with this decimal sign, and no grouping.
+/// A number with this decimal sign, without grouping.
 fn swapped(cell: &[u8], decimal: Decimal) -> Option<f64> {
     match decimal {
         Decimal::Point => plain(cell),
         Decimal::Comma if cell.contains(&b'.') => None,
         Decimal::Comma => {
             let pointed: Vec<u8> = cell.iter().map(|byte| if *byte == b',' { b'.' } else { *byte }).collect();
-            // A digit stands behind a decimal comma; behind a decimal point none need to.
+            // A decimal comma needs a digit after it; a decimal point does not.
             (pointed.last() != Some(&b'.')).then(|| plain(&pointed))?
         }
     }
 }
 
-/// 1 234,5 and 1'234.5: blanks and apostrophes part nothing but thousands.
+/// 1 234,5 and 1'234.5: spaces and apostrophes only separate thousands.
 fn blank_groups(cell: &[u8], decimal: Decimal) -> Option<f64> {
     let text = std::str::from_utf8(cell).ok()?;
     let parting = text.chars().find(|c| matches!(c, ' ' | '\'' | '\u{a0}' | '\u{202f}' | '\u{2009}' | '’'))?;
@@ -142,7 +142,7 @@ fn blank_groups(cell: &[u8], decimal: Decimal) -> Option<f64> {
     swapped(marked.replace('_', "").as_bytes(), decimal)
 }
 
-/// Groups of three digits behind a first of one to three, which is not 0.
+/// Number of groups of three digits after a first group of one to three digits that does not start with 0.
 fn groups(whole: &[u8], sign: u8) -> Option<usize> {
     let whole = whole.strip_prefix(b"-").or_else(|| whole.strip_prefix(b"+")).unwrap_or(whole);
     let mut parts = whole.split(|byte| *byte == sign);
@@ -158,12 +158,12 @@ fn groups(whole: &[u8], sign: u8) -> Option<usize> {
     (is_first && count > 1).then_some(count)
 }
 
-/// Whether a number could have this sign between thousands: three digits behind one to three of which the first is not 0.
+/// Whether this sign could separate thousands: groups of three digits after one to three digits without a leading 0.
 pub fn could_be_grouped(cell: &[u8], sign: u8) -> bool {
     groups(cell.trim_ascii(), sign).is_some()
 }
 
-/// What a number says of the decimal sign of its table: sure of one, or of none.
+/// The decimal sign of the table, if this number determines it.
 pub fn tells(cell: &[u8]) -> Option<Decimal> {
     let cell = cell.trim_ascii();
     let place = |sign: u8| cell.iter().rposition(|byte| *byte == sign);
@@ -179,7 +179,7 @@ pub fn tells(cell: &[u8]) -> Option<Decimal> {
     }
 }
 
-/// A number whatever its decimal sign.
+/// Whether the cell is a number with either decimal sign.
 pub fn is_number(cell: &[u8]) -> bool {
     number(cell, Decimal::Point).is_some() || number(cell, Decimal::Comma).is_some()
 }

@@ -1,9 +1,9 @@
-//! Bytes to UTF-8: byte order marks, UTF-16, and the eight-bit text of older programs.
+//! Conversion of bytes to UTF-8: byte order marks, UTF-16, and the 8-bit text of older programs.
 
 use crate::error::FileFault;
 use encoding_rs::{Decoder, Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
-/// What the bytes of a file are. Windows-1252 holds Latin-1, as browsers read it (encoding.spec.whatwg.org).
+/// The encoding of a file. Windows-1252 includes Latin-1, as browsers read it (encoding.spec.whatwg.org).
 #[derive(Debug, Clone, Copy)]
 pub struct Coding {
     pub encoding: &'static Encoding,
@@ -11,13 +11,13 @@ pub struct Coding {
     pub mark: usize,
 }
 
-/// So many bytes of a head that is mostly zeros at odd or even places are UTF-16 without a mark.
+/// A larger fraction of zeros, only at odd or only at even positions, means UTF-16 without a mark.
 const MOSTLY: f64 = 0.3;
-/// More control characters than this share make no text.
+/// A larger fraction of control characters means that the file is not text.
 const CONTROL: f64 = 0.02;
 
 impl Coding {
-    /// By the first bytes of the file.
+    /// Determines the encoding from the first bytes of the file.
     pub fn of(head: &[u8]) -> Result<Coding, FileFault> {
         if let Some((encoding, mark)) = Encoding::for_bom(head) {
             return Ok(Coding { encoding, mark });
@@ -38,19 +38,19 @@ impl Coding {
         }
         match std::str::from_utf8(head) {
             Ok(_) => plain(UTF_8),
-            // The head may end inside a character.
+            // The first bytes may end inside a character.
             Err(fault) if fault.error_len().is_none() => plain(UTF_8),
             Err(_) => plain(WINDOWS_1252),
         }
     }
 
-    /// What the lines are read through. `None` where the bytes of numbers are those of UTF-8.
+    /// The decoder of the lines. `None` for UTF-8, which needs no conversion.
     pub fn decoder(self) -> Option<Decoder> {
         (self.encoding != UTF_8).then(|| self.encoding.new_decoder_without_bom_handling())
     }
 }
 
-/// Decodes a piece to the end of `text`.
+/// Appends a decoded piece to `text`.
 pub fn decode(decoder: &mut Decoder, mut piece: &[u8], is_last: bool, text: &mut Vec<u8>) {
     loop {
         let room = decoder.max_utf8_buffer_length(piece.len()).unwrap_or(piece.len());
@@ -74,7 +74,7 @@ mod tests {
         let bytes = &bytes[coding.mark..];
         let mut text = Vec::new();
         match coding.decoder() {
-            // Byte by byte: characters are parted anywhere.
+            // Byte by byte, so that characters are split at every position.
             Some(mut decoder) => {
                 bytes.iter().for_each(|byte| decode(&mut decoder, &[*byte], false, &mut text));
                 decode(&mut decoder, &[], true, &mut text);

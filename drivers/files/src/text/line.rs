@@ -1,22 +1,22 @@
-//! Lines of the beginning of a text, and their cells.
+//! Lines at the beginning of a text, and their cells.
 
 use super::cell;
 use super::stamp;
 
-/// What stands between the columns.
+/// The separator of the columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
     Sign(u8),
-    /// Blanks, as many as there are, also before the first column.
+    /// Any number of spaces, also before the first column.
     Blanks,
 }
 
-/// In the order in which the first of equals is taken.
+/// In this order the first one of equals is chosen.
 pub const SEPARATORS: [Separator; 5] =
     [Separator::Sign(b'\t'), Separator::Sign(b';'), Separator::Sign(b','), Separator::Sign(b'|'), Separator::Blanks];
 
 impl Separator {
-    /// The sign between the cells of a line that [`spread`] has passed.
+    /// The sign between the cells of a line that [`spread`] has normalized.
     pub fn sign(self) -> u8 {
         match self {
             Separator::Sign(sign) => sign,
@@ -35,20 +35,20 @@ impl Separator {
     }
 }
 
-/// One line, or several where quotation marks hold a line end.
+/// One line of cells. Quotation marks may contain line ends.
 #[derive(Debug, Clone, Copy)]
 pub struct Line<'t> {
-    /// Where it begins in the text.
+    /// Its start in the text.
     pub start: usize,
-    /// From 1, as an editor shows it.
+    /// Counted from 1, as in an editor.
     pub number: u64,
     pub text: &'t [u8],
 }
 
-/// Line ends inside of quotation marks that are looked over.
+/// Largest number of line ends inside quotation marks.
 const MOST_INNER_ENDS: usize = 8;
 
-/// The first lines of a text. `is_whole`: the last one is not cut off.
+/// The first lines of a text. `is_whole`: the last line is complete.
 pub fn lines(text: &[u8], is_whole: bool, most: usize) -> Vec<Line<'_>> {
     let mut found: Vec<Line<'_>> = Vec::new();
     let (mut start, mut number) = (0, 1);
@@ -62,7 +62,7 @@ pub fn lines(text: &[u8], is_whole: bool, most: usize) -> Vec<Line<'_>> {
     found
 }
 
-/// Where the line ends, and the line ends inside of it.
+/// The end of the line, and the number of line ends inside it.
 fn end_of(text: &[u8], start: usize, is_whole: bool) -> Option<(usize, u64)> {
     let (mut marks, mut inner, mut first) = (0, 0, None);
     for (at, byte) in text[start..].iter().enumerate() {
@@ -79,11 +79,11 @@ fn end_of(text: &[u8], start: usize, is_whole: bool) -> Option<(usize, u64)> {
             _ => {}
         }
     }
-    // A quotation mark that stays open is a sign like any other.
+    // A quotation mark that is never closed is an ordinary character.
     first.map(|end| (end, 0)).or(is_whole.then_some((text.len(), 0)))
 }
 
-/// The cells of a line, without quotation marks and blanks around them.
+/// The cells of a line, without quotation marks and surrounding spaces.
 pub fn cells(line: &[u8], separator: Separator) -> Vec<Vec<u8>> {
     let mut spread_line = Vec::new();
     let line = match separator {
@@ -102,7 +102,7 @@ pub fn cells(line: &[u8], separator: Separator) -> Vec<Vec<u8>> {
     }
 }
 
-/// Adds lines with one blank between cells, and none around them, to `out`.
+/// Appends lines to `out` with one space between cells and none at the ends.
 pub fn spread(text: &[u8], out: &mut Vec<u8>) {
     let (mut is_quoted, mut is_between, mut is_start) = (false, false, true);
     for byte in text {
@@ -131,7 +131,7 @@ pub fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b"#") || line.starts_with(b"%") || line.starts_with(b"//")
 }
 
-/// A line without the signs that make it a comment.
+/// A line without the signs that mark it as a comment.
 pub fn uncommented(line: &[u8]) -> &[u8] {
     match is_comment(line) {
         true => line.trim_ascii_start().trim_ascii().strip_prefix(b"//").unwrap_or_else(|| {
@@ -143,7 +143,7 @@ pub fn uncommented(line: &[u8]) -> &[u8] {
     }
 }
 
-/// A cell of the first lines, by what it could hold.
+/// The content of a cell of the first lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Holds {
     Number,

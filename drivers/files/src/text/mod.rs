@@ -1,7 +1,7 @@
-//! Text in: CSV and its relatives, in pieces, so that only the numbers of a file lie in memory.
+//! Imports text: CSV and similar formats. Reads in pieces, so that memory only holds the numbers of a file.
 //!
-//! The first lines decide how all others are read ([`layout`]). The csv crate parts rows and cells; what is ours is how the
-//! text is recognised and what a cell may hold.
+//! The first lines determine how all other lines are read ([`layout`]). The csv crate splits rows and cells. The
+//! detection of the layout and the interpretation of cells are implemented here.
 
 mod cell;
 mod encoding;
@@ -28,10 +28,10 @@ use rayon::prelude::*;
 use rows::{Part, Rows};
 use source::Pieces;
 
-/// Bytes of the beginning that decide about the rest.
+/// Bytes at the beginning that determine the layout of the rest.
 const HEAD_BYTES: usize = 256 << 10;
 
-/// `bytes`: of the text, where that is known; room is made for so many.
+/// `bytes`: size of the text, if it is known; used to reserve memory.
 pub(crate) fn read(
     name: &str,
     source: &mut dyn Source,
@@ -61,7 +61,7 @@ pub(crate) fn read(
     let begin = first[layout.start.min(first.len())..].to_vec();
     let mut line = layout.start_line - 1;
     let (mut batch, mut read, mut broken) = (vec![(begin, is_last)], Vec::new(), None);
-    // While one batch is read into numbers, the one before joins the table and the next one comes from the disk.
+    // While one batch is parsed, the previous one is appended to the table and the next one is read from disk.
     while !batch.is_empty() {
         let (parts, (joined, next)) = rayon::join(
             || batch.par_iter().map(|(text, is_last)| rows.part(text, *is_last)).collect::<Vec<Part>>(),
@@ -77,7 +77,7 @@ pub(crate) fn read(
             Vec::new()
         });
     }
-    // A wrong cell in what was read comes before a fault of the disk behind it.
+    // A wrong cell in the bytes that were read is reported before a later disk error.
     read.into_iter().try_for_each(|part| append(&mut table, part, &mut line, name, options))?;
     if let Some(fault) = broken {
         return Err(in_file(fault));
@@ -85,7 +85,7 @@ pub(crate) fn read(
     finish(table, &layout, name)
 }
 
-/// The table without rows.
+/// The empty table.
 fn table(layout: &Layout, options: &ReadOptions) -> Result<RawTable, FileFault> {
     let mut names: Vec<String> = layout.columns.iter().map(|column| column.name.clone()).collect();
     options.bounds.check_columns(&names)?;
@@ -114,7 +114,7 @@ fn table(layout: &Layout, options: &ReadOptions) -> Result<RawTable, FileFault> 
     })
 }
 
-/// `time,column_2,…`: time where the first column rises. Its unit is open.
+/// `time,column_2,…`: the first column is named time if it rises. Its unit is unknown.
 fn proposed_names(layout: &Layout) -> String {
     let rises = layout.columns.first().is_some_and(|column| {
         let values: Vec<f64> = column
@@ -138,7 +138,7 @@ fn ways(layout: &Layout, table: &RawTable, options: &ReadOptions) -> Vec<rows::W
     ways
 }
 
-/// Rows of a text of so many bytes, by its first lines.
+/// Estimated number of rows of a text of `bytes`, from its first lines.
 fn guess_rows(first: &[u8], bytes: u64) -> usize {
     let lines = first.iter().filter(|byte| **byte == b'\n').count().max(1) as u64;
     (bytes / (first.len() as u64 / lines).max(1)) as usize
@@ -197,7 +197,7 @@ fn finish(mut table: RawTable, layout: &Layout, name: &str) -> Result<RawTable, 
     Ok(table)
 }
 
-/// What the layout skips or assumes.
+/// Notes about skipped or assumed parts of the layout.
 fn notes(layout: &Layout, pieces: &Pieces<'_>) -> Vec<Note> {
     let mut notes = Vec::new();
     if let Some(coding) = pieces.coding.filter(|coding| coding.encoding != encoding_rs::UTF_8) {

@@ -1,4 +1,4 @@
-//! The rows of a text: each cell a number, or what else it is.
+//! The rows of a text: each cell a number or another content.
 
 use super::cell::{self, Decimal, Shape};
 use super::layout::{Content, Layout};
@@ -14,39 +14,39 @@ use csv::ByteRecord;
 pub struct Way {
     pub content: Content,
     pub decimal: Decimal,
-    /// Whatever it holds, nobody asks for it.
+    /// The column is not needed; its content is ignored.
     pub is_left: bool,
 }
 
-/// How rows are read: what does not change from piece to piece.
+/// Parameters for reading rows, constant for all pieces.
 pub struct Rows<'o> {
     pub separator: Separator,
     pub ways: Vec<Way>,
     pub names: Vec<String>,
-    /// Words that stand for an empty cell.
+    /// Words for an empty cell.
     pub missing: &'o [String],
     pub bounds: &'o Bounds,
 }
 
-/// What a piece of the text holds. Rows count from 0, lines from 1, both within the piece.
+/// Content of a piece of the text. Rows count from 0, lines from 1, both within the piece.
 #[derive(Debug, Default)]
 pub struct Part {
     pub columns: Vec<(Vec<f64>, Found)>,
     pub rows: usize,
     pub lines: Lines,
-    /// Line ends in it.
+    /// Number of line ends in the piece.
     pub ends: u64,
-    /// Rows of another width: their lines and cells, and whether they begin with a number.
+    /// Rows with a different number of cells: line, cells, and whether the row starts with a number.
     pub odd: Vec<(u64, usize, bool)>,
     pub comments: usize,
-    /// Rows above which the names stand again.
+    /// Rows before which the line of names is repeated.
     pub named_again: Vec<usize>,
-    /// The last row, where it or its last cell is shorter than all others and no line end follows.
+    /// The last row is incomplete: it has no line end, and it or its last cell is shorter than all others.
     pub is_cut: bool,
     pub refused: Option<(u64, usize, FileFault)>,
 }
 
-/// The lines on which rows begin. Kept where a row does not begin on the line behind the one before.
+/// The start lines of rows. Stored only where a row does not start on the line after the row before.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Lines {
     leaps: Vec<(usize, u64)>,
@@ -80,11 +80,11 @@ impl Layout {
     }
 }
 
-/// Of so many rows the last cell of the last one is not the shortest by accident.
+/// With this many rows, a shortest last cell at the end is not a coincidence.
 const MANY: usize = 20;
 
 impl Rows<'_> {
-    /// `is_last`: no line end needs to follow the last row.
+    /// `is_last`: the last row needs no line end.
     pub fn part(&self, text: &[u8], is_last: bool) -> Part {
         let mut even = Vec::new();
         let text = match self.separator {
@@ -104,7 +104,7 @@ impl Rows<'_> {
             .from_reader(text);
         let mut record = ByteRecord::new();
         let mut shortest = usize::MAX;
-        // From memory, in any width: nothing fails.
+        // Reading from memory with flexible widths cannot fail.
         while reader.read_byte_record(&mut record).unwrap_or(false) {
             let is_end = is_last && reader.position().byte() == text.len() as u64 && !text.ends_with(b"\n");
             let length = record.iter().next_back().map_or(0, |cell| cell.trim_ascii().len());
@@ -160,15 +160,15 @@ impl Rows<'_> {
         part.rows += 1;
     }
 
-    /// The line of names again, as a logger writes it that was started anew.
+    /// A repeated line of names, as a restarted logger writes it.
     fn is_names(&self, record: &ByteRecord) -> bool {
         let named = self.names.first().is_some_and(|name| !name.is_empty());
         let is_same = |(cell, name): (&[u8], &String)| cell.trim_ascii() == name.as_bytes();
         named && record.len() == self.names.len() && record.iter().zip(&self.names).all(is_same)
     }
 
-    /// What is more may be empty, and what is less may lack what is always empty, or words: a comment stands in some rows
-    /// only.
+    /// Surplus cells must be empty. Missing cells are allowed in empty columns and columns of words, such as a comment
+    /// in a few rows.
     fn fits(&self, record: &ByteRecord) -> bool {
         let (found, expected) = (record.len(), self.ways.len());
         match found.cmp(&expected) {
@@ -223,7 +223,7 @@ impl Way {
         Some(value)
     }
 
-    /// What a plain number says of the decimal sign of its column.
+    /// Collects the evidence of a plain number for the decimal sign of its column.
     fn weigh(self, cell: &[u8], value: f64, row: usize, found: &mut Found) {
         match cell.contains(&self.decimal.sign()) {
             true if cell::could_be_grouped(cell, self.decimal.sign()) => {
@@ -237,7 +237,7 @@ impl Way {
 
 fn line_of(text: &[u8], record: &ByteRecord) -> u64 {
     let Some(position) = record.position() else { return 1 };
-    // The reader notes where it began to look; empty lines come before the record.
+    // The reader reports the position before empty lines; the record starts after them.
     let blank = text[position.byte() as usize..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n'));
     position.line() + blank.filter(|byte| **byte == b'\n').count() as u64
 }

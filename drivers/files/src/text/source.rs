@@ -1,4 +1,4 @@
-//! The bytes of a text, whole or packed, and in pieces that end with a line.
+//! The bytes of a text, plain or packed, in pieces of whole lines.
 
 use super::encoding::{Coding, decode};
 use crate::Bounds;
@@ -65,22 +65,22 @@ impl<R: Read + Send> Source for Packed<R> {
     }
 }
 
-/// Bytes of a piece.
+/// Size of a piece in bytes.
 const PIECE_BYTES: usize = 4 << 20;
-/// Without the end of a line in so many bytes, no quotation mark is believed any more.
+/// After this many bytes without a line end, quotation marks are ignored.
 const LONGEST_LINE: usize = 64 << 20;
 
 /// A text in pieces of whole lines, in UTF-8.
 pub struct Pieces<'s> {
     source: &'s mut dyn Source,
     decoder: Option<Decoder>,
-    /// What was read and not given, decoded.
+    /// Decoded bytes that were read but not returned yet.
     rest: Vec<u8>,
     is_over: bool,
     bytes: usize,
-    /// An old form of line ends: CR alone.
+    /// Line ends of old systems: only CR.
     is_cr: bool,
-    /// What is left out at the beginning.
+    /// Bytes to skip at the beginning.
     mark: usize,
     pub coding: Option<Coding>,
 }
@@ -99,7 +99,7 @@ impl<'s> Pieces<'s> {
         }
     }
 
-    /// Reads on until a piece and a half is there, or the text is over.
+    /// Reads until `wanted` bytes are available or the text ends.
     fn fill(&mut self, wanted: usize) -> Result<(), FileFault> {
         let mut room = vec![0; self.bytes.min(1 << 20)];
         while !self.is_over && self.rest.len() < wanted {
@@ -126,7 +126,7 @@ impl<'s> Pieces<'s> {
         Ok(())
     }
 
-    /// The next lines, and whether they are the last. `None` behind the last.
+    /// The next lines, and whether they are the last. `None` after the last.
     pub fn next(&mut self) -> Result<Option<(Vec<u8>, bool)>, FileFault> {
         let is_first = self.coding.is_none();
         self.fill(self.bytes)?;
@@ -158,7 +158,7 @@ impl<'s> Pieces<'s> {
         Ok(Some((piece, is_last)))
     }
 
-    /// The next pieces, at most so many; none behind the last.
+    /// The next pieces, at most `most`; empty after the last piece.
     pub fn batch(&mut self, most: usize) -> Result<Vec<(Vec<u8>, bool)>, FileFault> {
         let mut batch = Vec::new();
         while batch.len() < most
@@ -170,7 +170,7 @@ impl<'s> Pieces<'s> {
     }
 }
 
-/// Behind the last end of a line that is not inside of quotation marks.
+/// Position after the last line end that is not inside quotation marks.
 fn cut(text: &[u8], is_cr: bool, without_marks: bool) -> Option<usize> {
     let end = if is_cr { b'\r' } else { b'\n' };
     let last = text.iter().rposition(|byte| *byte == end)?;
@@ -178,7 +178,7 @@ fn cut(text: &[u8], is_cr: bool, without_marks: bool) -> Option<usize> {
     if marks % 2 == 0 {
         return Some(last + 1);
     }
-    // The open mark is the last one.
+    // The open quotation mark is the last one.
     let open = text[..last].iter().rposition(|byte| *byte == b'"')?;
     text[..open].iter().rposition(|byte| *byte == end).map(|at| at + 1)
 }

@@ -1,4 +1,4 @@
-//! Times that are no plain number: dates with a time of day, and clocks.
+//! Times that are not plain numbers: dates with a time of day, and clock times.
 
 use jiff::Timestamp;
 use jiff::civil::DateTime;
@@ -25,9 +25,9 @@ const SHORTEST: usize = 5;
 const LONGEST: usize = 64;
 
 /// ISO 8601 with and without a zone, the dates of spreadsheets (02.01.2026, 01/02/2026, 2026/01/02) with a time of day,
-/// and clocks (10:00:00.005, 00:05.2).
+/// and clock times (10:00:00.005, 00:05.2).
 ///
-/// A date without a zone counts as UTC: what is taken from it is the time since the first row.
+/// A date without a zone is taken as UTC, because only the time since the first row is used.
 pub fn parse(cell: &[u8]) -> Option<Stamp> {
     let cell = cell.trim_ascii();
     if !(SHORTEST..=LONGEST).contains(&cell.len()) || !cell.contains(&b':') {
@@ -62,7 +62,7 @@ fn date(text: &str, at: usize) -> Option<i64> {
     let (a, b, c) = (parts.next()??, parts.next()??, parts.next()??);
     let (year, month, day) = match (a > 31, sign) {
         (true, _) => (a, b, c),
-        // The month comes first with slashes only, and where it can be one.
+        // The month comes first only with slashes, and only if it can be a month.
         (false, '/') if a <= 12 => (c, a, b),
         (false, _) => (c, b, a),
     };
@@ -77,7 +77,7 @@ fn month(name: &str) -> Option<u16> {
     MONTHS.iter().position(|month| name.eq_ignore_ascii_case(month)).map(|place| place as u16 + 1)
 }
 
-/// A century; a clock that shows more is none.
+/// A century; a clock time beyond it is invalid.
 const MOST_HOURS: u32 = 876_600;
 
 /// hh:mm:ss.fff, mm:ss.fff, hh:mm:ss:mmm, each also with a comma and with AM or PM.

@@ -1,6 +1,6 @@
-//! Broken files of every form: each is refused or read, without an end by panic, and in bounded memory.
+//! Broken files of every form: each is refused or read without a panic, in limited memory.
 //!
-//! In a process of its own, whose address space is limited: an allocation that a broken length asks for would end it.
+//! Runs in its own process with a limited address space: an allocation with a broken length would abort it.
 //! `JOINTBENCH_MUTATIONS=100000 cargo test -p jointbench-files --test mutated` tries more.
 
 mod seeds;
@@ -28,7 +28,7 @@ impl Dice {
     }
 }
 
-/// Values at which lengths and offsets go wrong.
+/// Values at which lengths and offsets are prone to errors.
 const EDGES: [u64; 8] = [0, 1, u64::MAX, i64::MAX as u64, 1 << 31, u32::MAX as u64, i32::MAX as u64, 1 << 40];
 
 fn mutate(file: &mut Vec<u8>, dice: &mut Dice) {
@@ -71,7 +71,7 @@ fn a_broken_file_is_refused() {
     for (name, seed) in &seeds {
         read_bytes(name, seed, &options).unwrap_or_else(|fault| panic!("the seed is whole: {fault}"));
     }
-    // Panics inside of a decoder become refusals; what they say is of no use here.
+    // Panics inside a decoder become refusals; their messages are not needed here.
     let caught = Arc::<AtomicU64>::default();
     let count = caught.clone();
     std::panic::set_hook(Box::new(move |_| {

@@ -1,4 +1,4 @@
-//! Whole files of every form and packing.
+//! Valid files of every form and compression.
 
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int32Array, RecordBatch, StringArray, UInt64Array};
 use arrow_ipc::CompressionType;

@@ -1,6 +1,6 @@
-//! One recording in the shapes that other laboratories' tools write: read right, or refused with the option that reads it.
+//! One recording in the formats of other laboratories' tools: read correctly, or refused with the option that reads it.
 //!
-//! `make.py` writes the files; pandas, polars and NumPy write theirs themselves.
+//! `make.py` writes the files; pandas, polars and NumPy write their own formats themselves.
 
 mod mutations;
 mod texts;
@@ -9,7 +9,7 @@ use jointbench_files::{Choices, FileError, Note, ReadOptions, understand};
 use jointbench_instrument::{Kind, Meta, RunTable};
 use std::path::{Path, PathBuf};
 
-/// What cannot be told from the file: the option that the refusal must name, and the choices that read it.
+/// Questions that the file does not answer: the option that the refusal must name, and the choices that read the file.
 fn options() -> Vec<(&'static str, &'static str, Choices)> {
     let names = Some("time_s,motor_position_rad,motor_velocity_rad_s,motor_current_a".to_owned());
     let named = Choices { names, ..Choices::default() };
@@ -35,7 +35,7 @@ fn take(path: &Path, choices: &Choices) -> Result<(RunTable, Vec<Note>), FileErr
     understand(path, &ReadOptions { meta, ..choices.options().unwrap() })?.into_run()
 }
 
-/// A column: name, value in a row, and how far it may be off as it was written.
+/// A column: name, value in a row, and tolerance of the written value.
 type Truth = (&'static str, fn(f64) -> f64, f64);
 
 /// The recording of `make.py`.
@@ -48,7 +48,7 @@ fn truth() -> [Truth; 4] {
     ]
 }
 
-/// What is wrong with a table that was read.
+/// The first error of an imported table.
 fn wrong(run: &RunTable) -> Option<String> {
     if !(39..=40).contains(&run.len()) {
         return Some(format!("{} rows", run.len()));
@@ -80,7 +80,7 @@ fn usual_shapes_are_read_right_or_say_the_option() {
                 }
                 match take(&path, choices) {
                     Err(refused) => told.push(format!("{refused}, with {choices:?}")),
-                    // Numbers of the mixed table are others.
+                    // The mixed table has other numbers.
                     Ok((run, _)) if name != "mixed_signs.csv" => told.extend(wrong(&run)),
                     Ok((run, _)) => assert_eq!(run.column("motor_current_a").unwrap()[0], 1.2),
                 }

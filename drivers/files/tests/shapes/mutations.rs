@@ -1,4 +1,4 @@
-//! Texts with bytes changed, cut, doubled and moved: read or refused, never an end by panic.
+//! Texts with changed, cut, doubled and moved bytes: read or refused, never a panic.
 //!
 //! `PROPTEST_CASES=100000 cargo test -p jointbench-files --test shapes mutated` tries more.
 
@@ -13,7 +13,7 @@ static SEEDS: LazyLock<Vec<(String, Vec<u8>)>> = LazyLock::new(|| {
     files().into_iter().map(read).collect()
 });
 
-/// Bytes that mean something in a table.
+/// Bytes with a meaning in a table.
 const TELLING: &[u8] = b",;\t|.\"'\n\r#-+eE 0:9TZ\0\xff\xe4";
 
 #[derive(Debug, Clone)]

@@ -1,4 +1,4 @@
-//! Small texts: numbers, times and names that could be taken for something else.
+//! Small texts: numbers, times and names that are ambiguous.
 
 use jointbench_files::{Choices, FileError, Note, ReadOptions, understand_bytes};
 use jointbench_instrument::{Kind, Meta, RunTable};
@@ -44,7 +44,7 @@ fn no_number_is_silently_wrong_by_a_thousand() {
     }
     let decimal = table("motor_current_a", &["1.5", "2.25", "1.125"]);
     refused(&decimal, &["expected a number, found “1.5”: it is one with --decimal NAME=point"]);
-    // Whole numbers below a thousand, and points in all above.
+    // Whole numbers below a thousand, and points in all larger numbers.
     let points = "time_s,motor_position_rad,motor_current_a\n0.1,0.5,998\n0.2,0.5,1.002\n0.3,0.5,1.004\n";
     refused(points, &["line 3, column motor_current_a", "“1.002” is 1.002 where the point"]);
     let quoted = "time_s,motor_position_rad,motor_current_a\n0.1,0.5,\"1,220\"\n0.2,0.5,\"1,210\"\n";

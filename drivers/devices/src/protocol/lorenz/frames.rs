@@ -1,14 +1,14 @@
-//! The stream of special mode 3: `index A B`, five bytes, not framed, not stuffed, without a checksum. The index, which
-//! wraps after 255, is all there is to find the frames by and to notice what was lost.
+//! The stream of special mode 3: `index A B`, five bytes, without framing, stuffing or checksum. Only the index, which
+//! wraps after 255, identifies the frames and shows losses.
 
 use std::cmp::Reverse;
 
-/// Periods of the stream count in this.
+/// Unit of the stream period.
 pub const PERIOD_STEP_S: f64 = 200e-6;
 const LENGTH: usize = 5;
-/// Frames that must follow each other before any of them is believed after a loss.
+/// Consecutive frames that are required after a loss before any of them is accepted.
 const RUN: usize = 8;
-/// Kept while no run is found. A stream of noise costs no more memory than this.
+/// Limit of the buffer while no frames are found.
 const LIMIT: usize = 4096;
 
 /// Calibrated counts of channels A and B.
@@ -21,13 +21,13 @@ pub struct Frame {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Item {
     Frame(Frame),
-    /// So many frames are missing here, or 256 more, or any multiple of that: the index does not tell.
+    /// Number of missing frames modulo 256; the index does not give more.
     Gap {
         count: u8,
     },
 }
 
-/// Finds the frames in what comes in, from the first byte after the reply that started the stream.
+/// Finds the frames in the received bytes, from the first byte after the reply that started the stream.
 #[derive(Debug, Default)]
 pub struct Frames {
     bytes: Vec<u8>,
@@ -39,12 +39,12 @@ impl Frames {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// Frames that have come in and are not believed yet.
+    /// Frames that are received but not yet accepted.
     pub fn waiting(&self) -> u64 {
         (self.bytes.len() / LENGTH) as u64
     }
 
-    /// How many frames from `at` on carry rising indices from `index` on; no more than `most` are looked at.
+    /// Number of frames from `at` on with rising indices from `index` on, at most `most`.
     fn frames(&self, at: usize, index: u8, most: usize) -> usize {
         let indices = self.bytes.get(at..).unwrap_or_default().iter().step_by(LENGTH).take(most);
         let follows = |(number, byte): &(usize, &u8)| **byte == index.wrapping_add(*number as u8);
@@ -55,8 +55,8 @@ impl Frames {
         self.frames(at, index, count) == count
     }
 
-    /// Where frames begin after a loss. A torque that rises by one count a frame looks like an index for a while, so of runs
-    /// that overlap it is the longest, once it is longer than chance; until then more frames must tell.
+    /// Start of the frames after a loss. A torque that rises by one count per frame looks like an index for a while. Of
+    /// overlapping candidates the longest is chosen, if it is clearly longer; otherwise more frames are needed.
     fn start(&self) -> Option<usize> {
         let in_place = |place: usize| {
             let mut starts = (place..self.bytes.len()).step_by(LENGTH);
@@ -87,8 +87,8 @@ impl Frames {
 impl Iterator for Frames {
     type Item = Item;
 
-    /// A frame counts once the two behind it have come with the right index. Where bytes are lost inside a frame its
-    /// index is right and its torque is not: without this it would be believed.
+    /// Accepts a frame when the next two frames have the right index. If bytes are lost inside a frame, its index is
+    /// right and its torque is wrong; this check rejects it.
     fn next(&mut self) -> Option<Item> {
         if self.run(0, self.next, 3) {
             return Some(self.take());
@@ -101,8 +101,8 @@ impl Iterator for Frames {
             self.bytes.drain(..surplus);
             return None;
         };
-        // Whole frames are lost, or bytes inside one. What stood before is whole in the first case, all but its last
-        // frame: that may be the head of one and the tail of another.
+        // Either whole frames are lost, or bytes inside one. In the first case all earlier frames are valid except the
+        // last, which may join the head of one frame and the tail of another.
         let whole = start.is_multiple_of(LENGTH) && start > LENGTH && self.run(0, self.next, 2);
         if whole {
             return Some(self.take());
@@ -128,7 +128,7 @@ mod tests {
         numbers.flat_map(frame).collect()
     }
 
-    /// All items of a stream that arrives in pieces; what is believed must be what was sent.
+    /// All items of a stream that arrives in pieces. Accepted frames must equal the sent frames.
     fn items(bytes: &[u8], piece: usize) -> Vec<Item> {
         let mut frames = Frames::default();
         let mut items = Vec::new();
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn a_torque_that_rises_like_an_index_is_found_out() {
-        // The small range rises by one count a frame for a while, in step with a byte lost before.
+        // The small range rises by one count per frame for a while, in step with a byte that was lost before.
         let rising = |number: usize| {
             let low = if (20..60).contains(&number) { number as u8 } else { 7 };
             [number as u8, 0, 9, 0, low]
@@ -216,7 +216,7 @@ mod tests {
     #[test]
     fn losses_close_together_do_not_stop_the_stream() {
         let whole = stream(0..200);
-        // Two bytes lost, with a run of frames between, and all of it comes in at once.
+        // Two bytes lost, with several frames between them, and all bytes arrive at once.
         let bytes = [&whole[..502], &whole[503..560], &whole[561..]].concat();
         let items = items(&bytes, 10_000);
         let last =

@@ -1,4 +1,4 @@
-//! Lorenz telegrams (LCV-USB2, USB-VS2, DR-xxxx-VS, SI-RS485), as the published client LorenzTelegram 1.0.0 speaks them.
+//! Lorenz telegrams (LCV-USB2, USB-VS2, DR-xxxx-VS, SI-RS485), as in the published client LorenzTelegram 1.0.0.
 //!
 //! `STX CMD TO FROM N P1..PN CS WCS`; every 02 after the first STX is sent twice, checksums included.
 

@@ -1,4 +1,4 @@
-//! What a sensor refuses for (LorenzTelegram 1.0.0, `Error`).
+//! Reasons for which a sensor refuses a request (LorenzTelegram 1.0.0, `Error`).
 
 pub fn nack_text(code: u8) -> String {
     let text = match code {

@@ -53,7 +53,7 @@ macro_rules! request {
     };
 }
 
-/// Is anybody there?
+/// Checks whether a sensor answers.
 #[derive(Debug, Clone, Copy)]
 pub struct Hello;
 
@@ -61,7 +61,7 @@ request!(Hello, command::HELLO, "Hello", (), |_this| &[], |self, packet| {
     answer::<1>(packet, command::HELLO).map(|_| ())
 });
 
-/// Both channels at one moment.
+/// Both channels at the same moment.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadRaw;
 
@@ -81,7 +81,7 @@ request!(ReadRaw, command::READ_RAW, "ReadRaw", RawReading, |_this| &[], |self, 
     Ok(RawReading { raw: [word(0), word(2)], calibrated: [word(4), word(6)], check_signal: p[8] != 0 })
 });
 
-/// State of the device: an error code, 0 when all is well.
+/// State of the device: an error code, 0 without an error.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadStatusShort;
 
@@ -121,7 +121,7 @@ request!(ReadConfig, command::READ_CONFIG, "ReadConfig", ConfigBlock, |this| &[t
     Ok(block)
 });
 
-/// Both channels on the sensor's own clock, without end (SOSM mode 3). What follows the reply are frames, no telegrams.
+/// Both channels at the rate of the sensor's clock, without end (SOSM mode 3). Frames follow the reply, not telegrams.
 #[derive(Debug, Clone, Copy)]
 pub struct StartStream {
     /// In steps of 200 µs.
@@ -137,7 +137,7 @@ request!(
     |self, packet| answer::<0>(packet, command::ACK).map(|_| ())
 );
 
-/// Ends a stream that somebody left running: any STX does. Three, because one may meet a byte on its way.
+/// Ends a running stream: any STX ends it. Three are sent, because one may collide with a byte of the stream.
 #[derive(Debug, Clone, Copy)]
 pub struct StopStream;
 

@@ -33,7 +33,7 @@ impl Telegram {
     }
 
     /// # Panics
-    /// With more than 255 parameters: a programming error.
+    /// If there are more than 255 parameters: a programming error.
     pub fn encode(&self, out: &mut Vec<u8>) {
         let count = u8::try_from(self.parameters.len()).expect("at most 255 parameters");
         let mut body = vec![self.command, self.to, self.from, count];
@@ -49,7 +49,7 @@ impl Telegram {
         }
     }
 
-    /// A whole telegram as [`scan`] measured it.
+    /// Decodes a whole telegram as measured by [`scan`].
     pub fn decode(packet: &[u8]) -> Result<Self, FaultKind> {
         let garbled = |why: &str| FaultKind::Garbled { what: format!("{}: {why}", shown(packet)) };
         let Unstuffed::Whole(body, _) = unstuff(packet) else { return Err(garbled("expected a whole telegram")) };
@@ -62,7 +62,7 @@ impl Telegram {
     }
 }
 
-/// CS: sum of the bytes. WCS: sum of the sums, with the carry added again at the low end.
+/// CS: sum of the bytes. WCS: sum of the partial sums, with the carry added to the lowest bit.
 fn checksums(body: &[u8]) -> (u8, u8) {
     body.iter().fold((0u8, 0u8), |(sum, weighted), byte| {
         let sum = sum.wrapping_add(*byte);
@@ -71,17 +71,17 @@ fn checksums(body: &[u8]) -> (u8, u8) {
     })
 }
 
-/// What a telegram's bytes come to.
+/// Result of removing the stuffing from a telegram.
 enum Unstuffed {
     /// CMD..WCS, and the length on the wire.
     Whole(Vec<u8>, usize),
     Short,
-    /// A single STX inside: the telegram broke off here and another begins.
+    /// A single STX inside: the telegram is incomplete and another one begins here.
     BrokenOff(usize),
 }
 
 fn unstuff(received: &[u8]) -> Unstuffed {
-    // Older documents double the first STX as well. No command is 02, so two in a row can only be that.
+    // Older documents double the first STX as well. No command is 02, so two in a row can only mean that.
     let mut at = if received.get(1) == Some(&STX) { 2 } else { 1 };
     let mut body = Vec::with_capacity(48);
     while body.len() < 6 || body.len() < usize::from(body[3]) + 6 {

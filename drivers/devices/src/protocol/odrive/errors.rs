@@ -5,7 +5,7 @@ use crate::protocol::scan_line;
 use crate::transport::{Command, Request, Scan};
 use jointbench_instrument::FaultKind;
 
-/// The parts of a drive that keep an error word of their own.
+/// The parts of a drive that have their own error word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     System,
@@ -79,11 +79,11 @@ impl Part {
     }
 }
 
-/// An error word as far as nine characters can tell it.
+/// An error word as far as nine characters can show it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ErrorWord {
     Bits(u64),
-    /// Nine digits: the motor's 64-bit word was cut, and only this much is certain, that a high bit is set.
+    /// Nine digits: the 64-bit word of the motor was cut. Only one fact is certain: a high bit is set.
     Cut,
 }
 
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn a_cut_word_is_not_decoded() {
-        // 68719476735 on the drive arrives as this.
+        // The reply for the value 68719476735.
         let line = "687194767";
         let sum = line.bytes().fold(0, |sum, byte| sum ^ byte);
         let word = ReadErrors(Part::Motor).decode(format!("{line}*{sum}\r\n").as_bytes()).unwrap();

@@ -20,7 +20,7 @@ pub fn push(out: &mut Vec<u8>, text: Arguments<'_>) {
     writeln!(out, "*{sum}").expect("a vector takes every byte");
 }
 
-/// The text of a reply line, once its checksum is found right and it is not an error reply.
+/// The text of a reply line, if its checksum is right and it is not an error reply.
 pub fn text(line: &[u8]) -> Result<&str, FaultKind> {
     let garbled = |why: &str| FaultKind::Garbled { what: format!("{}: {why}", shown(line)) };
     let body = line.strip_suffix(b"\r\n").ok_or_else(|| garbled("expected the line end \\r\\n"))?;
@@ -39,7 +39,7 @@ pub fn text(line: &[u8]) -> Result<&str, FaultKind> {
     }
 }
 
-/// A number from a reply. `nan` and `inf` are what a poisoned controller says: no reading.
+/// A number from a reply. `nan` and `inf` come from a controller with an invalid state and are not readings.
 pub fn number(text: &str) -> Result<f64, FaultKind> {
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),

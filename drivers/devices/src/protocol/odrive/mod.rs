@@ -1,9 +1,9 @@
 //! ODrive ASCII protocol, firmware 0.5.x (`Firmware/communication/ascii_protocol.cpp` of tag fw-v0.5.6).
 //!
-//! Lines end with a bare `\n`: the firmware takes `\r` and `\n` as one end each and answers the empty line between them.
-//! Every command carries its checksum, so that every reply carries one too. Sets are silent, also those that a checksum
-//! error threw away, and their error replies come out of phase: a set therefore travels with a read of the same property.
-//! `r` cuts its reply after nine characters: positions are read with `f`, which does not.
+//! Lines end with a bare `\n`: the firmware takes `\r` and `\n` as one end each and answers the empty line between
+//! them. Every command has a checksum, so every reply has one too. Set commands have no reply, even if a checksum error
+//! discarded them, and their error replies arrive out of step. Therefore each set command is followed by a read of the
+//! same property. `r` cuts its reply after nine characters, so positions are read with `f`, which does not.
 
 mod errors;
 mod line;

@@ -12,7 +12,7 @@ pub struct ReadFeedback {
     pub axis: u8,
 }
 
-/// `%f` prints six decimals, so the reply is a whole number of millionths.
+/// `%f` prints six decimals, so the reply is a whole number of 10⁻⁶ turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Feedback {
     pub position_micro_turns: i64,
@@ -73,7 +73,7 @@ impl Request for ReadNumber {
     }
 }
 
-/// Writes a property and reads it back in the same transmission. The reply is the value that now holds.
+/// Writes a property and reads it back in the same transmission. The reply is the value after the write.
 #[derive(Debug, Clone, Copy)]
 pub struct Set {
     pub path: &'static str,
@@ -103,8 +103,8 @@ impl Request for Set {
     }
 }
 
-/// Velocity set-point of the joint's axis with a torque fed forward, read back. Feeds the watchdog. Leaves the drive in
-/// velocity mode.
+/// Velocity set-point of the joint's axis with a feed-forward torque, read back. Feeds the watchdog. Selects velocity
+/// mode.
 #[derive(Debug, Clone, Copy)]
 pub struct SetVelocity {
     pub turns_s: f64,
@@ -136,8 +136,8 @@ impl Request for SetVelocity {
     }
 }
 
-/// Torque set-point of the joint's axis, read back. Feeds the watchdog. Leaves the drive in torque mode: no loop holds its
-/// speed.
+/// Torque set-point of the joint's axis, read back. Feeds the watchdog. Selects torque mode, in which no loop controls
+/// the speed.
 #[derive(Debug, Clone, Copy)]
 pub struct SetTorque {
     pub torque_nm: f64,
@@ -168,7 +168,7 @@ impl Request for SetTorque {
     }
 }
 
-/// The value read back, where it is the one that was set: within a float's precision and what nine characters hold.
+/// The value read back, if it equals the set value within float precision and nine characters.
 fn taken(text: &str, wanted: f64, path: &str) -> Result<f64, FaultKind> {
     let found = number(text)?;
     let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len() as i32);
@@ -180,7 +180,7 @@ fn taken(text: &str, wanted: f64, path: &str) -> Result<f64, FaultKind> {
     })
 }
 
-/// Keeps the drive armed (`u`); any set-point does so too. No reply.
+/// Keeps the drive armed (`u`), as does any set-point. No reply.
 #[derive(Debug, Clone, Copy)]
 pub struct FeedWatchdog;
 
@@ -208,7 +208,7 @@ impl Command for ClearErrors {
     }
 }
 
-/// Asks the axis to change its state. Reads back 0 whatever comes of it, so `axis0.current_state` tells. No reply.
+/// Requests a state of the axis. The property always reads 0, so `axis0.current_state` shows the result. No reply.
 #[derive(Debug, Clone, Copy)]
 pub struct RequestState(pub f64);
 
@@ -222,9 +222,9 @@ impl Command for RequestState {
     }
 }
 
-/// Torque off: idle state, zero set-points, and a watchdog that has nothing left to watch. No reply.
+/// Torque off: idle state, zero set-points, watchdog disabled. No reply.
 ///
-/// Begins with a line end, so that the rest of a broken line does not swallow the first command.
+/// Starts with a line end, so that the rest of an incomplete line does not absorb the first command.
 #[derive(Debug, Clone, Copy)]
 pub struct StandDown {
     pub after_broken_line: bool,
@@ -245,7 +245,7 @@ impl Command for StandDown {
     }
 }
 
-/// Who answers (`i`): three lines.
+/// Identity of the drive (`i`): three lines.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadInfo;
 
@@ -266,7 +266,7 @@ impl Request for ReadInfo {
         let mut ends = received.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at);
         match ends.nth(2) {
             Some(end) => Scan::Packet { length: end + 1 },
-            // An instrument that answers in one line is another one: no third line will come.
+            // An instrument with a one-line answer is another instrument: no third line will arrive.
             None if received.len() > 3 * LINE_LIMIT => Scan::Noise { skip: received.len() },
             None => Scan::Short,
         }

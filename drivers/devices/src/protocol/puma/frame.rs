@@ -10,12 +10,12 @@ const LENGTH: usize = 7;
 const REFUSED: u8 = 0x80;
 const FRESH: u8 = 0x40;
 
-/// One command: its number on the wire, the word that goes with it, and what the word of the reply means.
+/// One command: its code on the wire, its parameter word, and the meaning of the word in the reply.
 pub trait Order {
     type Reply;
 
     const CODE: u8;
-    /// How it appears in faults.
+    /// Name of the order in faults.
     const NAME: &'static str;
 
     fn word(&self) -> u16 {
@@ -25,14 +25,14 @@ pub trait Order {
     fn reply(&self, word: u16) -> Result<Self::Reply, FaultKind>;
 }
 
-/// An order as it is sent: the reply carries the same number.
+/// An order with its number; the reply has the same number.
 #[derive(Debug, Clone, Copy)]
 pub struct Numbered<O> {
     pub number: u8,
     pub order: O,
 }
 
-/// A reply, and whether positions count from a power-up that nobody has acknowledged.
+/// A reply, and whether positions count from a power-up that is not yet acknowledged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reply<T> {
     pub value: T,
@@ -56,7 +56,8 @@ impl<O: Order> Command for Numbered<O> {
 impl<O: Order> Request for Numbered<O> {
     type Reply = Reply<O::Reply>;
 
-    /// A frame whose checksum is wrong is noise up to what may begin another one, and a garbled reply where nothing does.
+    /// A frame with a wrong checksum is noise up to the next possible start of a frame. Without such a start it is a
+    /// garbled reply.
     fn scan(&self, received: &[u8]) -> Scan {
         let next = |from: usize| received.iter().skip(from).position(|byte| *byte == REPLY).map(|at| from + at);
         match next(0) {

@@ -7,13 +7,13 @@ pub const OUTPUT_SCALE: u8 = 0x05;
 pub const INTERVAL: u8 = 0x06;
 pub const POSITION_TOLERANCE: u8 = 0x52;
 pub const INTEGRAL_TOLERANCE: u8 = 0x54;
-/// Where the manual of the Puma 500 and 600 series has the velocity gain; unused in the program that was disassembled.
+/// Address of the velocity gain in the manual of the Puma 500 and 600 series; unused in the disassembled program.
 pub const VELOCITY_GAIN_OF_MANUAL: u8 = 0x5C;
 /// The last address of the memory.
 pub const LAST: u8 = 0x7F;
 
-/// What the bytes of a variable mean. The document gives no formats: that numbers begin with their lowest byte, and that
-/// those of three bytes have 8 bits of fraction, is assumed.
+/// The format of a variable. The document gives no formats. Assumed: the lowest byte comes first, and numbers of three
+/// bytes have 8 fractional bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     Whole,
@@ -21,7 +21,7 @@ pub enum Form {
     Bits,
     /// Signed, with 8 bits of fraction.
     Fixed,
-    /// Several values, which have no value together.
+    /// Several values, without a common value.
     Buffer,
 }
 
@@ -32,7 +32,7 @@ pub struct Variable {
     pub bytes: u8,
     pub name: &'static str,
     pub form: Form,
-    /// Unit of its value.
+    /// Unit of the value.
     pub unit: &'static str,
     pub meaning: &'static str,
 }
@@ -42,7 +42,7 @@ impl Variable {
         self.address + self.bytes - 1
     }
 
-    /// `bytes` from the lowest address on. `None` of a buffer.
+    /// `bytes` from the lowest address on. `None` for a buffer.
     pub fn value(&self, bytes: &[u8]) -> Option<f64> {
         if self.form == Form::Buffer {
             return None;
@@ -54,12 +54,12 @@ impl Variable {
     }
 }
 
-/// The variables of table 2.7, and last the address at which the manual has one of them.
+/// The variables of table 2.7, followed by the velocity gain's address in the manual.
 pub fn variables() -> impl Iterator<Item = &'static Variable> {
     TABLE.iter()
 }
 
-/// The variable that an address belongs to.
+/// The variable that contains an address.
 pub fn at(address: u8) -> Option<&'static Variable> {
     TABLE.iter().find(|variable| (variable.address..=variable.last()).contains(&address))
 }

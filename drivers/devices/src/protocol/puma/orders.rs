@@ -50,7 +50,7 @@ impl Order for ReadCurrent {
     }
 }
 
-/// What was set comes back.
+/// The reply repeats the set value.
 fn taken(sent: u16, held: u16) -> Result<(), FaultKind> {
     if held == sent {
         return Ok(());
@@ -59,7 +59,7 @@ fn taken(sent: u16, held: u16) -> Result<(), FaultKind> {
     Err(FaultKind::Garbled { what: format!("sent {sent}, but the servo reads back {held}") })
 }
 
-/// A position to be reached in `ninter` ticks from now, in counts.
+/// A position in counts, to be reached in `ninter` ticks.
 #[derive(Debug, Clone, Copy)]
 pub struct PositionMode(pub i16);
 
@@ -78,7 +78,7 @@ impl Order for PositionMode {
     }
 }
 
-/// A motor current, in counts of the converter and without any loop around it.
+/// A motor current in converter counts, without a control loop.
 #[derive(Debug, Clone, Copy)]
 pub struct CurrentMode(pub i16);
 
@@ -112,7 +112,7 @@ impl Order for Stop {
     }
 }
 
-/// Arm power on and the holding brake off: the servo holds the position where it is.
+/// Arm power on and holding brake off: the servo holds its present position.
 #[derive(Debug, Clone, Copy)]
 pub struct ArmPower;
 
@@ -127,7 +127,7 @@ impl Order for ArmPower {
     }
 }
 
-/// `ninter`: ticks from one set-point to the next.
+/// `ninter`: ticks between set-points.
 #[derive(Debug, Clone, Copy)]
 pub struct SetInterval(pub u8);
 
@@ -146,7 +146,7 @@ impl Order for SetInterval {
     }
 }
 
-/// The largest motor current, in counts of the converter.
+/// The largest motor current, in converter counts.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit(pub i16);
 
@@ -165,7 +165,7 @@ impl Order for Limit {
     }
 }
 
-/// Takes back all error bits, and acknowledges a power-up.
+/// Clears all error bits and acknowledges a power-up.
 #[derive(Debug, Clone, Copy)]
 pub struct Clear;
 
@@ -194,7 +194,7 @@ impl Order for DiagRead {
         self.0.into()
     }
 
-    /// The address comes back before the byte.
+    /// The reply contains the address, then the byte.
     fn reply(&self, word: u16) -> Result<u8, FaultKind> {
         let [address, byte] = word.to_be_bytes();
         if address == self.0 {
@@ -204,7 +204,7 @@ impl Order for DiagRead {
     }
 }
 
-/// Writes one byte of the memory: a gain, a tolerance band, or where no variable is.
+/// Writes one byte of the memory: a gain, a tolerance, or an unused address.
 #[derive(Debug, Clone, Copy)]
 pub struct DiagWrite {
     pub address: u8,
@@ -226,15 +226,15 @@ impl Order for DiagWrite {
     }
 }
 
-/// What a servo tells of itself.
+/// Identification data of a servo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fact {
     /// 0x0560 for a Puma 560.
     Arm = 0,
-    /// From 1, at the base.
+    /// Counted from 1 at the base.
     Axis = 1,
     Serial = 2,
-    /// Of the program in its memory.
+    /// Revision of the program in its memory.
     Revision = 3,
 }
 

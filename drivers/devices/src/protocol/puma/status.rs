@@ -6,7 +6,7 @@ const POSITION: u16 = 1 << 0;
 const CURRENT: u16 = 1 << 1;
 const ARM_POWER: u16 = 1 << 2;
 const IN_POSITION: u16 = 1 << 3;
-/// The document tells of the first three as not implemented: another revision of the program may set them.
+/// The document describes the first three as not implemented; another revision of the program may set them.
 const ERRORS: [(u16, &str); 5] = [
     (1 << 8, "RAM error"),
     (1 << 9, "out of the position envelope"),
@@ -15,17 +15,17 @@ const ERRORS: [(u16, &str); 5] = [
     (1 << 12, "motor current at its limit for 0.5 s: arm power was switched off"),
 ];
 
-/// Low byte: what the servo does, bits 6 and 7 being its own; high byte: errors.
+/// Low byte: state of the servo, with bits 6 and 7 for its own use. High byte: errors.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Status(pub u16);
 
 impl Status {
-    /// The motor may hold torque.
+    /// The motor may produce torque.
     pub fn is_armed(self) -> bool {
         self.0 & ARM_POWER != 0 && self.0 & (POSITION | CURRENT) != 0
     }
 
-    /// What the servo does. In position: the set-point is reached, within the tolerance band `postol`.
+    /// State of the servo. In position: the set-point is reached within the tolerance `postol`.
     pub fn states(self) -> Vec<&'static str> {
         let states = [
             (POSITION, "position mode"),

@@ -1,5 +1,5 @@
-//! What two makers' supplies call the same things. A line of a command that selects the channel goes before every use: the
-//! selection belongs to the instrument, and whoever else talks to it may have changed it.
+//! The commands of two makers. A line that selects the channel precedes every command, because the instrument has only
+//! one selection and another client may have changed it.
 
 use jointbench_instrument::roles::Identity;
 
@@ -7,12 +7,12 @@ use jointbench_instrument::roles::Identity;
 pub enum Dialect {
     /// Rigol DP800 (programming guide PGH03109-1110).
     Dp800,
-    /// Rohde & Schwarz HMP. Its conditions are assumed where the public client does not use them.
+    /// Rohde & Schwarz HMP. Condition bits that the public client does not use are assumed.
     Hmp,
 }
 
 impl Dialect {
-    /// `None`: a supply that this driver does not know.
+    /// `None`: a supply that this driver does not support.
     pub fn of(identity: &Identity) -> Option<Self> {
         let maker = identity.maker.to_ascii_uppercase();
         match &identity.model {
@@ -22,7 +22,7 @@ impl Dialect {
         }
     }
 
-    /// Header and query of the current, then of the voltage.
+    /// Command and query of the current, then of the voltage.
     pub fn current(self) -> [&'static str; 2] {
         match self {
             Dialect::Dp800 => [":SOUR1:CURR", ":SOUR1:CURR?"],
@@ -37,7 +37,7 @@ impl Dialect {
         }
     }
 
-    /// The channel is programmed in steps of this.
+    /// Programming resolution of the channel.
     pub fn current_step_a(self) -> f64 {
         match self {
             Dialect::Dp800 => 1e-4,
@@ -45,7 +45,8 @@ impl Dialect {
         }
     }
 
-    /// An HMP has a switch for the channel and a relay for all: on takes both, off only the channel's own.
+    /// An HMP has one switch per channel and a relay for all channels. On uses both, off only the switch of the
+    /// channel.
     pub fn output(self, on: bool) -> &'static str {
         match (self, on) {
             (Dialect::Dp800, true) => ":OUTP CH1,ON",
@@ -55,7 +56,7 @@ impl Dialect {
         }
     }
 
-    /// The output is on where every one of them says so.
+    /// The output is on if all of them report on.
     pub fn output_queries(self) -> &'static [&'static str] {
         match self {
             Dialect::Dp800 => &[":OUTP? CH1"],
@@ -71,7 +72,7 @@ impl Dialect {
         }
     }
 
-    /// Bits of an over-voltage and an over-current (a fuse) that have tripped.
+    /// Bits of a tripped over-voltage and over-current protection (fuse).
     pub fn trips(self) -> [u32; 2] {
         match self {
             Dialect::Dp800 => [1 << 2, 1 << 3],

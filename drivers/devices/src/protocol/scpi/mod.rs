@@ -1,7 +1,7 @@
-//! SCPI as supplies of the Rigol DP800 and the R&S HMP series speak it. Channel 1 feeds the brake.
+//! SCPI of the supplies of the Rigol DP800 and the R&S HMP series. Channel 1 feeds the brake.
 //!
-//! Sets have no reply, so every set travels with a question for the error queue. Which number a supply picks for a mistake
-//! differs between makers: any entry but 0 is a failure. An unknown query gets no reply at all.
+//! Set commands have no reply, so each is sent together with a query of the error queue. The error numbers differ
+//! between makers: any entry except 0 is a failure. An unknown query gets no reply at all.
 
 mod dialect;
 mod requests;

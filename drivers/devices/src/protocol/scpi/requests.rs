@@ -7,7 +7,7 @@ use jointbench_instrument::FaultKind;
 use jointbench_instrument::roles::Identity;
 
 const LINE_LIMIT: usize = 1024;
-/// Entries that an error queue can hold; reading it ends after as many.
+/// Entries that an error queue can hold; reading stops after this number.
 pub const ERROR_QUEUE_DEPTH: usize = 20;
 
 /// Line end of a request: `\n` on the network and USB, `\r\n` on RS-232.
@@ -25,7 +25,7 @@ impl Terminator {
         }
     }
 
-    /// Every line of the text.
+    /// Appends every line of the text.
     fn push(self, out: &mut Vec<u8>, text: &str) {
         for line in text.split('\n') {
             out.extend_from_slice(line.as_bytes());
@@ -115,7 +115,7 @@ pub struct QueryNumber(pub Terminator, pub &'static str);
 
 query!(QueryNumber, |this| this.1, f64, |text| number(text));
 
-/// Whether something is on (`:OUTP? CH1`).
+/// Whether a switch is on (`:OUTP? CH1`).
 #[derive(Debug, Clone, Copy)]
 pub struct QueryFlag(pub Terminator, pub &'static str);
 
@@ -125,7 +125,7 @@ query!(QueryFlag, |this| this.1, bool, |text| match text {
     _ => Err(FaultKind::Garbled { what: format!("`{text}`: expected ON or OFF") }),
 });
 
-/// What the supply measures at its output.
+/// Measured voltage and current at the output of the supply.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadMeasured(pub Terminator, pub Dialect);
 
@@ -144,7 +144,7 @@ query!(ReadMeasured, |this| this.1.measured(), Measured, |_this, text| {
     Ok(Measured { voltage_v, current_a })
 });
 
-/// Questionable condition of channel 1: how the output is held, and what has tripped.
+/// Questionable condition of channel 1: regulation of the output, and tripped protections.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadCondition(pub Terminator, pub Dialect);
 
@@ -172,12 +172,12 @@ query!(ReadCondition, |_this| ":STAT:QUES:INST:ISUM1:COND?", Condition, |this, t
 pub struct ReadVoltage(pub Terminator);
 
 query!(ReadVoltage, |_this| "READ?", Option<f64>, |text| match text.parse::<f64>() {
-    // 9.9E37 to either side; 9.91E37 is SCPI's "not a number".
+    // 9.9E37 with either sign; 9.91E37 is SCPI's "not a number".
     Ok(value) if (value.abs() - 9.9e37).abs() < 5e34 => Ok(None),
     _ => number(text).map(Some),
 });
 
-/// A command with the question whether it was accepted.
+/// A command followed by a query whether it was accepted.
 #[derive(Debug, Clone)]
 pub struct Set(pub Terminator, pub String);
 
@@ -207,7 +207,7 @@ impl Request for Set {
     }
 }
 
-/// Current zero and output off, waiting for nothing. No reply.
+/// Current zero and output off, without waiting. No reply.
 #[derive(Debug, Clone, Copy)]
 pub struct SwitchOff(pub Terminator, pub Dialect);
 

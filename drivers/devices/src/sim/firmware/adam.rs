@@ -7,9 +7,9 @@ use std::ops::Range;
 
 const SLAVE: u8 = 1;
 const CHANNELS: usize = 6;
-/// Ten conversions a second, shared by six channels.
+/// Ten conversions per second, shared by six channels.
 const REFRESH_S: f64 = 0.6;
-/// A Pt100 in the bore of a housing (assumed: 10 to 30 s).
+/// Time constant of a Pt100 in the bore of a housing (assumed: 10 to 30 s).
 const SENSOR_LAG_S: f64 = 20.0;
 const NOISE_K: f64 = 0.1;
 const PT100_400: u16 = 0x23;
@@ -18,7 +18,7 @@ const TYPE_CODES: u16 = 200;
 const MODULE_NAME: [u16; 2] = [0x4015, 0x0000];
 const ENABLED: u16 = 0x3F;
 
-/// Of a Modbus frame on a serial line.
+/// Longest Modbus frame on a serial line.
 const LONGEST_FRAME: usize = 256;
 
 const ILLEGAL_FUNCTION: u8 = 1;
@@ -97,7 +97,7 @@ pub(super) fn crc(bytes: &[u8]) -> u16 {
     sum
 }
 
-/// The first request with a right checksum. Its length follows from its function (Modbus application protocol 1.1b3).
+/// The first request with a correct checksum. Its length depends on its function (Modbus application protocol 1.1b3).
 fn first_frame(input: &[u8]) -> Option<Range<usize>> {
     (0..input.len()).find_map(|start| {
         let length = match input.get(start + 1)? {
@@ -113,7 +113,7 @@ fn first_frame(input: &[u8]) -> Option<Range<usize>> {
 
 impl Firmware for Adam {
     fn receive(&mut self, input: &mut Vec<u8>, _plant: &mut Plant, output: &mut Vec<u8>) {
-        // Without gaps in time the checksum finds the requests.
+        // The simulation has no gaps in time, so the checksum finds the requests.
         while let Some(found) = first_frame(input) {
             let frame: Vec<u8> = input.drain(..found.end).skip(found.start).collect();
             if frame[0] == SLAVE {
@@ -121,14 +121,14 @@ impl Firmware for Adam {
                 let mut reply = vec![SLAVE];
                 reply.extend(match frame.len() {
                     8 => self.answer(frame[1], word(2), word(4)),
-                    // None of the functions that it has.
+                    // None of the functions that it supports.
                     _ => vec![frame[1] | 0x80, ILLEGAL_FUNCTION],
                 });
                 reply.extend(crc(&reply).to_le_bytes());
                 output.extend(reply);
             }
         }
-        // What is left may begin a frame.
+        // The remaining bytes may begin a frame.
         let spent = input.len().saturating_sub(LONGEST_FRAME - 1);
         input.drain(..spent);
     }
@@ -151,6 +151,6 @@ impl Firmware for Adam {
         self.trouble = trouble;
     }
 
-    /// Type codes are remembered; a sensor's warmth needs no power.
+    /// Type codes are kept without power, and so is the temperature of a sensor.
     fn power_cycle(&mut self, _plant: &mut Plant) {}
 }

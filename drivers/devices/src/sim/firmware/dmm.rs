@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 const NM_PER_V: f64 = 2.0;
 const NOISE_V: f64 = 1e-4;
-/// A range ends a fifth above its name; SCPI's number for more than that.
+/// A range ends 20 % above its nominal value. SCPI has a number for values beyond.
 const OVER_RANGE: f64 = 1.2;
 const OVERLOAD: f64 = 9.9e37;
 const RANGES_V: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];

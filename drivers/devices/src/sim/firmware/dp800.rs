@@ -68,7 +68,7 @@ impl Dp800 {
         }
     }
 
-    /// The channel that a `CH1` parameter, a `SOUR1` suffix or the selection names; and the parameters behind it.
+    /// The channel that a `CH1` parameter, a `SOUR1` suffix or the selection names, and the parameters after it.
     fn channel<'a>(&self, unit: &'a Unit, numbers: &[u32]) -> Result<(usize, &'a [String]), Error> {
         let index = |number: u32| match number {
             1 | 2 => Ok(number as usize - 1),
@@ -168,7 +168,7 @@ impl Dp800 {
         })
     }
 
-    /// Nothing is wired to channel 2.
+    /// Voltage of channel 2, which is not wired.
     fn free_v(&self, index: usize) -> Option<f64> {
         (index > 0).then(|| if self.channels[index].on { self.channels[index].voltage_v } else { 0.0 })
     }
@@ -179,7 +179,7 @@ fn switch(text: &str) -> Result<bool, Error> {
 }
 
 impl LineFirmware for Dp800 {
-    /// More than any client sends.
+    /// Longer than the lines of any client.
     const LONGEST_LINE: usize = 1024;
 
     fn line(&mut self, line: &str, plant: &Plant) -> Option<String> {

@@ -1,4 +1,4 @@
-//! One output of a DP821A: what is set and what protects it.
+//! One output of a DP821A: its settings and protections.
 
 use super::dp800_commands::Quantity;
 use crate::sim::plant::CoilSupply;

@@ -1,4 +1,4 @@
-//! A PI hexapod on a C-887 controller (GCS 2.0 commands, C-887 user manual MS204E as far as the notes have it).
+//! A PI hexapod on a C-887 controller (GCS 2.0 commands, C-887 user manual MS204E as far as the notes contain it).
 
 use super::Firmware;
 use super::gcs_motion::Motion;
@@ -8,7 +8,7 @@ use crate::sim::trouble::Trouble;
 
 const AXES: [&str; 6] = ["X", "Y", "Z", "U", "V", "W"];
 const LONGEST_LINE: usize = 512;
-/// 0.1 µm; 0.2 µrad in degrees.
+/// Position noise: 0.1 µm, and 0.2 µrad in degrees.
 const NOISE: [f64; 2] = [1e-4, 1.15e-5];
 
 const SYNTAX: u32 = 1;
@@ -24,7 +24,7 @@ const INVALID_NUMBER: u32 = 25;
 const LEVEL_TOO_LOW: u32 = 60;
 const BUSY: u32 = 1005;
 
-/// First word of the line, and what follows it, for HLP?. A client (PIPython) takes what is not here for not there.
+/// First word of the line and its description, for HLP?. A client (PIPython) assumes that other commands do not exist.
 pub(super) const HELP: [&str; 26] = [
     "#5 request motion status",
     "#7 request controller ready status",
@@ -162,7 +162,7 @@ impl Gcs {
         self.error = STOPPED;
     }
 
-    /// Single bytes are heard at once, in the middle of a line too.
+    /// Single-byte commands take effect immediately, also in the middle of a line.
     fn byte(&mut self, byte: u8, plant: &Plant, output: &mut Vec<u8>) {
         let now_s = plant.now_s();
         match byte {
@@ -178,7 +178,7 @@ fn index(axis: &str) -> Result<usize, u32> {
     AXES.iter().position(|known| *known == axis).ok_or(INVALID_AXIS)
 }
 
-/// `X 0.5 U 0.2` put into the values that are there.
+/// Applies `X 0.5 U 0.2` to the present values.
 fn assigned(mut values: [f64; 6], arguments: &[&str], put: impl Fn(f64, f64) -> f64) -> Result<[f64; 6], u32> {
     let (pairs, []) = arguments.as_chunks::<2>() else { return Err(COUNT) };
     if pairs.is_empty() {
@@ -224,7 +224,7 @@ impl Firmware for Gcs {
         self.trouble = trouble;
     }
 
-    /// The platform stays where it is, and where that is nobody knows until it is referenced.
+    /// The platform keeps its pose, but the pose is unknown until the stage is referenced.
     fn power_cycle(&mut self, _plant: &mut Plant) {
         *self = Self { trouble: self.trouble, ..Self::new() };
     }

@@ -1,11 +1,11 @@
-//! How the platform of a hexapod moves: straight from pose to pose, all axes arriving together.
+//! Motion of a hexapod platform: straight from pose to pose, all axes arriving together.
 
 /// Travel of each axis with the others at zero: mm and degrees (H-820 class).
 const TRAVEL: [f64; 6] = [22.5, 22.5, 12.5, 7.5, 7.5, 12.5];
-/// Rotations are as slow as the platform's rim: degrees for each mm of travel (assumed).
+/// Rotations are as slow as the rim of the platform: mm of travel per degree (assumed).
 const MM_PER_DEGREE: f64 = 1.0;
 const REFERENCE_S: f64 = 8.0;
-/// Between arrival and "on target".
+/// Time between arrival and "on target".
 const SETTLING_S: f64 = 0.1;
 
 pub struct Motion {
@@ -31,12 +31,12 @@ impl Motion {
         }
     }
 
-    /// Legs that one axis has stretched have less left for the others (an ellipsoid, assumed).
+    /// The reachable poses are an ellipsoid (assumed): travel along one axis reduces the travel of the others.
     pub fn holds(pose: [f64; 6]) -> bool {
         pose.iter().zip(TRAVEL).map(|(value, travel)| (value / travel).powi(2)).sum::<f64>() <= 1.0
     }
 
-    /// How far each axis can go while the others stay.
+    /// Travel of each axis while the others keep their position.
     pub fn reach(&self) -> [f64; 6] {
         let share = |axis: usize| (self.target[axis] / TRAVEL[axis]).powi(2);
         let all: f64 = (0..6).map(share).sum();
@@ -77,7 +77,7 @@ impl Motion {
         (self.target, self.start_s) = (target, now_s);
     }
 
-    /// Stays where it is; in the middle of a reference move nothing is known of where that is.
+    /// Stops at the present pose. During a reference move that pose is unknown.
     pub fn stop(&mut self, now_s: f64) {
         self.reference_until_s = None;
         self.start(self.position(now_s), now_s);

@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 
 const MOST_V: f64 = 32.05;
 const MOST_A: f64 = 10.01;
-/// Of set values (assumed).
+/// Resolution of set values (assumed).
 const STEP_V: f64 = 1e-3;
 const STEP_A: f64 = 2e-4;
 
@@ -64,10 +64,10 @@ static COMMANDS: LazyLock<Vec<(Pattern, Command)>> = LazyLock::new(|| {
 
 pub struct Hmp {
     channels: [Channel; 4],
-    /// Steps of `UP` and `DOWN`, volts then amperes.
+    /// Step sizes of `UP` and `DOWN`, volts then amperes.
     steps: [f64; 2],
     selected: usize,
-    /// The relay behind all channels.
+    /// The relay for all channels.
     general: bool,
     status: Status,
     output: CoilOutput,
@@ -213,7 +213,7 @@ fn level(text: &str, unit: &str, now: f64, step: f64, most: f64, grain: f64) -> 
 }
 
 impl LineFirmware for Hmp {
-    /// More than any client sends.
+    /// Longer than the lines of any client.
     const LONGEST_LINE: usize = 1024;
 
     fn line(&mut self, line: &str, plant: &Plant) -> Option<String> {

@@ -1,26 +1,26 @@
-//! What instruments that answer line by line have in common.
+//! Common parts of instruments that answer line by line.
 
 use super::Firmware;
 use crate::sim::plant::Plant;
 use crate::sim::trouble::Trouble;
 
-/// Firmware that is asked in lines and answers in lines, each with a line feed at its end.
+/// Firmware with line-based requests and replies; each reply ends with a line feed.
 pub trait LineFirmware {
-    /// What is kept of a line that does not end.
+    /// Buffer limit for a line without an end.
     const LONGEST_LINE: usize;
 
-    /// What follows from a line, its end still on it. `None`: no reply.
+    /// The reply to a line, which still has its line end. `None`: no reply.
     fn line(&mut self, line: &str, plant: &Plant) -> Option<String>;
 
     fn step(&mut self, _plant: &mut Plant) {}
 
     fn trouble(&mut self) -> &mut Trouble;
 
-    /// As it is after power-up. The bad day that it has goes on.
+    /// The state after power-up. The present trouble continues.
     fn restart(&mut self, plant: &mut Plant);
 }
 
-/// Takes the whole lines out of `input` and keeps at most `longest` of one that has not ended.
+/// Removes the whole lines from `input` and keeps at most `longest` bytes of an incomplete line.
 pub fn answer_lines(
     input: &mut Vec<u8>,
     longest: usize,

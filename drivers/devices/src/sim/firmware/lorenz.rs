@@ -1,6 +1,6 @@
-//! A rotating torque sensor of two ranges behind an LCV-USB-VS2 interface: telegrams, blocks, polling and stream.
+//! A rotating torque sensor with two ranges behind an LCV-USB-VS2 interface: telegrams, blocks, polling and stream.
 //!
-//! Written from the published client (LorenzTelegram 1.0.0) and LCTSfunctions v2; shares no code with the driver's codec.
+//! Based on the published client (LorenzTelegram 1.0.0) and LCTSfunctions v2; shares no code with the driver's codec.
 
 use super::Firmware;
 use crate::sim::plant::{Plant, STEP_S, Signal};
@@ -12,15 +12,15 @@ pub(super) const NACK: u8 = 0x15;
 pub(super) const ADDRESS: u8 = 0x01;
 pub(super) const BROADCAST: u8 = 0x00;
 
-/// Counts at nominal torque; 16 bit leave head-room up to 131 %.
+/// Counts at nominal torque; 16 bits give a range of up to 131 %.
 const NOMINAL_COUNTS: f64 = 25_000.0;
-/// Channel A is the shaft's whole range, B its small one.
+/// Channel A is the full range of the shaft, channel B its small range.
 const NOMINAL_NM: [u16; 2] = [200, 20];
-/// Of nominal torque (assumed).
+/// As a fraction of nominal torque (assumed).
 const NOISE: [f64; 2] = [5.0e-5, 1.5e-4];
 const CHANNELS: [Signal; 2] = [Signal::TorqueCoarse, Signal::TorqueFine];
 
-/// Stream periods count in 200 µs; two channels at 230400 baud fill the line at 4608 frames a second.
+/// Stream periods are multiples of 200 µs. Two channels at 230400 baud fill the line at 4608 frames per second.
 const PERIOD_S: f64 = 200e-6;
 const LINE_BYTES_S: f64 = 23_040.0;
 
@@ -29,18 +29,18 @@ pub(super) const UNKNOWN_COMMAND: u8 = 41;
 pub(super) const WRONG_CHECKSUM: u8 = 42;
 pub(super) const WRONG_PARAMETER: u8 = 43;
 pub(super) const WRITE_ONCE: u8 = 45;
-/// The inductive link to the rotor is dead.
+/// The inductive link to the rotor is interrupted.
 pub(super) const ROTOR_NOT_FOUND: u8 = 9;
 
-/// A bad stream loses this many frames of every so many.
+/// A bad stream loses `LOST_FRAMES` of every `LOST_OF` frames.
 const LOST_FRAMES: u64 = 7;
 const LOST_OF: u64 = 500;
-/// The sensor's quartz is off by up to this (assumed; specimens differ).
+/// Largest frequency error of the sensor's quartz (assumed; specimens differ).
 const QUARTZ_TOLERANCE: f64 = 40e-6;
 
 struct Stream {
     period_s: f64,
-    /// `None`: endless.
+    /// Remaining frames. `None`: endless.
     left: Option<u16>,
     channels: &'static [usize],
     due_s: f64,
@@ -72,7 +72,7 @@ impl Lorenz {
         rotor[..8].copy_from_slice(&[0x40, 0x08, 0x66, 0x10, 0x00, 0x01, 0xE2, 0x41]);
         rotor[10..12].copy_from_slice(&NOMINAL_NM[0].to_be_bytes());
         rotor[14..16].copy_from_slice(&NOMINAL_NM[1].to_be_bytes());
-        // 0.05 % and 0.1 %, in hundredths of a percent.
+        // 0.05 % and 0.1 %, in units of 0.01 %.
         (rotor[12], rotor[16]) = (5, 10);
         let mut calibration = [0; 28];
         calibration[0] = 0x41;
@@ -109,7 +109,7 @@ impl Lorenz {
         (noisy * NOMINAL_COUNTS).round() as i16
     }
 
-    /// Uncalibrated converter counts: another gain and an offset.
+    /// Uncalibrated converter counts: different gain, with an offset.
     fn raw(&self, plant: &Plant, channel: usize) -> i16 {
         (f64::from(self.counts(plant, channel)) * 0.92 + 117.0) as i16
     }
@@ -164,7 +164,7 @@ impl Lorenz {
                 self.restart();
                 (0x40, vec![0x01])
             }
-            // An angle output is what LCV-USB does not have.
+            // The LCV-USB has no angle output.
             0x4B => refuse(UNKNOWN_COMMAND),
             _ => self.start_stream(parameters, plant),
         }
@@ -190,7 +190,7 @@ impl Lorenz {
     }
 }
 
-/// A block's data with its two 16-bit checksums.
+/// The data of a block with its two 16-bit checksums.
 fn sealed(data: [u8; 28]) -> [u8; 32] {
     let mut sums = (0u16, 0u16);
     for byte in data {
@@ -229,13 +229,13 @@ pub(super) fn send(output: &mut Vec<u8>, to: u8, (command, parameters): (u8, Vec
     }
 }
 
-/// The un-stuffed bytes of the first telegram and its length on the wire. `Err` holds how much to throw away.
+/// The first telegram without stuffing, and its length on the wire. `Err` contains the number of bytes to discard.
 fn first_telegram(input: &[u8]) -> Result<Option<(Vec<u8>, usize)>, usize> {
     let Some(start) = input.iter().position(|byte| *byte == STX) else { return Err(input.len()) };
     if start > 0 {
         return Err(start);
     }
-    // Any run of leading STX is one start.
+    // Any number of leading STX is one start.
     let mut at = input.iter().take_while(|byte| **byte == STX).count();
     let mut body = Vec::new();
     while body.len() < 6 || body.len() < usize::from(body[3]) + 6 {
@@ -256,7 +256,7 @@ fn first_telegram(input: &[u8]) -> Result<Option<(Vec<u8>, usize)>, usize> {
 impl Firmware for Lorenz {
     fn receive(&mut self, input: &mut Vec<u8>, plant: &mut Plant, output: &mut Vec<u8>) {
         if self.stream.is_some() && input.contains(&STX) {
-            // Whatever the telegram says, it ends the stream and is lost.
+            // Any telegram ends the stream and is lost.
             self.stream = None;
             input.clear();
             return;
@@ -289,7 +289,7 @@ impl Firmware for Lorenz {
         let Some(mut stream) = self.stream.take() else { return };
         while now_s + 0.5 * STEP_S >= stream.due_s && stream.left != Some(0) {
             if self.trouble != Trouble::StreamGap || stream.sent % LOST_OF >= LOST_FRAMES {
-                // One byte of index, which wraps.
+                // The index has one byte and wraps.
                 self.pending.push(stream.sent as u8);
                 for channel in stream.channels {
                     self.pending.extend(self.counts(plant, *channel).to_be_bytes());
@@ -313,7 +313,7 @@ impl Firmware for Lorenz {
     fn afflict(&mut self, trouble: Trouble) {
         self.trouble = trouble;
         if trouble == Trouble::Exchanged {
-            // Another sensor was told of no stream.
+            // The stream was started on the original sensor, not on this one.
             self.stream = None;
             self.pending.clear();
         }

@@ -1,4 +1,4 @@
-//! The instruments' side of each protocol, faithful to what the makers publish rather than to what our drivers need.
+//! The instruments' side of each protocol, according to the makers' documents and not to the needs of our drivers.
 
 mod adam;
 mod dmm;
@@ -39,23 +39,23 @@ use super::plant::Plant;
 use super::trouble::Trouble;
 
 pub trait Firmware {
-    /// Handles the complete requests at the front of `input` and takes them out; replies go to `output`.
+    /// Handles the complete requests at the start of `input` and removes them; replies are appended to `output`.
     fn receive(&mut self, input: &mut Vec<u8>, plant: &mut Plant, output: &mut Vec<u8>);
 
-    /// One control period of the instrument, before the plant moves on.
+    /// One control period of the instrument, before the plant advances.
     fn step(&mut self, plant: &mut Plant);
 
-    /// Takes what it sends without being asked.
+    /// Appends bytes that the instrument sends without a request.
     fn unasked(&mut self, _output: &mut Vec<u8>) {}
 
-    /// It sends without being asked, now and then.
+    /// The instrument sends without requests at present.
     fn is_streaming(&self) -> bool {
         false
     }
 
-    /// The bad day that it has. Troubles of the cable and of the plant are none of its business.
+    /// Sets the trouble of this instrument. Troubles of the cable and of the plant have no effect here.
     fn afflict(&mut self, trouble: Trouble);
 
-    /// Power went and came back: what is not kept in memory is lost.
+    /// The power was interrupted: volatile state is lost.
     fn power_cycle(&mut self, plant: &mut Plant);
 }

@@ -1,5 +1,6 @@
-//! An ODrive v3.6, firmware 0.5.6: state machine, estimators and control law at 8 kHz (`MotorControl/{axis,controller}.cpp`,
-//! `encoder.cpp`), commissioned for the joint. Axis 0 drives the motor, axis 1 reads the link encoder.
+//! An ODrive v3.6, firmware 0.5.6: state machine, estimators and control law at 8 kHz
+//! (`MotorControl/{axis,controller}.cpp`, `encoder.cpp`), commissioned for the joint. Axis 0 drives the motor, axis 1
+//! reads the link encoder.
 
 use super::Firmware;
 use crate::sim::data_sheet::Joint;
@@ -22,12 +23,12 @@ const POSITION_MODE: u8 = 3;
 const PASSTHROUGH: u8 = 1;
 const VELOCITY_RAMP: u8 = 2;
 pub const TRAP_TRAJ: u8 = 5;
-/// A reboot takes about a second, during which the UART is silent.
+/// Duration of a reboot, in which the UART is silent.
 const REBOOT_S: f64 = 1.0;
 /// Noise of the measured i_q (assumed).
 const CURRENT_NOISE_A: f64 = 0.05;
 
-/// What `ss` keeps.
+/// The configuration that `ss` saves.
 #[derive(Debug, Clone)]
 pub struct Config {
     pub torque_constant: f32,
@@ -50,7 +51,7 @@ pub struct Config {
     pub bandwidth: [f32; 2],
 }
 
-/// A tracking loop on encoder counts, as the firmware runs one for each encoder.
+/// A tracking loop on encoder counts; the firmware has one per encoder.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Estimator {
     zero_counts: i64,
@@ -69,7 +70,7 @@ impl Estimator {
         let behind = (self.shadow_count - self.position_counts.floor() as i64) as f64;
         self.position_counts += STEP_S * gain * behind;
         self.velocity_counts_s += STEP_S * speed_gain * behind;
-        // Below what one count in one step makes, the estimate is zero.
+        // An estimate smaller than the effect of one count in one step is set to zero.
         if self.velocity_counts_s.abs() < 0.5 * STEP_S * speed_gain {
             self.velocity_counts_s = 0.0;
         }
@@ -104,14 +105,14 @@ pub struct Odrive {
     pub input_pos: f32,
     pub input_vel: f32,
     pub input_torque: f32,
-    /// Set-points behind the input filter.
+    /// Set-points after the input filter.
     pos_setpoint: f32,
     vel_setpoint: f32,
     integrator_torque: f32,
     watchdog_s: f64,
     pub iq_setpoint: f32,
     reboot_until_s: Option<f64>,
-    /// Value buffer of `w`: what an earlier command left there is what a later one without a value writes.
+    /// Value buffer of `w`: a command without a value writes the value of an earlier command.
     pub stale_value: String,
     pub trouble: Trouble,
 }
@@ -187,7 +188,7 @@ impl Odrive {
         self.reboot(now_s);
     }
 
-    /// Incremental encoders count from where they are at power-up.
+    /// Incremental encoders start from 0 at power-up.
     pub fn reboot(&mut self, now_s: f64) {
         self.disarm();
         self.clear_errors();
@@ -201,7 +202,7 @@ impl Odrive {
         self.reboot_until_s.is_some()
     }
 
-    /// `requested_state`: closing the loop needs a drive without errors; calibrations are done at once.
+    /// `requested_state`: closing the loop needs a drive without errors; calibrations finish immediately.
     pub fn request_state(&mut self, state: u8) {
         self.axis_error &= !INVALID_STATE;
         match state {
@@ -238,7 +239,7 @@ impl Odrive {
         (24.09 - 0.02 * plant.motor_current_a().abs() + 0.01 * plant.noise_of(Signal::BusVoltage)) as f32
     }
 
-    /// The converter behind the thermistor has a step of 1/16 K.
+    /// The converter of the thermistor has a resolution of 1/16 K.
     pub fn motor_temperature(&self, plant: &Plant) -> f32 {
         let shown_c = plant.gear_c() + 0.02 * plant.noise_of(Signal::GearThermistor);
         ((shown_c * 16.0).round() / 16.0) as f32
@@ -249,7 +250,7 @@ impl Odrive {
         (warm_c + 0.1 * plant.noise_of(Signal::StageThermistor)) as f32
     }
 
-    /// Moves the set-points by what the input mode makes of the inputs.
+    /// Updates the set-points from the inputs according to the input mode.
     fn filter_inputs(&mut self) {
         let dt = STEP_S as f32;
         match self.config.input_mode {
@@ -294,7 +295,7 @@ impl Odrive {
             return torque.clamp(-most, most);
         }
         if config.control_mode == TORQUE_MODE && config.torque_mode_vel_limit {
-            // Reduces the torque long before the limit: near standstill already with the default of 2 turns/s.
+            // Reduces the torque far below the limit: already near standstill with the default of 2 turns/s.
             let most = (config.vel_limit - velocity) * config.vel_gain;
             let least = (-config.vel_limit - velocity) * config.vel_gain;
             torque = torque.max(least).min(most);
@@ -350,7 +351,7 @@ impl Firmware for Odrive {
             let torque = self.control();
             self.iq_setpoint = torque / self.config.torque_constant;
         }
-        // A poisoned controller turns off rather than on: nan is no current.
+        // A controller with an invalid state (nan) switches the current off.
         plant.inputs.motor_current_a = if self.iq_setpoint.is_finite() { self.iq_setpoint.into() } else { 0.0 };
     }
 

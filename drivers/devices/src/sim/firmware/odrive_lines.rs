@@ -1,4 +1,4 @@
-//! The ASCII protocol's lines (`communication/ascii_protocol.cpp`, tag fw-v0.5.6).
+//! The lines of the ASCII protocol (`communication/ascii_protocol.cpp`, tag fw-v0.5.6).
 
 use super::odrive::{Odrive, TRAP_TRAJ};
 use super::odrive_properties::{Refused, read, write};
@@ -6,9 +6,9 @@ use super::scan::{float, print_float, unsigned};
 use crate::sim::plant::Plant;
 use crate::sim::trouble::Trouble;
 
-/// Receive buffer: a longer line is thrown away up to its end.
+/// Receive buffer: a longer line is discarded up to its end.
 const LONGEST_LINE: usize = 256;
-/// Reply buffer: longer replies are cut, and end with the terminating zero instead of their line feed.
+/// Reply buffer: a longer reply is cut and ends with the terminating zero instead of its line feed.
 const LONGEST_REPLY: usize = 64;
 /// Characters that `r` keeps: a buffer of ten with its terminating zero.
 const LONGEST_VALUE: usize = 9;
@@ -31,7 +31,7 @@ const HELP: [&str; 15] = [
     "Reboot: sr",
 ];
 
-/// Takes whole lines out of `input`. `\n`, `\r` and `!` each end one, so `\r\n` ends two.
+/// Removes whole lines from `input`. `\n`, `\r` and `!` each end a line, so `\r\n` ends two.
 pub fn receive(drive: &mut Odrive, input: &mut Vec<u8>, plant: &Plant, output: &mut Vec<u8>) {
     while let Some(end) = input.iter().position(|byte| matches!(byte, b'\n' | b'\r' | b'!')) {
         let line: Vec<u8> = input.drain(..=end).collect();
@@ -39,7 +39,7 @@ pub fn receive(drive: &mut Odrive, input: &mut Vec<u8>, plant: &Plant, output: &
             answer(drive, &line[..end], plant, output);
         }
     }
-    // A full buffer without a line's end marks the line as too long, however much of it comes.
+    // A full buffer without a line end marks the line as too long, independent of its final length.
     input.truncate(LONGEST_LINE);
 }
 
@@ -70,7 +70,7 @@ impl Reply<'_> {
 
 fn answer(drive: &mut Odrive, line: &[u8], plant: &Plant, output: &mut Vec<u8>) {
     let uncommented = line.split(|byte| *byte == b';').next().unwrap_or_default();
-    // With nothing behind it an asterisk is a character like any other.
+    // An asterisk with nothing after it is an ordinary character.
     let star = uncommented.iter().position(|byte| *byte == b'*').filter(|star| star + 1 < uncommented.len());
     let body = &uncommented[..star.unwrap_or(uncommented.len())];
     if let Some(star) = star {
@@ -110,7 +110,7 @@ fn answer(drive: &mut Odrive, line: &[u8], plant: &Plant, output: &mut Vec<u8>) 
     }
 }
 
-/// `p`, `q`, `v`, `c`, `t`: an axis and one to three numbers. What follows them is not looked at.
+/// `p`, `q`, `v`, `c`, `t`: an axis and one to three numbers. The rest of the line is ignored.
 fn setpoint(drive: &mut Odrive, letter: char, rest: &str, reply: &mut Reply<'_>) {
     let Some((axis, rest)) = unsigned(rest) else { return reply.line("invalid command format") };
     let Some((first, rest)) = float(rest) else { return reply.line("invalid command format") };
@@ -118,7 +118,7 @@ fn setpoint(drive: &mut Odrive, letter: char, rest: &str, reply: &mut Reply<'_>)
         return reply.line(&format!("invalid motor {axis}"));
     }
     if axis == 1 {
-        // The second axis has no motor on this bench: the drive takes the set-point and nothing moves.
+        // The second axis has no motor on this bench: the drive accepts the set-point and nothing moves.
         return;
     }
     let second = float(rest);
@@ -128,7 +128,7 @@ fn setpoint(drive: &mut Odrive, letter: char, rest: &str, reply: &mut Reply<'_>)
         'v' => {
             drive.config.control_mode = 2;
             drive.input_vel = first;
-            // What is not given stays.
+            // A missing value keeps the present torque.
             drive.input_torque = second.unwrap_or(drive.input_torque);
         }
         'c' => {
@@ -137,14 +137,14 @@ fn setpoint(drive: &mut Odrive, letter: char, rest: &str, reply: &mut Reply<'_>)
         }
         't' => {
             drive.config.control_mode = 3;
-            // Stays in this input mode afterwards.
+            // This input mode persists afterwards.
             drive.config.input_mode = TRAP_TRAJ;
             drive.input_pos = first;
         }
         'q' => {
             drive.config.control_mode = 3;
             drive.input_pos = first;
-            // Not for this move only: the configuration is overwritten.
+            // Not only for this move: the configuration is overwritten.
             drive.config.vel_limit = second.unwrap_or(drive.config.vel_limit);
             drive.config.torque_lim = third.unwrap_or(drive.config.torque_lim);
         }
@@ -177,7 +177,7 @@ fn encoder(drive: &mut Odrive, rest: &str, reply: &mut Reply<'_>) {
     if axis > 1 {
         return reply.line(&format!("invalid motor {axis}"));
     }
-    // Read with its sign, printed without.
+    // The count is read with its sign and printed without.
     drive.encoders[axis as usize].set_count((count as i32).into());
     drive.feed_watchdog();
     reply.line(&format!("encoder set to {count}"));
@@ -212,7 +212,7 @@ fn assignment(drive: &mut Odrive, rest: &str, plant: &Plant, reply: &mut Reply<'
             drive.stale_value = value.to_owned();
             value.to_owned()
         }
-        // The firmware does not look whether a value came: it writes what its buffer holds.
+        // The firmware does not check for a value: it writes the content of its buffer.
         None => drive.stale_value.clone(),
     };
     match write(drive, plant, path, &value) {

@@ -4,7 +4,7 @@ use super::odrive::Odrive;
 use super::scan::{float, print_float, unsigned};
 use crate::sim::plant::Plant;
 
-/// A place that `w` may change.
+/// A property that `w` may change.
 enum Slot<'a> {
     Float(&'a mut f32),
     Switch(&'a mut bool),
@@ -16,7 +16,7 @@ enum Slot<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Refused {
     NoSuchProperty,
-    /// Read-only, or the value cannot be understood.
+    /// Read-only, or the value is invalid.
     NotPossible,
 }
 
@@ -79,7 +79,7 @@ fn measured(drive: &Odrive, plant: &Plant, path: &str) -> Option<String> {
         "fw_version_major" => whole(0),
         "fw_version_minor" => whole(5),
         "fw_version_revision" => whole(6),
-        // 0x376E35743231; the reply is cut like every other.
+        // 0x376E35743231; the reply is cut like every other one.
         "serial_number" => whole(0x376E_3574_3231),
         "axis0.current_state" => whole(drive.state.into()),
         "axis0.requested_state" | "axis1.requested_state" => whole(0),
@@ -124,7 +124,7 @@ pub fn write(drive: &mut Odrive, plant: &Plant, path: &str, text: &str) -> Resul
     }
     let read_only = measured(drive, plant, path).is_some();
     match slot(drive, path) {
-        // `nan` and `inf` are taken, whatever they do to the controller.
+        // `nan` and `inf` are accepted, although they can disable the controller.
         Some(Slot::Float(value)) => *value = float(text).ok_or(Refused::NotPossible)?.0,
         Some(Slot::Switch(on)) => *on = number? != 0,
         Some(Slot::Choice(value)) => *value = number? as u8,

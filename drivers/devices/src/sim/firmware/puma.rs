@@ -1,8 +1,8 @@
-//! A Puma 560's digital servo board and the amplifier behind it, one axis (document 000, section 2.3 and table 2.7; the
-//! frames, and whatever the document is silent on, are of this project: `protocol::puma` says which).
+//! One axis of a Puma 560's digital servo board with its amplifier (document 000, section 2.3 and table 2.7). The
+//! frames and all other parts that the document does not describe are defined by this project: see `protocol::puma`.
 //!
-//! The axis processor closes the position loop once a tick; the amplifier closes the velocity loop on the motor's
-//! tachometer, and the current loop in it.
+//! The axis processor closes the position loop once per tick. The amplifier closes the velocity loop on the motor's
+//! tachometer, with the current loop inside it.
 
 use super::Firmware;
 use super::puma_loop::Loop;
@@ -11,29 +11,29 @@ use crate::sim::plant::{Plant, STEP_S};
 use crate::sim::trouble::Trouble;
 use std::f64::consts::TAU;
 
-/// Four for each of 200 lines (assumed).
+/// Four counts for each of 200 lines (assumed).
 pub const ENCODER_COUNTS: u32 = 800;
-/// Through the shunt for each volt at the converter (assumed).
+/// Current through the shunt per volt at the converter (assumed).
 pub const AMPERES_PER_VOLT: f64 = 1.0;
-/// Steps of the plant in a tick of 0.875 ms: 32 of them are 28 ms.
+/// Plant steps per tick of 0.875 ms: 32 ticks are 28 ms.
 const STEPS_PER_TICK: u32 = 7;
 pub const VOLTS_PER_COUNT: f64 = 10.0 / 2048.0;
 pub const MOST_COUNTS: i16 = 2047;
 /// Initial value in table 2.7.
 const INITIAL_NINTER: u8 = 0x20;
-/// Of the amplifier [A·s/rad] (assumed: a velocity loop of 150 rad/s).
+/// Velocity gain of the amplifier [A·s/rad] (assumed: a velocity loop of 150 rad/s).
 const VELOCITY_GAIN_A_S: f64 = 0.35;
-/// The holding brake lets go, and the processor starts, after so long (assumed).
+/// Release time of the holding brake and start-up time of the processor (assumed).
 pub const RELEASE_S: f64 = 0.2;
 const BOOT_S: f64 = 0.5;
-/// Without a command for so long, or with the current at its limit for so long, arm power goes (ours).
+/// Arm power is switched off after this time without a command, or with the current at its limit (our definition).
 const HOST_S: f64 = 0.25;
 const OVERLOAD_S: f64 = 0.5;
 
 pub const POSITION: u16 = 1 << 0;
 pub const CURRENT: u16 = 1 << 1;
 const ARM_POWER: u16 = 1 << 2;
-/// Ours: within `postol` of the set-point.
+/// Our definition: within `postol` of the set-point.
 const IN_POSITION: u16 = 1 << 3;
 const NO_HOST: u16 = 1 << 11;
 const OVERLOADED: u16 = 1 << 12;
@@ -49,12 +49,12 @@ pub struct Puma {
     pub power: Power,
     pub mode: u16,
     pub errors: u16,
-    /// Positions count from a power-up that nobody has acknowledged.
+    /// Positions count from a power-up that is not yet acknowledged.
     pub fresh: bool,
     pub ninter: u8,
     pub limit: i16,
     pub memory_pointer: u8,
-    /// Where the encoder's counter stood at power-up, and the counter.
+    /// Position of the encoder at power-up, and the counter.
     pub zero_counts: i64,
     pub counts: i64,
     pub axis: Loop,
@@ -94,7 +94,7 @@ impl Puma {
 
     pub fn status(&self) -> u16 {
         let power = if self.power == Power::On { ARM_POWER } else { 0 };
-        // Bits 6 and 7 are the encoder routines' own: the quadrature state.
+        // Bits 6 and 7 belong to the encoder routines: the quadrature state.
         let encoder = (self.counts.rem_euclid(4) as u16) << 6;
         let arrived = if self.mode == POSITION && self.axis.is_in_position() { IN_POSITION } else { 0 };
         self.mode | power | arrived | encoder | self.errors
@@ -109,7 +109,7 @@ impl Puma {
         self.axis.rest();
     }
 
-    /// Motor current that the amplifier is to give.
+    /// Motor current that the amplifier has to supply.
     fn control(&self, plant: &Plant) -> f64 {
         let wanted_a = match self.mode {
             POSITION => {
@@ -123,7 +123,7 @@ impl Puma {
         wanted_a.clamp(-most_a, most_a)
     }
 
-    /// What takes arm power away.
+    /// Conditions that switch arm power off.
     fn watch(&mut self, now_s: f64, at_limit: bool) {
         self.overloaded_s = if at_limit { self.overloaded_s + STEP_S } else { 0.0 };
         let host = if now_s - self.heard_s > HOST_S { NO_HOST } else { 0 };
@@ -170,7 +170,7 @@ impl Firmware for Puma {
         self.trouble = trouble;
     }
 
-    /// The counter starts at 0 where the joint stands.
+    /// The counter starts at 0 at the present position of the joint.
     fn power_cycle(&mut self, plant: &mut Plant) {
         let zero_counts = self.zero_counts + self.counts;
         let booting_until_s = plant.now_s() + BOOT_S;

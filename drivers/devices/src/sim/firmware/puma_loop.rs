@@ -1,46 +1,46 @@
-//! The position loop of a Puma's axis processor, once a clock tick, in the variables of table 2.7 of document 000.
+//! The position loop of a Puma's axis processor, once per clock tick, in the variables of table 2.7 of document 000.
 //!
-//! The document names the variables and not the arithmetic: how the gains act, and their units, are assumed.
+//! The document names the variables but not the arithmetic: the effect of the gains and their units are assumed.
 
-/// Of the position loop at a proportional gain of 1 [1/s].
+/// Gain of the position loop at a proportional gain of 1 [1/s].
 const POSITION_GAIN_PER_S: f64 = 20.0;
-/// Of the derivative at a velocity gain of 1.
+/// Gain of the derivative at a velocity gain of 1.
 const VELOCITY_GAIN: f64 = 1.0 / 256.0;
-/// Integral action that leaves the loop critically damped at the gains after power-up [1/s²].
+/// Integral gain for a critically damped loop with the gains after power-up [1/s²].
 const INTEGRAL_GAIN_PER_S2: f64 = POSITION_GAIN_PER_S * POSITION_GAIN_PER_S / 4.0;
 /// Positions in the buffer of 32 bytes.
 pub const BUFFERED: usize = 16;
 
-/// What the host sets. Initial values in table 2.7.
+/// Settings of the host. Initial values as in table 2.7.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gains {
     pub propgan: u8,
     pub velgan: u8,
-    /// The control force is divided by two so often.
+    /// Number of times that the control force is halved.
     pub outscl: u8,
-    /// Largest error in position [counts].
+    /// Largest position error [counts].
     pub postol: u16,
     /// Largest error with integral action [counts].
     pub inttol: u16,
 }
 
-/// In counts and ticks.
+/// All values in counts and ticks.
 pub struct Loop {
     pub gains: Gains,
     pub tick_s: f64,
-    /// The set-point on its way: target, where it is, what it moves by each tick, and ticks that are left.
+    /// Interpolation of the set-point: target, present value, increment per tick, and remaining ticks.
     pub target: f64,
     pub interpolated: f64,
     pub increment: f64,
     pub count: u8,
     pub error: f64,
     pub derivative: f64,
-    /// What integral action adds to the control force.
+    /// Contribution of integral action to the control force.
     pub offset: f64,
-    /// Counts in a tick that the amplifier is asked for.
+    /// Velocity command to the amplifier in counts per tick.
     pub force: f64,
     pub positions: [i16; BUFFERED],
-    /// Where the next position is written.
+    /// Index of the next position in the buffer.
     pub next: usize,
 }
 
@@ -68,19 +68,19 @@ impl Loop {
         (self.error, self.derivative, self.offset, self.force) = (0.0, 0.0, 0.0, 0.0);
     }
 
-    /// Goes to `target` in `ninter` ticks.
+    /// Moves to `target` in `ninter` ticks.
     pub fn go(&mut self, target: f64, ninter: u8) {
         self.target = target;
         self.count = ninter;
         self.increment = (target - self.interpolated) / f64::from(ninter);
     }
 
-    /// Nothing is asked of the amplifier any more.
+    /// Sets the command to the amplifier to zero.
     pub fn rest(&mut self) {
         (self.offset, self.force) = (0.0, 0.0);
     }
 
-    /// The set-point is reached, and the error lies within the tolerance.
+    /// The set-point is reached, and the error is within the tolerance.
     pub fn is_in_position(&self) -> bool {
         self.count == 0 && self.error.abs() <= f64::from(self.gains.postol)
     }

@@ -1,7 +1,7 @@
 //! The memory of a Puma's axis processor: table 2.7 of document 000.
 //!
-//! Numbers of more than one byte have the lowest byte at the lowest address, as a 6503 has it, and those of three bytes
-//! 8 bits of fraction (assumed). Where the table names no variable there is memory that nothing reads.
+//! Multi-byte numbers have the lowest byte at the lowest address, as on a 6503, and three-byte numbers have 8
+//! fractional bits (assumed). Addresses without a variable in the table are memory that no routine reads.
 
 use super::puma::{CURRENT, ENCODER_COUNTS, Puma};
 
@@ -22,7 +22,7 @@ pub struct Ram {
     spare: [u8; BYTES],
     commands: [u8; 12],
     next: usize,
-    /// Whole commands that wait behind the one that is carried out.
+    /// Whole commands that wait for the command in progress.
     pub pending: u8,
 }
 
@@ -39,7 +39,7 @@ impl Ram {
 }
 
 pub fn read(servo: &Puma, address: u8) -> u8 {
-    // 16 bits of counts behind 8 of fractions.
+    // 16 bits of counts after 8 fractional bits.
     let fixed = |value: f64, first: u8| ((value * 256.0).round() as i64 >> (8 * (address - first))) as u8;
     let word = |value: u16, first: u8| value.to_le_bytes()[usize::from(address - first)];
     let axis = &servo.axis;
@@ -52,7 +52,7 @@ pub fn read(servo: &Puma, address: u8) -> u8 {
         0x06 => servo.ninter,
         0x07 => EINTSCL,
         0x08 => DIVISOR,
-        // One byte for 800 counts: its lower one.
+        // One byte for 800 counts: the lower byte.
         0x09 => ENCODER_COUNTS as u8,
         0x0A..=0x0C => fixed(axis.increment, 0x0A),
         0x0D..=0x0F => fixed(axis.interpolated, 0x0D),
@@ -75,13 +75,13 @@ pub fn read(servo: &Puma, address: u8) -> u8 {
         0x52 | 0x53 => word(axis.gains.postol, 0x52),
         0x54 | 0x55 => word(axis.gains.inttol, 0x54),
         0x56..=0x58 => fixed(servo.counts as f64, 0x56),
-        // No 6503 runs here: its stack stays empty.
+        // No 6503 is simulated: its stack is empty.
         0x7E => 0,
         other => servo.ram.spare.get(usize::from(other)).copied().unwrap_or_default(),
     }
 }
 
-/// Whether the host may write there: the gains, the tolerance bands, and where no variable is.
+/// Whether the host may write to the address: gains, tolerances, and addresses without a variable.
 pub fn write(servo: &mut Puma, address: u8, byte: u8) -> bool {
     let gains = &mut servo.axis.gains;
     let put = |word: &mut u16, first: u8| {

@@ -1,4 +1,4 @@
-//! What a Puma's servo board is told, frame by frame, and what it answers.
+//! The commands of a Puma's servo board, frame by frame, and its replies.
 
 use super::adam::crc;
 use super::puma::{AMPERES_PER_VOLT, CURRENT, MOST_COUNTS, POSITION, Power, Puma, RELEASE_S, VOLTS_PER_COUNT};
@@ -13,7 +13,7 @@ const NO_ARM_POWER: u16 = 2;
 const OUT_OF_RANGE: u16 = 3;
 const NOT_READY: u16 = 4;
 
-/// Takes whole frames out of `input`; what cannot begin one is thrown away.
+/// Removes whole frames from `input`; bytes that cannot begin a frame are discarded.
 pub fn receive(servo: &mut Puma, input: &mut Vec<u8>, plant: &Plant, output: &mut Vec<u8>) {
     loop {
         let start = input.iter().position(|byte| *byte == 0xA5).unwrap_or(input.len());
@@ -59,7 +59,7 @@ fn execute(servo: &mut Puma, command: u8, word: u16, plant: &Plant) -> Result<u1
                 servo.hold_here();
             }
             servo.mode = POSITION;
-            // The word wraps where the counter goes on.
+            // The word wraps, but the counter does not.
             let here = servo.axis.interpolated.round() as i64;
             let target = here + i64::from(signed.wrapping_sub(here as i16));
             servo.axis.go(target as f64, servo.ninter);

@@ -5,17 +5,17 @@ use super::qsb_registers::{self as register, Registers};
 use crate::sim::plant::{Plant, S1_COUNTS, S2_COUNTS, STEP_S};
 use crate::sim::trouble::Trouble;
 
-/// The unit of intervals and of time stamps.
+/// Unit of intervals and time stamps.
 const TICK_S: f64 = 1.0 / 512.0;
 const LONGEST_LINE: usize = 256;
 const GREETING: &[u8] = b"QSB-D  0E!\r\n";
 const POWER_LOST: u32 = 1 << 2;
 const INDEX_SEEN: u32 = 1 << 4;
-/// Of MDR0: what the index does, and that it sets the count to 0.
+/// Bits of MDR0: the function of the index, and the function that sets the count to 0.
 const INDEX_MODE: u32 = 3 << 4;
 const INDEX_RESETS: u32 = 2 << 4;
 
-/// Which encoder is wired to a unit.
+/// The encoder that is wired to a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Encoder {
     S1,
@@ -23,7 +23,7 @@ pub enum Encoder {
 }
 
 impl Encoder {
-    /// Quarter periods since the encoder's own zero, where its index lies.
+    /// Quarter periods since the encoder's own zero, at which its index is.
     fn quarters(self, plant: &Plant) -> i64 {
         match self {
             Encoder::S1 => plant.s1_counts(),
@@ -31,7 +31,7 @@ impl Encoder {
         }
     }
 
-    /// Quarter periods of a turn.
+    /// Quarter periods per turn.
     fn counts(self) -> i64 {
         match self {
             Encoder::S1 => S1_COUNTS as i64,
@@ -48,9 +48,9 @@ struct Streamed {
 pub struct Qsb {
     encoder: Encoder,
     registers: Registers,
-    /// Counts of the encoder at which the counter shows 0.
+    /// Encoder count at which the counter shows 0.
     origin: i64,
-    /// Turns of the encoder since its own zero: with every change its index goes by.
+    /// Turns of the encoder since its own zero: each change is a passage of its index.
     turn: i64,
     status: u32,
     stamp_from_s: f64,
@@ -80,7 +80,7 @@ impl Qsb {
         self.counted(self.encoder.quarters(plant))
     }
 
-    /// Quarter periods at the wires, by the factor that MDR0 sets and the direction of MDR1.
+    /// Quarter periods at the wires, scaled by the factor in MDR0 and the direction in MDR1.
     fn counted(&self, quarters: i64) -> i64 {
         let counted = match self.registers.get(register::MDR0) & 3 {
             0 | 1 => quarters.div_euclid(4),
@@ -90,7 +90,7 @@ impl Qsb {
         if self.registers.get(register::MDR1) & 1 << 8 == 0 { counted } else { -counted }
     }
 
-    /// The count begins anew at the index.
+    /// Restarts the count at the index.
     fn pass_index(&mut self, plant: &Plant) {
         let turn = self.turn_of(plant);
         let before = std::mem::replace(&mut self.turn, turn);
@@ -135,7 +135,7 @@ impl Qsb {
         ((plant.now_s() - self.stamp_from_s) / TICK_S) as u32
     }
 
-    /// The reply's kind and the value that it shows.
+    /// The kind of the reply and its value.
     fn execute(&mut self, kind: char, register: u8, data: Option<u32>, plant: &Plant) -> (char, u32) {
         let unsupported = ('x', data.unwrap_or(0));
         if self.trouble == Trouble::Refusing {
@@ -186,7 +186,7 @@ impl Qsb {
             },
             register::MDR0 | register::MDR1 if data > 0x1FF => return refused,
             register::MDR0 | register::MDR1 => {
-                // The count goes on from where it is, whatever is counted from now on.
+                // The count keeps its value after a change of the counting mode.
                 let shown = self.seen(plant) - self.origin;
                 self.registers.set(register, data);
                 self.origin = self.seen(plant) - shown;
@@ -258,7 +258,7 @@ impl Firmware for Qsb {
         if self.streams.is_empty() || interval == 0xFFFF || plant.now_s() + 0.5 * STEP_S < self.due_s {
             return;
         }
-        // Interval 0: as fast as the line carries, 886 reports a second.
+        // Interval 0: as fast as the line permits, 886 reports per second.
         self.due_s += if interval == 0 { 1.0 / 886.0 } else { f64::from(interval) * TICK_S };
         let threshold = self.registers.get(register::THRESHOLD);
         for at in 0..self.streams.len() {

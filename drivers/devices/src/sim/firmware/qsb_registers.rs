@@ -1,4 +1,4 @@
-//! The registers of a QSB: what they hold from the factory, and which of them survive without power.
+//! The registers of a QSB: their factory values, and which of them are non-volatile.
 
 pub const MODE: u8 = 0x00;
 pub const DIO: u8 = 0x01;
@@ -18,7 +18,7 @@ pub const VERSION: u8 = 0x14;
 pub const EOR: u8 = 0x15;
 pub const COMMAND: u8 = 0x16;
 
-/// Register, what the factory puts in, whether it can be saved. MDR0 = 4F counts modulo DTR + 1: 0 to 499.
+/// Register, factory value, whether it can be saved. MDR0 = 4F counts modulo DTR + 1: 0 to 499.
 const FACTORY: [(u8, u32, bool); 9] = [
     (MODE, 0, true),
     (DIO_CONFIGURATION, 0, true),

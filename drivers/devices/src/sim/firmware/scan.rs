@@ -1,6 +1,6 @@
-//! What C's `sscanf` takes from the front of a text.
+//! The number formats of C's `sscanf`.
 
-/// `%u` after optional blanks: the number and the rest. A negative number is taken too, and wraps.
+/// `%u` after optional spaces: the number and the rest. A negative number is accepted too, and wraps.
 pub fn unsigned(text: &str) -> Option<(u32, &str)> {
     let text = text.trim_start();
     if let Some(size) = text.strip_prefix('-') {
@@ -13,11 +13,11 @@ pub fn unsigned(text: &str) -> Option<(u32, &str)> {
 fn digits(text: &str) -> Option<(u32, &str)> {
     let count = text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
     let (number, rest) = text.split_at(count);
-    // Too many digits wrap in C; here they saturate, which names no motor either.
+    // Too many digits wrap in C. Here they saturate, which is not a valid motor number either.
     (count > 0).then(|| (number.parse().unwrap_or(u32::MAX), rest))
 }
 
-/// `%f` after optional blanks: `nan` and `inf` are numbers, a tail that is no number stays.
+/// `%f` after optional spaces: `nan` and `inf` are numbers; text after the number is not consumed.
 pub fn float(text: &str) -> Option<(f32, &str)> {
     let text = text.trim_start();
     let bytes = text.as_bytes();

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// Entries of the error queue; the last one of a full queue says so.
+/// Entries of the error queue; the last entry of a full queue reports the overflow.
 const QUEUE_DEPTH: usize = 20;
 
 /// Bit 0 of the standard event status register.
@@ -38,7 +38,7 @@ impl Pattern {
         Self(nodes.zip(optional).map(node).collect())
     }
 
-    /// The numeric suffixes found, in order, where the header is this command.
+    /// The numeric suffixes in order, if the header matches this command.
     pub fn matches(&self, header: &[&str]) -> Option<Vec<u32>> {
         fn walk(nodes: &[Node], header: &[&str], numbers: &mut Vec<u32>) -> bool {
             let Some((node, later)) = nodes.split_first() else { return header.is_empty() };
@@ -80,7 +80,7 @@ pub struct Unit {
     pub parameters: Vec<String>,
 }
 
-/// Splits a line at `;`. A header without a leading colon continues where the one before it stood.
+/// Splits a line at `;`. A header without a leading colon continues at the node of the header before it.
 pub fn units(line: &str) -> Vec<Unit> {
     let mut path: Vec<String> = Vec::new();
     let mut units = Vec::new();
@@ -101,7 +101,7 @@ pub fn units(line: &str) -> Vec<Unit> {
     units
 }
 
-/// SCPI-99 errors that this instrument gives.
+/// SCPI-99 errors that this instrument reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Error {
     DataType,
@@ -183,7 +183,7 @@ impl Status {
             ("*ESE", false) => self.event_enable = mask()?,
             ("*SRE", false) => self.service_enable = mask()?,
             ("*CLS", false) => self.clear(),
-            // Every command before it is done when it is read.
+            // Every earlier command is complete when this one is read.
             ("*OPC", false) => self.events |= OPERATION_COMPLETE,
             ("*WAI" | "*TRG", false) => {}
             _ => return Err(Error::UndefinedHeader),

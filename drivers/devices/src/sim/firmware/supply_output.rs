@@ -4,26 +4,26 @@ use super::dp800_channel::Channel;
 use crate::sim::plant::{CoilSupply, Plant, Signal};
 use std::collections::VecDeque;
 
-/// From a command to a change at the output (DP800 data sheet; assumed for others).
+/// Time from a command to the change at the output (DP800 data sheet; assumed for others).
 const LATENCY_S: f64 = 0.118;
 const READBACK_NOISE_A: f64 = 2e-4;
 const READBACK_NOISE_V: f64 = 1e-3;
 
-/// Changes on their way to the coil.
+/// Changes that have not reached the coil yet.
 #[derive(Debug, Default)]
 pub struct CoilOutput {
     underway: VecDeque<(f64, Option<CoilSupply>)>,
 }
 
 impl CoilOutput {
-    /// A changed output takes effect after the supply's latency.
+    /// A changed output takes effect after the latency of the supply.
     pub fn pass_on(&mut self, before: Option<CoilSupply>, wanted: Option<CoilSupply>, plant: &Plant) {
         if wanted != before {
             self.underway.push_back((plant.now_s() + LATENCY_S, wanted));
         }
     }
 
-    /// After one step: what is due takes effect, and what protects the output may switch it off.
+    /// After one step: pending changes take effect, and a protection may switch the output off.
     pub fn step(&mut self, channel: &mut Channel, plant: &mut Plant) {
         while self.underway.front().is_some_and(|(due_s, _)| plant.now_s() >= *due_s) {
             plant.inputs.coil = self.underway.pop_front().and_then(|(_, supply)| supply);
@@ -41,7 +41,7 @@ impl CoilOutput {
     }
 }
 
-/// Voltage and current at the terminals with the read-back's noise. `free_v`: of an output that is wired to nothing.
+/// Voltage and current at the terminals with read-back noise. `free_v`: voltage of an output that is not wired.
 pub fn measured(free_v: Option<f64>, plant: &Plant) -> (f64, f64) {
     let (volts, amperes) = match (free_v, plant.inputs.coil) {
         (Some(volts), _) => (volts, 0.0),
@@ -56,7 +56,7 @@ pub fn measured(free_v: Option<f64>, plant: &Plant) -> (f64, f64) {
     ((volts + volts_noise).max(0.0), (amperes + amperes_noise).max(0.0))
 }
 
-/// 1: current regulated, 2: voltage regulated, 0: off. An output that is wired to nothing holds its voltage.
+/// 1: current regulated, 2: voltage regulated, 0: off. An output that is not wired regulates its voltage.
 pub fn held(on: bool, wired: bool, plant: &Plant) -> u32 {
     match plant.inputs.coil {
         _ if !on => 0,

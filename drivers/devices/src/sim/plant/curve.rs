@@ -1,6 +1,6 @@
-//! Curves that were measured or assumed at points, straight between them.
+//! Curves through measured or assumed points, with linear interpolation.
 
-/// The curve at `x`; beyond its ends it goes on as it ended.
+/// The curve at `x`, with linear extrapolation beyond its ends.
 pub fn at(curve: &[(f64, f64)], x: f64) -> f64 {
     let upper = curve.partition_point(|(knot, _)| *knot < x).clamp(1, curve.len() - 1);
     let ((x0, y0), (x1, y1)) = (curve[upper - 1], curve[upper]);

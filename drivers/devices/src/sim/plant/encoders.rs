@@ -1,68 +1,69 @@
-//! The two encoders of the encoder bench on the motor's shaft: S1 optical, S2 a magnetic ring whose sensor sits on the stage.
+//! The two encoders of the encoder bench on the motor shaft: S1 is optical, S2 a magnetic ring with its sensor on the
+//! stage.
 
 use super::hidden::HiddenEncoder;
 use super::{Noise, Signal};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Counts for each turn, after the quadrature's factor of four.
+/// Counts per turn, after the quadrature factor of four.
 pub const S1_COUNTS: f64 = 16_384.0;
 pub const S2_COUNTS: f64 = 262_144.0;
 
 /// Disparity over speed, 0.2811 points/rpm: 64.34 µs.
 const DELAY_S: f64 = 64.34e-6;
-/// The 27 dB filter adds its 10 µs of the data sheet, and 0.99 µs more (mean of the table).
+/// The 27 dB filter adds 10 µs according to the data sheet, and 0.99 µs more (mean of the table).
 const FILTER_DELAY_S: f64 = 10.99e-6;
-/// Shape error about 250 points: once a turn by eccentricity, twice by tilt (split assumed).
+/// Shape error of about 250 points: once per turn by eccentricity, twice per turn by tilt (split assumed).
 const ECCENTRIC_POINTS: f64 = 190.0;
 const TILT_POINTS: f64 = 55.0;
-/// More of each for what the stage shifts and tilts (assumed).
+/// Increase of each by shift and tilt of the stage (assumed).
 const ECCENTRIC_POINTS_PER_M: f64 = 190.0 / 0.15e-3;
 const TILT_POINTS_PER_RAD: f64 = 55.0 / 8.7e-3;
-/// Inside a pole pair (assumed), of which the ring has 64 (assumed).
+/// Error within a pole pair (assumed); the ring has 64 pole pairs (assumed).
 const POLE_POINTS: f64 = 12.0;
 const POLE_PAIRS: f64 = 64.0;
-/// Half the width between both directions (assumed).
+/// Half the difference between both directions (assumed).
 const HYSTERESIS_POINTS: f64 = 6.0;
-/// After power-up the zero is off by up to this (assumed).
+/// Largest offset of the zero after power-up (assumed).
 const STARTUP_POINTS: f64 = 30.0;
-/// Standard deviation of a normal deviate that is cut off at ±1: √(0.19875 + 0.31731).
+/// Standard deviation of a normal deviate that is clipped at ±1: √(0.19875 + 0.31731).
 const STARTUP_SPREAD: f64 = 0.71837;
 
-/// Where an error of the period consistency appears: table 4.4, in m and rad, of radial shift, axial shift, rotation about
-/// the chip's normal, tilt. The vertical shift brings none.
+/// Limits beyond which the period consistency is lost: table 4.4, in m and rad, of radial shift, axial shift, rotation
+/// about the chip's normal, tilt. The vertical shift has no limit.
 const RADIAL_M: [f64; 2] = [-0.25e-3, 0.3e-3];
 const AXIAL_M: f64 = 0.65e-3;
 const ROTATION_RAD: f64 = 1.0 * TAU / 360.0;
 const TILT_RAD: f64 = 1.5 * TAU / 360.0;
 
-/// How the stage holds the sensor of S2: x radial, y vertical, z axial [m], then rotations about them [rad].
+/// Pose of the sensor of S2 on the stage: x radial, y vertical, z axial [m], then rotations about them [rad].
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Pose {
     pub shift_m: [f64; 3],
     pub rotation_rad: [f64; 3],
 }
 
-/// What encoder S2 really does, at the sensor's ordinary place.
+/// The true behaviour of encoder S2 with its sensor at the nominal pose.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EncoderTruth {
     pub delay_s: f64,
-    /// What the filter has of it, 0 where it is off.
+    /// Contribution of the filter, 0 if it is off.
     pub filter_delay_s: f64,
-    /// Off by this since power-up.
+    /// Offset since power-up.
     pub startup_rad: f64,
-    /// Standard deviation of that from power-up to power-up.
+    /// Standard deviation of that offset over power-ups.
     pub startup_spread_rad: f64,
-    /// Half the width between both directions.
+    /// Half the difference between both directions.
     pub hysteresis_rad: f64,
-    /// Once a turn, twice a turn, and inside each of so many pole pairs.
+    /// Errors once per turn, twice per turn, and within each of `pole_pairs`.
     pub eccentricity_rad: f64,
     pub tilt_rad: f64,
     pub pole_rad: f64,
     pub pole_pairs: f64,
     /// Radial shift without eccentricity.
     pub best_radial_m: f64,
-    /// Where the periods are lost: radial shift to either side, axial shift away, rotation and tilt to either side.
+    /// Limits of period consistency: radial shift in both directions, axial shift, rotation and tilt.
     pub radial_m: [f64; 2],
     pub axial_m: f64,
     pub rotation_rad: f64,
@@ -96,7 +97,7 @@ impl Encoders {
         }
     }
 
-    /// After one step of the shaft: the magnetic ring's reading drags behind a reversal.
+    /// Updates the magnetic ring after one step of the shaft: its reading lags after a reversal.
     pub fn advance(&mut self, angle_rad: f64) {
         self.travelled_rad += (angle_rad - self.angle_rad).abs();
         self.angle_rad = angle_rad;
@@ -153,7 +154,7 @@ impl Encoders {
         }
     }
 
-    /// The period consistency that S2 watches itself.
+    /// The period consistency that S2 monitors itself.
     pub fn periods_are_consistent(&self) -> bool {
         let Pose { shift_m: [radial_m, _, axial_m], rotation_rad: [a_rad, b_rad, about_rad] } = self.pose;
         (RADIAL_M[0]..=RADIAL_M[1]).contains(&radial_m)
@@ -170,7 +171,7 @@ mod tests {
     use crate::sim::plant::Hidden;
     use crate::sim::plant::hidden::HiddenEffect;
 
-    /// What the ring hides at an angle after so many turns, against a ring that hides nothing, in points.
+    /// Error in points of a ring with a hidden effect, relative to a ring without, at an angle after `turns`.
     fn hidden_points(effect: &str, turns: f64, angle_rad: f64) -> (f64, HiddenEffect) {
         let hidden = Hidden::draw(Joint::EncoderShaft, 5, &[effect.to_owned()]).unwrap();
         let counts = |hidden: HiddenEncoder| {

@@ -1,8 +1,9 @@
-//! Bristle friction on the rotor (Canudas de Wit, Olsson, Åström, Lischinsky 1995), stepped exactly for a constant velocity.
+//! Bristle friction on the rotor (Canudas de Wit, Olsson, Åström, Lischinsky 1995), stepped exactly for constant
+//! velocity.
 
 use super::STEP_S;
 
-/// Deflection of the rotor at which the bristles let go, at Coulomb torque [rad].
+/// Deflection of the rotor at which the bristles break away, at Coulomb torque [rad].
 const BREAK_RAD: f64 = 0.002;
 /// Damping ratio of the rotor on its bristles.
 const BRISTLE_DAMPING: f64 = 0.4;
@@ -22,7 +23,7 @@ impl Friction {
         Self { coulomb_nm, viscous_nm_s, stiffness_nm_rad, damping_nm_s, deflection_rad: 0.0 }
     }
 
-    /// Torque of the bristles after one step at `velocity`, where they hold at most `grip_nm`.
+    /// Torque of the bristles after one step at `velocity_rad_s`, with the holding torque `grip_nm`.
     pub fn advance(&mut self, velocity_rad_s: f64, grip_nm: f64) -> f64 {
         let before = self.deflection_rad;
         let rate = self.stiffness_nm_rad * velocity_rad_s.abs() / grip_nm;

@@ -1,4 +1,4 @@
-//! The gear's elasticity between rotor and link, and the stops of a joint that has some.
+//! The elasticity of the gear between rotor and link, and the end stops of a joint with limited range.
 
 use super::super::data_sheet::DataSheet;
 use super::STEP_S;
@@ -6,11 +6,11 @@ use super::hidden::{Contact, HiddenGear};
 
 /// Damping ratio of the link on the gear.
 const DAMPING: f64 = 0.1;
-/// Stops far stiffer than any load, soft against the substep [Nm/rad].
+/// Stops are much stiffer than any load, but soft enough for the substep [Nm/rad].
 const STOP_NM_RAD: f64 = 3000.0;
-/// The way of turning is forgotten over this angle of the link (assumed).
+/// Link rotation over which the gear changes its flank after a reversal (assumed).
 const LOST_OVER_RAD: f64 = 0.01;
-/// A gear that is soft at first has this much of its stiffness there (assumed).
+/// Initial stiffness of a soft gear, as a fraction of its full stiffness (assumed).
 const SOFT_SHARE: f64 = 0.6;
 
 pub struct Gear {
@@ -18,15 +18,15 @@ pub struct Gear {
     stiffness_nm_rad: f64,
     soft_rad: f64,
     lost_rad: f64,
-    /// −1 to 1: which flanks carry.
+    /// −1 to 1: the flanks in contact.
     flank: f64,
     damping_nm_s: f64,
     link_inertia_kg_m2: f64,
     range_rad: f64,
     hidden: HiddenGear,
-    /// Where teeth that rub on each other hold the twist.
+    /// Twist at which teeth in friction contact hold.
     seat_rad: f64,
-    /// What the gear has given way under load.
+    /// Creep of the gear under load.
     crept_rad: f64,
 }
 
@@ -51,7 +51,7 @@ impl Gear {
         self.link_inertia_kg_m2
     }
 
-    /// After a step in which the link has turned: it changes flanks.
+    /// Updates the gear after a rotation of the link: it changes flanks.
     pub fn advance(&mut self, motor_rad: f64, link_rad: f64, turned_rad: f64) {
         let end = if turned_rad < 0.0 { -1.0 } else { 1.0 };
         self.flank = end + (self.flank - end) * (-turned_rad.abs() / LOST_OVER_RAD).exp();
@@ -65,7 +65,7 @@ impl Gear {
         }
     }
 
-    /// Torque that the gear hands to the link.
+    /// Torque of the gear on the link.
     pub fn torque(&self, motor_rad: f64, link_rad: f64, motor_rad_s: f64, link_rad_s: f64) -> f64 {
         let twist_rad = self.twist_rad(motor_rad, link_rad);
         let rubbing = |contact: Contact| contact.holds_nm * (twist_rad - self.seat_rad) / contact.bends_rad;
@@ -83,13 +83,13 @@ impl Gear {
         self.stiffness_nm_rad * self.hidden.stiffening(twist_rad) * (twist_rad - self.given(twist_rad))
     }
 
-    /// The part of a twist that the belts give before they pull with all their teeth: `soft_rad` to either side at most.
+    /// The part of a twist that the belts yield before all teeth carry: at most `soft_rad` to either side.
     fn given(&self, twist_rad: f64) -> f64 {
         let until_rad = self.soft_rad / (1.0 - SOFT_SHARE);
         if self.soft_rad > 0.0 { self.soft_rad * twist_rad / until_rad.hypot(twist_rad) } else { 0.0 }
     }
 
-    /// Torque of the stops against the link.
+    /// Torque of the stops on the link.
     pub fn stop(&self, link_rad: f64) -> f64 {
         STOP_NM_RAD * (link_rad - link_rad.clamp(-self.range_rad, self.range_rad))
     }
@@ -101,14 +101,14 @@ mod tests {
     use crate::sim::data_sheet::Joint;
     use crate::sim::plant::Hidden;
 
-    /// Joint A with one hidden effect, and its true figures.
+    /// Joint A with one hidden effect, and its true parameters.
     fn hiding(effect: &str) -> (Gear, impl Fn(&str) -> f64) {
         let hidden = Hidden::draw(Joint::JointA, 5, &[effect.to_owned()]).unwrap();
         let truth = hidden.described().remove(0).parameters;
         (Gear::new(&Joint::JointA.data_sheet(), 0.01, hidden.gear), move |name: &str| truth[name])
     }
 
-    /// Torque once the motor has twisted the gear to `twist_rad` and has held it for `held_s`.
+    /// Torque after the motor has twisted the gear to `twist_rad` and held it for `held_s`.
     fn twisted(gear: &mut Gear, twist_rad: f64, held_s: f64) -> f64 {
         (0..=(held_s / STEP_S) as usize).for_each(|_| gear.advance(twist_rad * gear.ratio, 0.0, 0.0));
         gear.torque(twist_rad * gear.ratio, 0.0, 0.0, 0.0)

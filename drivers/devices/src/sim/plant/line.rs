@@ -1,4 +1,4 @@
-//! What the torque sensor's far end turns: brake A alone, or brake A idle and behind it the gear 1:10 with brake B.
+//! The load behind the torque sensor: brake A alone, or brake A idle and behind it the 1:10 gear with brake B.
 
 use super::brake::Brake;
 use super::friction::Friction;
@@ -6,10 +6,10 @@ use super::hidden::HiddenBrake;
 use super::{CoilSupply, curve};
 use crate::sim::data_sheet::{LINE_RATIO as RATIO, Load, brake};
 
-/// Shafts and wheels, seen from the link (assumed).
+/// Shafts and wheels, reduced to the link (assumed).
 const GEAR_KG_M2: f64 = 0.05;
-/// What holds the gear, link side, over the link's speed [rad/s]: a breakaway of several Nm, far less once it turns, more
-/// again as the wheels churn oil (assumed: the bench's owner says no more than "strongly non-linear").
+/// Friction of the gear, link side, over the link speed [rad/s]: several Nm at breakaway, far less in rotation, more
+/// again because of oil churning (assumed: the owner of the bench only says "strongly non-linear").
 const GRIP_NM: [(f64, f64); 7] = [(0.0, 4.0), (0.05, 3.0), (0.2, 2.2), (0.6, 1.9), (1.5, 2.3), (4.0, 3.6), (8.0, 5.0)];
 
 struct Geared {
@@ -41,7 +41,7 @@ impl Line {
         Self { behind }
     }
 
-    /// Torque against the link after one step in which `fed` is the brake that the supply feeds.
+    /// Torque on the link after one step, with `fed` as the brake that the supply feeds.
     pub fn advance(&mut self, fed: &mut Brake, supply: Option<CoilSupply>, link_rad_s: f64) -> f64 {
         let Geared { idle, friction } = match &mut self.behind {
             Behind::Nothing => return 0.0,
@@ -54,7 +54,7 @@ impl Line {
     }
 }
 
-/// Everything that turns behind the torque sensor.
+/// Inertia of all rotating parts behind the torque sensor.
 pub fn inertia_kg_m2(load: Load) -> f64 {
     match load {
         Load::None => 0.0,

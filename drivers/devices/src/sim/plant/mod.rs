@@ -1,7 +1,7 @@
-//! The simulated world: rotor, gear, link, brake, heat. Plain physics in SI, link side and motor side named.
+//! The simulated plant: rotor, gear, link, brake, heat. Physics in SI units; names state the link or motor side.
 //!
-//! Two inertias joined by the gear's elasticity; friction on the rotor; the brake on the link. The torque sensor sits
-//! between the joint's own output and what brakes it.
+//! Two inertias, coupled by the elasticity of the gear, with friction on the rotor and the brake on the link. The
+//! torque sensor is between the output of the joint and the load.
 
 mod brake;
 mod curve;
@@ -33,7 +33,7 @@ use thermal::Thermal;
 pub(super) const STEP_S: f64 = 125e-6;
 pub(super) const AMBIENT_C: f64 = 24.0;
 
-/// Counts for each turn of the encoders.
+/// Counts per turn of the encoders.
 pub(super) const MOTOR_COUNTS: f64 = 4096.0;
 pub(super) const LINK_COUNTS: f64 = 524_288.0;
 
@@ -41,14 +41,14 @@ pub(super) const LINK_COUNTS: f64 = 524_288.0;
 const CURRENT_LAG_S: f64 = 1.0e-3;
 /// Low-pass of the torque sensor's electronics, 1 kHz class.
 const SENSOR_LAG_S: f64 = 0.4e-3;
-/// More than any weight of a link: what a holding brake bears (assumed).
+/// More than the gravity torque of any link: the torque of a holding brake (assumed).
 const HOLDING_NM: f64 = 1.0;
 
-/// What the drive's windings carry and the supply offers, as the firmware sides set them.
+/// Motor current, holding brake and supply, as the firmware sides set them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Inputs {
     pub motor_current_a: f64,
-    /// A brake on the motor's shaft that holds while the drive is off, where the joint has one.
+    /// A holding brake on the motor shaft is closed while the drive is off, if the joint has one.
     pub holding_brake: bool,
     /// `None`: output off.
     pub coil: Option<CoilSupply>,
@@ -65,9 +65,9 @@ pub(super) struct Plant {
     pub brake: Brake,
     pub noise: Noise,
     pub torque_constant_nm_per_a: f64,
-    /// The torque sensor's zero is off by this, as after an overload.
+    /// Offset of the torque sensor's zero, as after an overload.
     pub sensor_shift_nm: f64,
-    /// What a failing thermistor shows too much.
+    /// Error of a failing thermistor.
     pub thermistor_fault_k: f64,
     sheet: DataSheet,
     friction: Friction,
@@ -184,7 +184,7 @@ impl Plant {
         self.encoders.power_cycle_s2(self.step);
     }
 
-    /// Where the stage holds the sensor of S2.
+    /// Sets the pose of the sensor of S2 on the stage.
     pub fn hold_sensor(&mut self, shift_m: [f64; 3], rotation_rad: [f64; 3]) {
         self.encoders.pose = encoders::Pose { shift_m, rotation_rad };
     }
@@ -215,12 +215,12 @@ impl Plant {
         self.sensor_torque_nm + self.sensor_shift_nm + self.sensor_drift_nm * (1.0 - (-self.now_s() / 300.0).exp())
     }
 
-    /// Housing of the gear, as its thermistor shows it.
+    /// Temperature of the gear housing, as its thermistor shows it.
     pub fn gear_c(&self) -> f64 {
         self.thermal.gear_c() + self.thermistor_fault_k
     }
 
-    /// A draw for `signal` at this moment: asking twice gives the same.
+    /// Noise of `signal` at the present time; repeated calls return the same value.
     pub fn noise_of(&self, signal: Signal) -> f64 {
         self.noise.at(signal, self.step)
     }

@@ -1,10 +1,10 @@
-//! Noise as a function of seed, signal and moment: who asks when does not change what another signal shows.
+//! Noise as a function of seed, signal and time: the order of requests does not change the noise of other signals.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// What draws its own noise.
+/// Signals with their own noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
     Coulomb,
@@ -42,13 +42,13 @@ impl Noise {
         StandardNormal.sample(&mut self.generator(signal, step))
     }
 
-    /// What the seed makes of this specimen: uniform from −1 to 1, the same for ever.
+    /// A property of this specimen by its seed: uniform from −1 to 1, constant.
     pub fn trait_of(&self, signal: Signal) -> f64 {
         2.0 * (self.generator(signal, u64::MAX).next_u64() as f64 / u64::MAX as f64) - 1.0
     }
 
     pub fn generator(&self, signal: Signal, step: u64) -> ChaCha8Rng {
-        // Odd multipliers keep the three numbers apart; the generator's seeding does the mixing.
+        // Odd multipliers keep the three numbers separate; the seeding of the generator mixes them.
         let mixed = self.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ step.wrapping_mul(0xD1B5_4A32_D192_ED03);
         ChaCha8Rng::seed_from_u64(mixed.wrapping_add((signal as u64).wrapping_mul(0x8CB9_2BA7_2F3D_8DD7)))
     }

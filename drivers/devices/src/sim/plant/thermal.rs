@@ -1,4 +1,4 @@
-//! Two bodies that warm up: the winding, and the gear with the housing around it.
+//! Two thermal masses: the winding, and the gear with its housing.
 
 use super::STEP_S;
 
@@ -6,7 +6,7 @@ const WINDING_J_PER_K: f64 = 60.0;
 const GEAR_J_PER_K: f64 = 110.0;
 const WINDING_TO_GEAR_W_PER_K: f64 = 0.8;
 const GEAR_TO_AIR_W_PER_K: f64 = 0.45;
-/// Phase resistance; three phases share 3/2 of i_q² (amplitude-invariant transformation).
+/// Phase resistance; the loss in three phases is 3/2 of i_q² (amplitude-invariant transformation).
 const PHASE_OHM: f64 = 0.25;
 
 pub struct Thermal {

@@ -1,11 +1,11 @@
-//! What a mock bench really is, for its owner.
+//! The true parameters of a mock bench, for its owner.
 
 use super::encoders::EncoderTruth;
 use super::hidden::HiddenEffect;
 use crate::sim::data_sheet::Joint;
 use serde::{Deserialize, Serialize};
 
-/// Known to the bench's owner, never to code under test.
+/// Known to the owner of the bench, never to code under test.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
     pub joint: Joint,
@@ -15,13 +15,13 @@ pub struct Truth {
     pub coulomb_nm: f64,
     /// Motor side.
     pub viscous_nm_s: f64,
-    /// Motor side: of the contacts before they slide.
+    /// Motor side: stiffness of the contacts before they slide.
     pub bristle_nm_rad: f64,
-    /// Motor side: the rotor and what the link carries on the joint's side of the torque sensor.
+    /// Motor side: the rotor and the parts of the link on the joint's side of the torque sensor.
     pub inertia_kg_m2: f64,
     /// Link side.
     pub stiffness_nm_rad: f64,
-    /// Half of what the link lags under load between both ways of turning.
+    /// Half the difference of the link's lag under load between both directions.
     pub directional_offset_rad: f64,
     pub torque_constant_nm_per_a: f64,
     pub gear_ratio: f64,

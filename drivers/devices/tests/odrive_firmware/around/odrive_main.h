@@ -1,4 +1,4 @@
-// What the firmware's parser leans on: the parts of a drive that its commands reach, with a motor that follows its set-points.
+// The parts of a drive that the firmware's parser needs, with a motor that follows its set-points.
 #pragma once
 #define HW_VERSION_MAJOR 3
 #include <stdint.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-// Types as the drive's processor has them: 32 bits are a long there, and an enumeration is as short as it can be.
+// Types as on the drive's processor: a long has 32 bits, and an enumeration is as short as possible.
 using word_t = unsigned long;
 
 struct Controller {
@@ -57,7 +57,7 @@ struct Axis {
     float watchdog_timeout = 0.0f;
     double fed_s = 0.0;
     void watchdog_feed();
-    /// One turn of the control loop.
+    /// One cycle of the control loop.
     void advance(double now_s, float dt_s);
 };
 

@@ -1,4 +1,4 @@
-//! The instruments' own parsers against garbage: no panic, bounded memory, and the next proper request is answered.
+//! The instruments' own parsers with random input: no panic, bounded memory, and the next valid request is answered.
 
 use super::super::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Lorenz, Odrive, Puma, Qsb};
 use crate::sim::data_sheet::{Joint, Load};
@@ -6,7 +6,7 @@ use crate::sim::plant::{Hidden, Plant};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// More than any of them keeps of a request that does not end.
+/// More than any of them keeps of an incomplete request.
 const KEPT: usize = 2048;
 
 fn pieces() -> impl Strategy<Value = Vec<Vec<u8>>> {
@@ -14,7 +14,7 @@ fn pieces() -> impl Strategy<Value = Vec<Vec<u8>>> {
     vec(vec(prop_oneof![any::<u8>(), meant], 0..400), 1..12)
 }
 
-/// Feeds garbage in pieces, then `end`, then `request`; returns the reply to that.
+/// Sends garbage in pieces, then `end`, then `request`; returns the reply to `request`.
 fn ask(firmware: &mut dyn Firmware, garbage: &[Vec<u8>], end: &[u8], request: &[u8]) -> Vec<u8> {
     let mut plant = Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default());
     let (mut input, mut output) = (Vec::new(), Vec::new());
@@ -36,7 +36,7 @@ proptest! {
     fn a_drive_is_back_after_one_line_end(garbage in pieces()) {
         let mut drive = Odrive::new(Joint::JointA);
         let reply = ask(&mut drive, &garbage, b"\n", b"r axis0.current_state\n");
-        // Garbage may hold a command to reboot.
+        // Garbage may contain a command to reboot.
         prop_assert!(drive.is_booting() || reply == b"1\r\n" || reply == b"8\r\n", "{}", reply.escape_ascii());
     }
 
@@ -50,7 +50,7 @@ proptest! {
 
     #[test]
     fn the_others_are_back_after_one_line_end_or_one_frame(garbage in pieces()) {
-        // Garbage may hold what changes the format of a counter's replies, and not whether it replies.
+        // Garbage may change the format of a counter's replies, but the counter still replies.
         let reply = ask(&mut Qsb::new(Encoder::S2), &garbage, b"\r", b"R06\r");
         prop_assert!(reply.starts_with(b"r"), "{}", reply.escape_ascii());
         let reply = ask(&mut Gcs::new(), &garbage, b"\n", b"CSV?\n");
@@ -63,7 +63,7 @@ proptest! {
 
     #[test]
     fn a_servo_is_back_after_one_frame(garbage in pieces()) {
-        // Garbage may have begun a frame that takes the first of these with it.
+        // Garbage may have begun a frame that includes the first of these bytes.
         let ask = |servo: &mut Puma| ask(servo, &garbage, &[0; 7], &[0xA5, 0x09, 0x0B, 0x00, 0x00, 0x72, 0x7A]);
         let reply = ask(&mut Puma::new());
         prop_assert!(reply.starts_with(&[0x5A, 0x09]) && reply[3..5] == [0x05, 0x60], "{:02X?}", reply);
@@ -72,7 +72,7 @@ proptest! {
     #[test]
     fn a_sensor_is_back_after_the_start_of_a_telegram(garbage in pieces()) {
         let hello = [0x02, 0x40, 0x01, 0xFF, 0x00, 0x40, 0x02, 0x02];
-        // A telegram of garbage may swallow the first: the second is heard.
+        // A telegram of garbage may absorb the first request; the second one is received.
         let reply = ask(&mut Lorenz::new(), &garbage, &[&[0x02; 3][..], &[0x00; 300], &hello].concat(), &hello);
         prop_assert_eq!(reply, [0x02, 0x40, 0xFF, 0x01, 0x01, 0x01, 0x42, 0x43]);
     }

@@ -1,4 +1,4 @@
-//! The second supply, line by line as pymeasure's client for it asks.
+//! The second supply, line by line with the requests of pymeasure's client.
 
 use super::super::Firmware;
 use super::super::hmp::Hmp;

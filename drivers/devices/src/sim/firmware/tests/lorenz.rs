@@ -68,7 +68,7 @@ fn a_stream_keeps_its_grid_and_ends_at_stx() {
     let ack = [0x02, 0x06, 0xFF, 0x01, 0x00, 0x06, 0x12];
     let start = [0x02, 0x5A, 0x01, 0xFF, 0x05, 0x03, 0x05, 0x00, 0x00, 0x43, 0xAA, 0xB2];
     assert_eq!(sensor.say(&start)[..5], ack[..5]);
-    // 8 steps to each millisecond.
+    // 8 steps per millisecond.
     let frames = sensor.wait(8 * 300 + 1);
     assert_eq!(frames.len(), 5 * 300);
     assert!(frames.chunks(5).enumerate().all(|(i, frame)| usize::from(frame[0]) == i % 256));

@@ -1,4 +1,4 @@
-//! Bytes in, bytes out: each firmware against what its maker publishes.
+//! Bytes in, bytes out: each firmware compared with its maker's documents.
 
 mod adam;
 mod dmm;

@@ -1,4 +1,4 @@
-//! The servo board, byte for byte. Its frames are ours; memory map, interpolation and defaults are the document's.
+//! The servo board, byte for byte. Its frames are ours; memory map, interpolation and defaults are from the document.
 
 use super::super::adam::crc;
 use super::super::{Firmware, Puma};
@@ -32,7 +32,7 @@ impl Bench {
         (command, i16::from_be_bytes([high, low]))
     }
 
-    /// Time passes, and somebody looks now and then.
+    /// Lets time pass with a request now and then.
     pub(super) fn wait(&mut self, seconds: f64) {
         let until_s = self.plant.now_s() + seconds;
         while self.plant.now_s() < until_s - 1e-9 {
@@ -52,7 +52,7 @@ impl Bench {
 #[test]
 fn bytes_in_and_bytes_out() {
     let mut bench = Bench::new();
-    // From power-up on, every reply is marked until that is acknowledged.
+    // After power-up every reply is marked until the power-up is acknowledged.
     for (request, reply) in [
         ([0xA5, 0x07, 0x01, 0x00, 0x00, 0x50, 0x90], [0x5A, 0x07, 0x41, 0x00, 0x00, 0x51, 0x44]),
         ([0xA5, 0x08, 0x09, 0x00, 0x00, 0xD2, 0x46], [0x5A, 0x08, 0x09, 0x00, 0x00, 0xD2, 0x46]),
@@ -90,7 +90,7 @@ fn a_set_point_is_reached_in_ninter_ticks_and_every_new_one_starts_the_count_aga
     let from = set_point(&mut bench) >> 8;
     bench.ask(0x03, from + 64);
     assert_eq!(count(&mut bench), 32);
-    // Half of 28 ms: half of the way, in counts and 256ths.
+    // Half of 28 ms: half of the distance, in counts and 256ths.
     bench.wait(0.014);
     assert_eq!((set_point(&mut bench), count(&mut bench)), ((from + 32) * 256, 16));
     bench.ask(0x03, from + 64);

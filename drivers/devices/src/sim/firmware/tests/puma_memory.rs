@@ -1,4 +1,4 @@
-//! Table 2.7 and the position loop whose variables it names.
+//! Table 2.7 and the position loop with its variables.
 
 use super::puma::Bench;
 
@@ -68,7 +68,7 @@ fn the_variables_of_the_loop_follow_a_motion() {
     assert_eq!(bench.number(0x0A, 3), 10 * 256, "deltae: 320 counts in 32 ticks");
     let (target, encoder, error) = (bench.number(0x0D, 3), bench.number(0x56, 3), bench.number(0x12, 3));
     assert!(error > 0 && (target - encoder - error).abs() <= 10 * 256, "{target} {encoder} {error}");
-    // 10 counts a tick are fed forward, 20/s of the error come on top.
+    // The feed-forward is 10 counts per tick; 20/s of the error are added.
     let expected = 10.0 * 256.0 + f64::from(error) * 20.0 * 0.875e-3;
     let force = f64::from(bench.number(0x18, 3));
     assert!((force - expected).abs() < 2.0, "u {force}, expected {expected}");

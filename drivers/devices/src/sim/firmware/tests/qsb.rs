@@ -29,7 +29,7 @@ impl Counter {
 #[test]
 fn published_conversation() {
     let mut counter = Counter::new(Encoder::S1);
-    // The factory's format has no stamp; a line end closes each command, and any pair of them is one.
+    // The factory format has no stamp. A line end closes each command; a pair of line ends counts as one.
     assert_eq!(counter.say("R15\r\n"), "r 15 0000000B !\r\n");
     assert_eq!(counter.say("R03\r"), "r 03 0000004F !\r\n");
     assert_eq!(counter.say("W15F\r"), "w 15 0000000F 00000000 !\r\n");

@@ -1,8 +1,8 @@
-//! Torque over current with a memory: a Preisach model, kept as the stack of turning points that are not wiped out.
+//! Torque over current with memory: a Preisach model, stored as the stack of turning points that are not wiped out.
 //!
-//! The elements' widths have the density of an arc tangent, so that what is lost after a turn of `d` is
-//! `SHARE · (d − WIDTH · atan(d / WIDTH))`. Every loop between two currents closes, and a larger one wipes it out (Mayergoyz,
-//! *Mathematical Models of Hysteresis*, chapter 1).
+//! The widths of the elements have an arctangent density, so the loss after a reversal of `d` is
+//! `SHARE · (d − WIDTH · atan(d / WIDTH))`. Every loop between two currents closes, and a larger loop wipes it out
+//! (Mayergoyz, *Mathematical Models of Hysteresis*, chapter 1).
 
 use crate::sim::plant::curve;
 
@@ -22,20 +22,20 @@ const RISING: [(f64, f64); 13] = [
     (1.15, 1.10),
     (1.3, 1.18),
 ];
-/// Together 6 % of the rating between the branches at half the current (assumed: 3 to 8 %).
+/// The branches differ by 6 % of the rating at half the current (assumed: 3 to 8 %).
 const SHARE: f64 = 0.47;
 const WIDTH: f64 = 0.1;
-/// Turns closer to each other than this are one.
+/// Turning points that are closer than this are one.
 const LEAST_TURN: f64 = 1e-6;
-/// Nested loops beyond this many are forgotten, innermost first.
+/// Beyond this number of nested loops, the innermost are dropped first.
 const DEEPEST: usize = 32;
 
-/// Torque on the first rise from zero.
+/// Torque of the first rise from zero.
 pub fn rising(current: f64) -> f64 {
     curve::at(&RISING, current)
 }
 
-/// What elements of finite width have turned over along a monotonic stretch.
+/// Contribution of the elements of finite width that have switched over a monotonic stretch.
 fn turned(stretch: f64, width: f64) -> f64 {
     SHARE * (stretch - width * (stretch / width).atan())
 }
@@ -51,12 +51,12 @@ pub struct Branches {
 }
 
 impl Branches {
-    /// Of this width, or of that of the data sheet.
+    /// A width of `None` is that of the data sheet.
     pub fn new(width: Option<f64>) -> Self {
         Self { width: width.unwrap_or(WIDTH), turns: Vec::new(), settled: 0.0, current: 0.0 }
     }
 
-    /// Torque after the current has gone straight to `current`.
+    /// Torque after the current has moved monotonically to `current`.
     pub fn advance(&mut self, current: f64) -> f64 {
         let current = current.max(0.0);
         let rises = self.turns.len().is_multiple_of(2);
@@ -65,7 +65,7 @@ impl Branches {
         }
         self.current = current;
         self.wipe();
-        // Elements of no width follow the current; on the first rise the sum of both is the rising branch.
+        // Elements of zero width follow the current; on the first rise the sum of both is the rising branch.
         rising(current) - turned(current, self.width) + self.settled + self.since_last_turn()
     }
 
@@ -79,7 +79,7 @@ impl Branches {
         self.settle();
     }
 
-    /// A stretch that goes beyond the turn before the last wipes out the loop between them.
+    /// A stretch beyond the last turning point but one wipes out the loop between them.
     fn wipe(&mut self) {
         let before = self.turns.len();
         while let [.., outer, _inner] = self.turns[..] {

@@ -1,11 +1,11 @@
-//! Heat of a hysteresis brake: the rotor, in which it arises, inside the housing, which holds the coil.
+//! Heat of a hysteresis brake: the rotor, where the heat is generated, inside the housing with the coil.
 
 use super::super::{AMBIENT_C, STEP_S};
 
-/// The housing's figures reproduce both ratings: 75 K at 350 W, and in 300 s at 1200 W.
+/// The values of the housing reproduce both ratings: 75 K at 350 W, and in 300 s at 1200 W.
 const HOUSING_K_PER_W: f64 = 0.214;
 const HOUSING_J_PER_K: f64 = 2350.0;
-/// The rotor follows within 80 s (assumed: 60 to 120 s).
+/// Time constant of the rotor: 80 s (assumed: 60 to 120 s).
 const ROTOR_K_PER_W: f64 = 0.08;
 const ROTOR_J_PER_K: f64 = 1000.0;
 

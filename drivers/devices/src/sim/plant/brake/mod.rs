@@ -1,8 +1,8 @@
-//! A hysteresis brake: coil with lag and heat, torque with a rising and a falling branch, a rotor that follows its poles
-//! and keeps them when the current falls at standstill.
+//! A hysteresis brake: coil with lag and heat, torque with a rising and a falling branch. The rotor follows its poles
+//! and keeps them if the current falls at standstill.
 //!
-//! Sources: Magtrol HB data sheet EN 04/2025 for resistance, rating, drag; everything marked assumed is so in the bench's
-//! physics notes as well.
+//! Sources: Magtrol HB data sheet EN 04/2025 for resistance, rating and drag. Values marked as assumed are also marked
+//! in the physics notes of the bench.
 
 mod branches;
 mod heat;
@@ -20,20 +20,20 @@ const COIL_LAG_S: f64 = 0.08;
 /// Extra lag of the torque behind the current (assumed).
 const TORQUE_LAG_S: f64 = 0.02;
 const COPPER_PER_K: f64 = 0.003_93;
-/// Drag at 1000 rpm is 0.0918 Nm; a part of it stays at standstill (split assumed).
+/// Drag at 1000 rpm is 0.0918 Nm; a part of it remains at standstill (split assumed).
 const DRAG_NM: f64 = 0.03;
 const DRAG_NM_S: f64 = 5.9e-4;
 /// Wind-up of the rotor before it slips [rad] (assumed).
 const WIND_UP_RAD: f64 = 0.01;
 const WIND_UP_DAMPING_NM_S: f64 = 1.0;
-/// Torque over the rotor's temperature (assumed).
+/// Temperature coefficient of the torque by rotor temperature (assumed).
 const PER_K: f64 = -0.0007;
-/// Eddy currents: 3 % at 1000 rpm, the most at the highest speed of the data sheet (assumed).
+/// Eddy currents: 3 % at 1000 rpm, the maximum at the highest speed of the data sheet (assumed).
 const EDDY_PER_RAD_S: f64 = 0.03 / 104.7;
 const EDDY_MOST_RAD_S: f64 = 628.0;
 
 pub struct Brake {
-    /// Of a bad contact in the coil's circuit.
+    /// Resistance of a bad contact in the coil circuit.
     pub contact_ohm: f64,
     hidden: HiddenBrake,
     current_a: f64,
@@ -76,12 +76,13 @@ impl Brake {
         self.heat.housing_c
     }
 
-    /// Current that a supply drives in the end: what it is set to, or what its voltage reaches.
+    /// Final current of a supply: its set value, or the limit by its voltage.
     pub fn settled_a(&self, supply: Option<CoilSupply>) -> f64 {
         supply.map_or(0.0, |supply| supply.current_a.min(supply.voltage_v / self.coil_ohm()))
     }
 
-    /// Torque against the rotor after one step. Without a supply the current dies in the flyback diode with the same lag.
+    /// Torque on the rotor after one step. Without a supply the current decays through the flyback diode with the same
+    /// lag.
     pub fn advance(&mut self, supply: Option<CoilSupply>, velocity_rad_s: f64) -> f64 {
         self.current_a += self.coil_gain * (self.settled_a(supply) - self.current_a);
         let field = self.hidden.field(self.current_a / RATED_CURRENT_A);
@@ -117,7 +118,7 @@ mod tests {
     use crate::sim::data_sheet::Joint;
     use crate::sim::plant::Hidden;
 
-    /// Torque at the end of holds of 2 s at each current, turning at one speed.
+    /// Torque at the end of holds of 2 s at each current, at constant speed.
     fn torque_nm(effects: &[&str], speed_rad_s: f64, currents_a: &[f64]) -> f64 {
         let names: Vec<String> = effects.iter().map(|effect| (*effect).to_owned()).collect();
         let mut brake = Brake::new(Hidden::draw(Joint::JointA, 5, &names).unwrap().brake);

@@ -1,29 +1,29 @@
-//! Poles that a falling current leaves in a rotor at standstill, and that turning under a falling current removes.
+//! Poles that remain in a rotor when the current falls at standstill. Rotation under a falling current removes them.
 
 use super::branches::rising;
 use std::f64::consts::TAU;
 
-/// Poles for each turn (drawing of the data sheet: a tooth each 17°).
+/// Poles per turn (drawing of the data sheet: one tooth every 17°).
 const POLES: f64 = 21.0;
-/// Of the torque last held (assumed: 5 to 10 %).
+/// Fraction of the torque last held (assumed: 5 to 10 %).
 const COGGING: f64 = 0.06;
-/// A field magnetises the rotor afresh while it turns by this much: one pole passes (assumed).
+/// Rotation over which a field magnetises the rotor again: one pole pitch (assumed).
 const MEMORY_RAD: f64 = TAU / POLES;
 
 /// Currents and torques as fractions of the rating.
 #[derive(Default)]
 pub struct Poles {
-    /// The current that the rotor was magnetised with.
+    /// The current at which the rotor was magnetised.
     held: f64,
-    /// Where the poles sit.
+    /// Angle of the poles.
     seat_rad: f64,
 }
 
 impl Poles {
-    /// Torque against a rotor that has turned by `turned_rad` to `angle_rad` under `current`.
+    /// Torque on a rotor that has turned by `turned_rad` to `angle_rad` at `current`.
     ///
-    /// While the field is at least as strong as the one before, the poles follow it. A weaker one has the less power to
-    /// remove them the weaker it is, and none at standstill.
+    /// If the field is at least as strong as before, the poles follow it. A weaker field removes them more slowly, and
+    /// at standstill it does not remove them.
     pub fn advance(&mut self, current: f64, angle_rad: f64, turned_rad: f64) -> f64 {
         if current >= self.held {
             (self.held, self.seat_rad) = (current, angle_rad);
@@ -42,7 +42,8 @@ mod tests {
 
     const STEPS: u32 = 40_000;
 
-    /// Ramps the current while the rotor turns, then turns it once without; the peak-to-peak torque of that turn.
+    /// Ramps the current during rotation, then turns once without current. Returns the peak-to-peak torque of that
+    /// turn.
     fn ramp(poles: &mut Poles, from: f64, to: f64, turns: f64) -> f64 {
         let step_rad = turns * TAU / f64::from(STEPS);
         let mut angle_rad = 0.0;

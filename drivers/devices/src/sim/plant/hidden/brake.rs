@@ -1,14 +1,14 @@
-//! What a hysteresis brake hides: a rotor that is not that of the data sheet.
+//! Hidden effects of a hysteresis brake: a rotor that differs from the data sheet.
 
 use super::Figures;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// Every brake saturates and has a loop; hidden, both are larger. Cogging and temperature are not here: no run at the
-/// link's speeds shows them beside the loop.
+/// Every brake has saturation and hysteresis; hidden, both are larger. Cogging and temperature are not included: runs
+/// at link speeds do not show them in comparison with the hysteresis.
 pub const EFFECTS: [&str; 3] = ["velocity_dependence", "hysteresis", "saturation"];
 
-/// Eddy currents in a rotor that is too thick: what each of speed adds, and where they are strongest.
+/// Eddy currents in a rotor that is too thick: increase per speed, and the speed of their maximum.
 #[derive(Debug, Clone, Copy)]
 struct Eddies {
     per_rad_s: f64,
@@ -20,7 +20,7 @@ pub struct HiddenBrake {
     eddies: Option<Eddies>,
     /// Width of the rotor's hysteresis, as a fraction of the rated current.
     pub width: Option<f64>,
-    /// Where the iron around the coil bends its field, as a fraction of the rated current.
+    /// Current at which the iron around the coil saturates, as a fraction of the rated current.
     bend: Option<f64>,
 }
 
@@ -37,14 +37,14 @@ impl HiddenBrake {
         }
     }
 
-    /// What eddy currents add to the torque of the current, as a share of it.
+    /// Increase of the current's torque by eddy currents, as a fraction of it.
     pub fn eddy(&self, speed_rad_s: f64) -> f64 {
         let slowed =
             |eddies: Eddies| eddies.per_rad_s * speed_rad_s / (1.0 + (speed_rad_s / eddies.most_rad_s).powi(2));
         self.eddies.map_or(0.0, slowed)
     }
 
-    /// The current that would make the same field in air.
+    /// The current that would produce the same field in air.
     pub fn field(&self, current: f64) -> f64 {
         self.bend.map_or(current, |bend| bend * (current / bend).atan())
     }

@@ -1,14 +1,14 @@
-//! What the magnetic ring of encoder S2 hides, beside the error of its data sheet.
+//! Hidden effects of the magnetic ring of encoder S2, in addition to the error of its data sheet.
 
 use super::{Figures, Wave};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
-/// No temperature drift: the unloaded shaft stays at the temperature of the room.
+/// No temperature drift: the unloaded shaft stays at room temperature.
 pub const EFFECTS: [&str; 2] = ["harmonic_n", "slip"];
 
-/// A loose ring: it gives way once the shaft has turned so far, either way.
+/// A loose ring: it slips once after `after_turns` of rotation in either direction.
 #[derive(Debug, Clone, Copy)]
 struct Loose {
     points: f64,
@@ -17,7 +17,7 @@ struct Loose {
 
 #[derive(Debug, Clone, Copy, Default)]
 pub struct HiddenEncoder {
-    /// The ring is no circle: its screws press it out of shape.
+    /// Deformation of the ring by its screws.
     lobes: Option<Wave>,
     loose: Option<Loose>,
 }
@@ -38,7 +38,7 @@ impl HiddenEncoder {
         }
     }
 
-    /// How far the ring has moved on the shaft.
+    /// Slip of the ring on the shaft.
     pub fn slipped_points(&self, travelled_rad: f64) -> f64 {
         self.loose.filter(|loose| travelled_rad > loose.after_turns * TAU).map_or(0.0, |loose| loose.points)
     }

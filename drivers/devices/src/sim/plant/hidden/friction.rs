@@ -1,4 +1,4 @@
-//! Friction that a joint hides, beside its Coulomb and viscous friction.
+//! Hidden friction of a joint, in addition to its Coulomb and viscous friction.
 
 use super::{Figures, Wave};
 use crate::sim::data_sheet::{DataSheet, brake};
@@ -42,7 +42,7 @@ pub struct HiddenFriction {
 }
 
 impl HiddenFriction {
-    /// What the data sheet itself tells of, drawn or not.
+    /// The effects that the data sheet describes, drawn or not.
     pub fn of(sheet: &DataSheet) -> Self {
         let told = |figure: f64| (figure != 0.0).then_some(figure);
         let upright = |size| Wave { size, harmonic: 1.0, phase_rad: PI };
@@ -56,7 +56,7 @@ impl HiddenFriction {
 
     /// Draws one of [`EFFECTS`].
     pub fn draw(&mut self, name: &str, sheet: &DataSheet, draw: &mut ChaCha8Rng) {
-        // Of Coulomb's size, and to either side.
+        // A fraction of Coulomb friction.
         let mut of_coulomb = |from: f64, to: f64| sheet.coulomb_nm * draw.random_range(from..to);
         match name {
             "stribeck" => {
@@ -101,7 +101,7 @@ impl HiddenFriction {
         }
     }
 
-    /// The most that the bristles hold at this velocity, load and angle.
+    /// The largest holding torque of the bristles at this velocity, load and angle.
     pub fn grip(&self, friction: &Friction, velocity_rad_s: f64, gear_nm: f64, link_rad: f64) -> f64 {
         let mut grip_nm = friction.coulomb_nm;
         if let Some(Stribeck { rise_nm, velocity_rad_s: scale, exponent }) = self.stribeck {
@@ -113,7 +113,7 @@ impl HiddenFriction {
         grip_nm + self.direction_offset_nm.unwrap_or(0.0) * velocity_rad_s.signum()
     }
 
-    /// Drag of the lubricant.
+    /// Viscous drag of the lubricant.
     pub fn drag(&self, friction: &Friction, velocity_rad_s: f64, gear_c: f64) -> f64 {
         let mut coefficient = friction.viscous_nm_s;
         if let Some(per_k) = self.viscous_per_k {
@@ -124,12 +124,12 @@ impl HiddenFriction {
         coefficient * velocity_rad_s
     }
 
-    /// Weight of the link against the joint.
+    /// Gravity torque of the link on the joint.
     pub fn gravity(&self, link_rad: f64) -> f64 {
         self.gravity_nm.map_or(0.0, |wave| wave.at(link_rad))
     }
 
-    /// Magnets against teeth, motor side.
+    /// Cogging torque of the motor, motor side.
     pub fn cogging(&self, motor_rad: f64) -> f64 {
         self.cogging_nm.map_or(0.0, |wave| wave.at(motor_rad))
     }

@@ -1,21 +1,21 @@
-//! What a gear hides, beside the stiffness of its data sheet.
+//! Hidden effects of a gear, in addition to the stiffness of its data sheet.
 
 use super::{Figures, Wave};
 use crate::sim::data_sheet::{DataSheet, brake};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// No backlash: the brake's torque turns round with the joint, so that a gap cannot be told from a directional offset.
+/// No backlash: the brake torque reverses with the joint, so a gap is confounded with a directional offset.
 pub const EFFECTS: [&str; 4] = ["hardening", "torsional_hysteresis", "transmission_error", "creep"];
 
-/// Teeth that rub on each other: a contact that holds so much, and bends so far before it gives way.
+/// Friction contact between teeth: its holding torque, and its deflection before it slips.
 #[derive(Debug, Clone, Copy)]
 pub struct Contact {
     pub holds_nm: f64,
     pub bends_rad: f64,
 }
 
-/// Plastic that gives way under load: so much of the elastic twist, with this time constant.
+/// Creep of plastic under load: fraction of the elastic twist, and time constant.
 #[derive(Debug, Clone, Copy)]
 pub struct Yielding {
     pub share: f64,
@@ -24,7 +24,7 @@ pub struct Yielding {
 
 #[derive(Debug, Clone, Copy, Default)]
 pub struct HiddenGear {
-    /// The twist at which the gear is twice as stiff.
+    /// The twist at which the stiffness of the gear is doubled.
     progressive_rad: Option<f64>,
     pub contact: Option<Contact>,
     pitch_rad: Option<Wave>,
@@ -32,7 +32,7 @@ pub struct HiddenGear {
 }
 
 impl HiddenGear {
-    /// Draws one of [`EFFECTS`]. Sizes are those of the twist under the brake's rated torque.
+    /// Draws one of [`EFFECTS`]. Sizes are relative to the twist at the brake's rated torque.
     pub fn draw(&mut self, name: &str, sheet: &DataSheet, draw: &mut ChaCha8Rng) {
         let twist_rad = brake::RATED_TORQUE_NM / sheet.stiffness_nm_rad;
         match name {
@@ -51,12 +51,12 @@ impl HiddenGear {
         }
     }
 
-    /// How much stiffer the gear is at this twist.
+    /// Stiffness of the gear at this twist, relative to that without twist.
     pub fn stiffening(&self, twist_rad: f64) -> f64 {
         self.progressive_rad.map_or(1.0, |scale_rad| 1.0 + (twist_rad / scale_rad).powi(2))
     }
 
-    /// Where the output stands off its place: each tooth has its own pitch.
+    /// Deviation of the output position: each tooth has its own pitch.
     pub fn pitch_rad(&self, link_rad: f64) -> f64 {
         self.pitch_rad.map_or(0.0, |wave| wave.at(link_rad))
     }

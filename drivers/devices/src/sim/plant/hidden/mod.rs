@@ -1,4 +1,4 @@
-//! What a mock bench may hide: each effect by its name, its size drawn from the seed. One file for each part of the bench.
+//! Hidden effects of a mock bench: each effect by name, its size drawn from the seed. One file per part of the bench.
 
 mod brake;
 mod encoder;
@@ -19,8 +19,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// Effects that can be hidden, by the kind of run that shows them. Without any, friction is Coulomb and viscous and nothing
-/// else, and the gear, the brake and the encoders are those of their data sheets.
+/// Effects that can be hidden, by the kind of run that shows them. Without a hidden effect, friction is only Coulomb
+/// and viscous, and gear, brake and encoders match their data sheets.
 pub const HIDDEN_EFFECTS: [(Kind, &[&str]); 4] = [
     (Kind::Friction, &friction::EFFECTS),
     (Kind::Encoder, &encoder::EFFECTS),
@@ -28,14 +28,14 @@ pub const HIDDEN_EFFECTS: [(Kind, &[&str]); 4] = [
     (Kind::Brake, &brake::EFFECTS),
 ];
 
-/// One hidden effect with its true figures; the names carry the units.
+/// One hidden effect with its true parameters; the names contain the units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HiddenEffect {
     pub effect: String,
     pub parameters: BTreeMap<String, f64>,
 }
 
-/// Figures of an effect with their names.
+/// Parameters of an effect with their names.
 type Figures = Vec<(&'static str, f64)>;
 
 #[derive(Debug, Clone, Copy)]
@@ -61,7 +61,7 @@ impl Wave {
 }
 
 impl Joint {
-    /// Whether the mock bench of this joint has what a run of this kind shows.
+    /// Whether the mock bench of this joint has the instruments for this kind of run.
     fn shows(self, kind: Kind) -> bool {
         match kind {
             Kind::Friction => true,
@@ -86,7 +86,7 @@ pub struct Hidden {
 }
 
 impl Hidden {
-    /// Draws the named effects. `Err` holds the name that this joint's bench cannot hide.
+    /// Draws the named effects. `Err` contains a name that the bench of this joint cannot hide.
     pub fn draw(joint: Joint, seed: u64, effects: &[String]) -> Result<Self, String> {
         let sheet = joint.data_sheet();
         let mut hidden = Self { friction: HiddenFriction::of(&sheet), ..Self::default() };

@@ -1,4 +1,4 @@
-// The tree of properties, which the firmware's build makes of its interface description: the part that drivers read and write.
+// The property tree that the firmware's build generates from its interface description: only the part that drivers use.
 #pragma once
 #include "odrive_main.h"
 #include <fibre/../../protocol.hpp>
@@ -19,7 +19,7 @@ public:
     }
 
     static Introspectable of(const Children& children) {
-        // They stay where they are.
+        // A deque keeps its elements at the same address.
         static std::deque<std::vector<PropertyInfo>> tables;
         static std::deque<Branch> branches;
         tables.emplace_back();

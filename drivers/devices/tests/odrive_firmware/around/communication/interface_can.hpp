@@ -1,2 +1,2 @@
-// Included by the parser, which uses nothing of it.
+// The parser includes this file, but uses none of its content.
 #pragma once
