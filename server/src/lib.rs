@@ -13,6 +13,7 @@ pub mod job;
 pub mod lab;
 pub mod listener;
 pub mod live;
+mod priority;
 pub mod program;
 pub mod report;
 pub mod store;

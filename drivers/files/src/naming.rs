@@ -1,4 +1,4 @@
-//! Names that people give to columns: the quantity, and the unit in brackets, behind a stroke or in a line of units.
+//! Names of columns in files: the quantity, and the unit in brackets, after a slash or in a line of units.
 
 use crate::column::Column;
 use crate::note::Note;
@@ -12,7 +12,7 @@ use jointbench_instrument::{Kind, Meta, Motion};
 pub struct Named {
     /// In lower case, with underscores between words.
     pub quantity: String,
-    /// As it is written.
+    /// As written in the file.
     pub unit: Option<String>,
 }
 
@@ -33,7 +33,7 @@ pub fn parted(name: &str) -> (&str, Option<&str>) {
         }
     }
     for sign in [" in ", ", ", " / ", "/"] {
-        // rad/s has a stroke of its own: the first one parts quantity and unit.
+        // A unit such as rad/s contains a slash: the first slash separates quantity and unit.
         if let Some((quantity, unit)) = name.split_once(sign)
             && Unit::parse(unit).is_some()
             && !quantity.trim().is_empty()
@@ -72,7 +72,7 @@ fn snake(name: &str) -> String {
     text.trim_end_matches('_').to_owned()
 }
 
-/// What people call the time.
+/// Names of the time.
 const TIMES: [&str; 27] = [
     "time",
     "t",
@@ -103,7 +103,7 @@ const TIMES: [&str; 27] = [
     "time_of_day",
 ];
 
-/// Columns whose names are said of other quantities, too.
+/// Columns whose names are also used for other quantities.
 const NAMELESS: [&str; 2] = ["velocity_rad_s", "position_rad"];
 
 pub fn is_time(quantity: &str) -> bool {
@@ -116,26 +116,26 @@ pub fn names_time(name: &str) -> bool {
     is_time(&quantity) || quantity == "time_s"
 }
 
-/// The columns that the models of a kind know.
+/// Columns of the run table of a kind.
 pub fn known(kind: Kind) -> impl Iterator<Item = &'static str> {
     kind.required_columns().iter().chain(kind.optional_columns()).copied()
 }
 
-/// A column that is one of the run table under a dressed name.
+/// A column of the run table with a different name in the file.
 pub struct Match {
     pub place: usize,
     pub column: &'static str,
-    /// Its unit, where the file states it.
+    /// Unit, if the file states it.
     pub unit: Option<(String, Unit)>,
 }
 
-/// Columns that say what they are: the quantity of a known column by its full name, with a unit that fits. A time may be
-/// called in other ways, and without a unit.
+/// Columns with the full name of a known quantity and a unit of its dimension. A time may have another name, and no
+/// unit.
 pub fn matches(columns: &[Column], kind: Option<Kind>, motion: Motion) -> Vec<Match> {
     let there = |name: &str| columns.iter().any(|column| column.name == name);
     let wanted: Vec<&'static str> = match kind {
         Some(kind) => known(kind).collect(),
-        // A position of what, without a kind?
+        // Without a kind, a general name such as `position_rad` is ambiguous.
         None => Kind::ALL.into_iter().flat_map(known).filter(|name| !NAMELESS.contains(name)).collect(),
     };
     let mut found: Vec<Match> = Vec::new();
@@ -182,7 +182,7 @@ fn is_slid(turning: Dimension, found: Dimension) -> bool {
     matches!((turning, found), (D::Angle, D::Length) | (D::AngularVelocity, D::Velocity) | (D::Torque, D::Force))
 }
 
-/// Renames what says itself what it is, and turns it into SI. The time keeps its unit for the reading of time.
+/// Renames columns with such names and converts them to SI. The time keeps its unit until it is read.
 pub fn apply(columns: &mut [Column], meta: &Meta, notes: &mut Vec<Note>) {
     for Match { place, column, unit } in matches(columns, meta.kind, meta.motion) {
         let source = &mut columns[place];

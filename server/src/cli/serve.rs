@@ -41,7 +41,11 @@ pub(super) fn settings(place: Place, data: &str, mut benches: Vec<BenchDescripti
     }
     let [token, read_token] = secrets::of_daemon(&place.tokens)?;
     let tls = place.tls_cert.zip(place.tls_key).map(|(certificate, key)| TlsFiles { certificate, key });
-    let analysis = Limits { memory_bytes: (place.analysis_memory * GIB as f64) as u64, ..Limits::default() };
+    let analysis = Limits {
+        memory_bytes: (place.analysis_memory * GIB as f64) as u64,
+        is_idle: benches.iter().any(BenchDescription::is_real_time),
+        ..Limits::default()
+    };
     Ok(DaemonSettings {
         listen: place.listen,
         data: place.data.unwrap_or_else(|| PathBuf::from(data)),

@@ -71,7 +71,7 @@ pub struct Has {
 }
 
 impl BenchDescription {
-    /// Whether its clock is that of the wall: instruments, or a simulation that keeps their pace.
+    /// Whether the bench runs in real time: with real instruments, or as a simulation at their pace.
     pub fn is_real_time(&self) -> bool {
         match &self.source {
             Source::Mock(settings) => settings.pace.is_some_and(|pace| pace <= 1.0),

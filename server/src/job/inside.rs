@@ -1,7 +1,7 @@
 //! The process of a job: `jointbench job`.
 
 use super::reply::{Head, Refusal};
-use super::{Job, Request};
+use super::{Job, Limits, Request};
 use crate::lab::{Lab, LabError};
 use crate::store::Store;
 use std::io::{self, BufRead, Read, Write};
@@ -23,7 +23,7 @@ pub fn main() -> ExitCode {
         eprintln!("jointbench job: internal command of the daemon, with a request on standard input");
         return ExitCode::from(2);
     };
-    stay_small(request.memory_bytes);
+    stay_small(request.limits);
     // The daemon learns about this process from its standard error and exit code.
     std::panic::set_hook(Box::new(|panic| eprintln!("{panic}")));
     end_with_whoever_asked();
@@ -61,20 +61,23 @@ fn answer(request: Request<Job>, mut out: Answering) -> Result<(), LabError> {
 /// Limits the memory of this process and lowers its priority. If memory is short, the system kills this process before
 /// the daemon.
 #[cfg(unix)]
-fn stay_small(memory_bytes: u64) {
+fn stay_small(limits: Limits) {
     use rustix::process::{Resource, Rlimit, nice, setrlimit};
-    let limit = Rlimit { current: Some(memory_bytes), maximum: Some(memory_bytes) };
+    let limit = Rlimit { current: Some(limits.memory_bytes), maximum: Some(limits.memory_bytes) };
     if let Err(fault) = setrlimit(Resource::As, limit) {
         tracing::warn!(%fault, "the memory of a computation is not limited");
     }
-    // The computation is correct without these two settings.
-    let _ = nice(NICE);
+    // The computation is correct without these settings.
+    let is_idle = limits.is_idle && crate::priority::idle();
+    if !is_idle {
+        let _ = nice(NICE);
+    }
     let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
 }
 
 /// Only the time limit applies on such a system.
 #[cfg(not(unix))]
-fn stay_small(_: u64) {}
+fn stay_small(_: Limits) {}
 
 /// The daemon holds the other end of standard input. If it closes, also by `kill -9`, no client waits for the result.
 fn end_with_whoever_asked() {

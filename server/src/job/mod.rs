@@ -134,13 +134,15 @@ pub struct Limits {
     /// Address space of its process.
     pub memory_bytes: u64,
     pub time: Duration,
+    /// Whether it only runs when no other process needs the processor, because a bench runs in real time.
+    pub is_idle: bool,
 }
 
 pub const GIB: u64 = 1 << 30;
 
 impl Default for Limits {
     fn default() -> Self {
-        Limits { memory_bytes: 4 * GIB, time: Duration::from_secs(600) }
+        Limits { memory_bytes: 4 * GIB, time: Duration::from_secs(600), is_idle: false }
     }
 }
 
@@ -148,6 +150,6 @@ impl Default for Limits {
 #[derive(Debug, Serialize, Deserialize)]
 struct Request<J> {
     data: PathBuf,
-    memory_bytes: u64,
+    limits: Limits,
     job: J,
 }

@@ -107,7 +107,7 @@ impl Jobs {
         let inner = &self.inner;
         let lane = if job.moves_a_file() { &inner.moving } else { &inner.computing };
         let turn = lane.enter().await?;
-        let request = Request { data: inner.data.clone(), memory_bytes: inner.limits.memory_bytes, job };
+        let request = Request { data: inner.data.clone(), limits: inner.limits, job };
         let mut line = serde_json::to_vec(&request).map_err(|fault| LabError::Internal(fault.to_string()))?;
         line.push(b'\n');
         let mut process = Process::spawn(inner, turn)?;

@@ -1,8 +1,8 @@
-//! What the first lines of a text say of the rest: what parts the columns, where their names stand, and what they hold.
+//! Layout of a text table from its first lines: separator, names, units and contents of the columns.
 //!
-//! A row is a line that holds numbers where most lines hold numbers. The names stand in the last line of words above the
-//! first rows, and a line of units may stand between. Some loggers write a block of such lines and say in the first cell of each
-//! what it holds.
+//! A row is a line with numbers in the columns in which most lines have numbers. The names are in the last line of
+//! words above the first row. A line of units may follow. Some loggers write a block of such lines, with a label in the
+//! first cell of each line.
 
 use super::cell::{self, Decimal};
 use super::line::{Holds, Line, SEPARATORS, Separator, cells, holds, is_comment, lines, uncommented};
@@ -11,57 +11,57 @@ use crate::naming::names_time;
 use crate::unit::{Unit, is_unit_word};
 use std::collections::HashSet;
 
-/// Lines that are looked at; a logger's preface has fewer.
+/// Number of lines that are read. The preface of a logger is shorter.
 const LOOKED_AT: usize = 400;
-/// So many rows one behind the other are where the rows begin.
+/// Number of consecutive rows that marks the start of the rows.
 const BEGINNING: usize = 3;
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
     pub separator: Separator,
     pub columns: Vec<Column>,
-    /// `None` where numbers stand in the first line.
+    /// `None` if the first line holds numbers.
     pub names_line: Option<u64>,
     pub units_line: Option<u64>,
-    /// Lines above the names, blank ones not counted, and how many of them are comments.
+    /// Number of lines above the names, without blank lines, and number of comments among them.
     pub above: usize,
     pub comments_above: usize,
-    /// Where the rows begin, and the number of that line.
+    /// Byte offset and line number of the first row.
     pub start: usize,
     pub start_line: u64,
     pub decimal: Decimal,
-    /// Names behind the last column that holds anything.
+    /// Names after the last column with content.
     pub extra_names: Vec<String>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
-    /// As it stands in the file; empty where there is none.
+    /// As written in the file; empty if the column has no name.
     pub name: String,
-    /// As it stands in the line of units.
+    /// As written in the line of units.
     pub unit: Option<String>,
     pub content: Content,
-    /// Its first cells.
+    /// First cells of the column.
     pub first: Vec<String>,
 }
 
-/// What a column holds, by its first rows.
+/// Content of a column, judged by its first rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Content {
     #[default]
     Numbers,
-    /// Dates and clocks, read as seconds since this one.
+    /// Dates or times of day, read as seconds since the first one.
     Stamps(Stamp),
     Words,
-    /// Nothing at all and no name: what a separator at the end of each line makes.
+    /// No content and no name, as after a separator at the end of each line.
     Empty,
 }
 
-/// Cells of a column to show.
+/// Number of first cells of a column.
 const SHOWN: usize = 6;
 
 impl Layout {
-    /// `is_whole`: the head is the whole text. `decimal`: where somebody has said it.
+    /// `is_whole`: the head is the whole text. `decimal`: decimal sign, if the user states it.
     pub fn of(head: &[u8], is_whole: bool, decimal: Option<Decimal>) -> Layout {
         let all = lines(head, is_whole, LOOKED_AT);
         let (stated, all) = match all.split_first() {
@@ -71,19 +71,19 @@ impl Layout {
         let filled: Vec<Line<'_>> = all.iter().filter(|line| !line.text.trim_ascii().is_empty()).copied().collect();
         let candidates: Vec<Separator> = stated.map_or_else(|| SEPARATORS.to_vec(), |one| vec![one]);
         let surveys = candidates.into_iter().map(|separator| Survey::of(&filled, separator));
-        // The first of equals.
+        // The first one, if several have the same score.
         let best = surveys.reduce(|best, next| if next.score > best.score { next } else { best });
         let survey = best.unwrap_or_else(|| Survey::of(&filled, Separator::Sign(b',')));
         survey.layout(&filled, head.len(), decimal, usize::from(stated.is_some()))
     }
 
-    /// Columns that have a name or hold something.
+    /// Number of columns with a name or content.
     pub fn width(&self) -> usize {
         self.columns.iter().filter(|column| column.content != Content::Empty).count()
     }
 }
 
-/// `sep=;`, as spreadsheets write it above everything else.
+/// Separator of a first line `sep=;`, as spreadsheets write it.
 fn stated_separator(line: &[u8]) -> Option<Separator> {
     let line = line.trim_ascii();
     let line = line.strip_prefix(b"\"").and_then(|line| line.strip_suffix(b"\"")).unwrap_or(line);
@@ -94,14 +94,14 @@ fn stated_separator(line: &[u8]) -> Option<Separator> {
     }
 }
 
-/// The first lines as one separator parts them.
+/// The first lines, split by one separator.
 struct Survey {
     separator: Separator,
     rows: Vec<Vec<Vec<u8>>>,
     held: Vec<Vec<Holds>>,
-    /// Cells of most lines that hold numbers.
+    /// Number of cells of most lines with numbers.
     width: usize,
-    /// The first column holds the labels of a block of lines and is empty beside the rows.
+    /// Whether the first column holds the labels of a block of lines and is empty in the rows.
     has_empty_side: bool,
     score: f64,
 }
@@ -111,7 +111,7 @@ impl Survey {
         let rows: Vec<Vec<Vec<u8>>> = lines.iter().map(|line| cells(line.text, separator)).collect();
         let held: Vec<Vec<Holds>> = rows.iter().map(|row| row.iter().map(|cell| holds(cell)).collect()).collect();
         let mut worth: Vec<(usize, f64)> = Vec::new();
-        // A preface stands above: its lines say nothing of the rows.
+        // The lower half of the lines, because a preface differs from the rows.
         for held in held[held.len() / 2..].iter().filter(|held| held.len() > 1) {
             let filled = held.iter().filter(|one| **one != Holds::Nothing).count() as f64;
             let tell = held.iter().filter(|one| matches!(one, Holds::Number | Holds::Stamp)).count() as f64;
@@ -125,7 +125,7 @@ impl Survey {
         }
         let best = worth.into_iter().reduce(|best, next| if next.1 > best.1 { next } else { best });
         let (width, score) = best.unwrap_or_else(|| {
-            // Words only: as many cells as possible in the first line, worth less than any number.
+            // A text of words is scored by the cells of its first line, below any text with numbers.
             let width = rows.first().map_or(0, Vec::len);
             (width, if width > 1 { 1e-3 * width as f64 } else { 0.0 })
         });
@@ -164,7 +164,7 @@ impl Survey {
         }
     }
 
-    /// Whether most rows hold a number or a time in each column.
+    /// For each column, whether most rows hold a number or a time.
     fn usual(&self) -> Vec<bool> {
         let tells = |one: &Holds| matches!(one, Holds::Number | Holds::Stamp);
         let rows: Vec<&Vec<Holds>> =
@@ -172,7 +172,7 @@ impl Survey {
         (0..self.width).map(|i| 2 * rows.iter().filter(|held| tells(&held[i])).count() > rows.len()).collect()
     }
 
-    /// The first of the lines with which the rows begin; behind the last line where there are none.
+    /// Index of the first row, or the number of lines if there are no rows.
     fn begin(&self) -> usize {
         let usual = self.usual();
         let is_labelled = |held: &Vec<Holds>| self.has_empty_side && held[0] == Holds::Words;
@@ -195,17 +195,17 @@ fn has_empty_side(held: &[Vec<Holds>], width: usize) -> bool {
     rows().all(is_side) && 2 * rows().filter(|held| held[0] == Holds::Nothing).count() > rows().count()
 }
 
-/// The line of names.
+/// The line with the names of the columns.
 struct Names {
     at: usize,
-    /// The line of units, and its cells.
+    /// Index and cells of the line of units.
     units: Option<(usize, Vec<String>)>,
     cells: Vec<String>,
-    /// More lines that are no rows stand below it.
+    /// Whether further header lines follow.
     heads_block: bool,
 }
 
-/// What the first cell of a line in a block says, letters and digits alone.
+/// Labels of the lines in a block, letters and digits only.
 const NAMES: [&str; 9] =
     ["name", "names", "tracename", "channel", "channelname", "signal", "signalname", "symbolname", "kanalname"];
 const UNITS: [&str; 5] = ["unit", "units", "unitstring", "vunit", "einheit"];
@@ -224,7 +224,7 @@ impl Survey {
             return Some(names);
         }
         let plain = |at: usize| (!is_comment(lines[at].text)).then(|| self.rows[at].clone());
-        // What stands in a comment may be parted in another way than the rows.
+        // A comment may have another separator than the rows.
         let other = |at: usize| {
             let bare = uncommented(lines[at].text);
             let parted = std::iter::once(self.separator).chain(SEPARATORS).map(|separator| cells(bare, separator));
@@ -234,7 +234,7 @@ impl Survey {
             let found = (0..begin.min(lines.len())).rev().filter_map(|at| Some((at, of(at)?)));
             let mut found = found.into_iter().filter(|(_, c)| words(c) && is_some(c) && (is_wide || fits(c)));
             let last = found.next()?;
-            // What stands below the names says the same word of several columns.
+            // A line of types below the names repeats its words.
             let is_of_names = |cells: &[Vec<u8>]| !self.repeats(cells) || self.are_units(cells);
             let is_named = |cells: &[Vec<u8>]| cells.len() == last.1.len() && self.are_distinct(cells);
             let above = found.find(|(_, c)| !is_of_names(&last.1) && is_named(c));
@@ -243,7 +243,7 @@ impl Survey {
         let wide = |at: usize| plain(at).filter(|cells| cells.len() > 1);
         let (at, found, heads_block) =
             find(&plain, false).or_else(|| find(&other, false)).or_else(|| find(&wide, true)).or_else(|| {
-                // Not one number below: the first line is what there is.
+                // Without a number in the text, the first line holds the names.
                 (begin == lines.len() && !lines.is_empty()).then(|| (0, self.rows[0].clone(), false))
             })?;
         let text = |cells: &[Vec<u8>]| self.words(cells);
@@ -256,11 +256,11 @@ impl Survey {
         Some(Names { at, units: None, cells: text(&found), heads_block })
     }
 
-    /// The names in a block of lines which say in their first cell what they hold.
+    /// Names from a block of labelled lines.
     fn labelled(&self, lines: &[Line<'_>], begin: usize) -> Option<Names> {
         let block = || (0..begin.min(lines.len())).filter(|at| self.rows[*at].len().abs_diff(self.width) <= 1);
         let filled = |at: usize| self.rows[at].iter().filter(|cell| !cell.is_empty()).count();
-        // The fullest: a title has a label too. The first of equals.
+        // The line with most cells, because a title may have the same label. The first one, if several have as many.
         let find = |labels: &[&str]| {
             let found = block().filter(|at| self.rows[*at].len() > 1 && is_label(&self.rows[*at][0], labels));
             found.rev().max_by_key(|at| filled(*at))
@@ -280,21 +280,22 @@ impl Survey {
         Some(Names { at, units, cells, heads_block: true })
     }
 
-    /// One word stands in three cells or more, or in all.
+    /// Whether one word is in three or more cells, or in all cells, apart from the label of the line.
     fn repeats(&self, cells: &[Vec<u8>]) -> bool {
-        let words: Vec<String> = self.words(cells).into_iter().filter(|word| !word.is_empty()).collect();
+        let words = self.words(cells).into_iter().skip(usize::from(self.has_empty_side));
+        let words: Vec<String> = words.filter(|word| !word.is_empty()).collect();
         let most = words.iter().map(|word| words.iter().filter(|other| *other == word).count()).max().unwrap_or(0);
         most > 2 || (most == 2 && words.len() == 2)
     }
 
-    /// Every column but one has a name of its own.
+    /// Whether every column, except one at most, has a name of its own.
     fn are_distinct(&self, cells: &[Vec<u8>]) -> bool {
         let words = self.words(cells);
         let distinct: HashSet<&String> = words.iter().filter(|word| !word.is_empty()).collect();
         distinct.len() + 1 >= words.len()
     }
 
-    /// The cells of a line above the rows. The label of a line is no name, and *unit* is no unit.
+    /// Cells of a header line, without the label of the line.
     fn words(&self, cells: &[Vec<u8>]) -> Vec<String> {
         let is_side = |i: usize, cell: &[u8]| i == 0 && self.has_empty_side && is_label(cell, &NAMES);
         let is_none = |i: usize, cell: &[u8]| is_side(i, cell) || is_label(cell, &UNITS);
@@ -302,14 +303,14 @@ impl Survey {
         cells.iter().enumerate().map(text).collect()
     }
 
-    /// Units, or nothing, in each cell.
+    /// Whether every cell holds a unit or is empty.
     fn are_units(&self, cells: &[Vec<u8>]) -> bool {
         let texts: Vec<String> = self.words(cells).iter().map(|text| bare_unit(text)).collect();
         let known = texts.iter().filter(|text| Unit::parse(text).is_some()).count();
         known > 0 && texts.iter().all(|text| is_unit_word(text) || Unit::parse(text).is_some())
     }
 
-    /// The columns from what stands in the rows `after` the names, and the names that have no column.
+    /// Columns from the rows `after` the names, and names without a column.
     fn columns(&self, after: usize, names: Option<&Names>) -> (Vec<Column>, Vec<String>) {
         let is_row = |row: &&Vec<Vec<u8>>| row.len() == self.width;
         let rows: Vec<&Vec<Vec<u8>>> = self.rows[after.min(self.rows.len())..].iter().filter(is_row).collect();
@@ -317,9 +318,9 @@ impl Survey {
         let units = names.and_then(|names| names.units.as_ref()).map_or(&[][..], |(_, units)| units);
         let mut words = names.map(|names| names.cells.clone()).unwrap_or_default();
         let mut extra = Vec::new();
-        // A table of another width is told row by row.
+        // If the widths differ by more, every row is reported.
         let width = if words.is_empty() || words.len().abs_diff(self.width) <= 1 { self.width } else { words.len() };
-        // A last name that some rows fill, as a comment, is a column.
+        // The last name is a column if some rows fill it, for example with comments.
         let is_filled =
             |row: &Vec<Vec<u8>>| row.len() == words.len() && row.last().is_some_and(|cell| !cell.is_empty());
         let width = if self.rows[after.min(self.rows.len())..].iter().any(is_filled) { words.len() } else { width };
@@ -349,7 +350,7 @@ impl Survey {
     }
 }
 
-/// The number of a row, from 0 or 1.
+/// Whether a cell holds the number of its row, counted from 0 or 1.
 fn counts(cell: &[u8], row: usize) -> bool {
     cell::plain(cell).is_some_and(|value| value == row as f64 || value == row as f64 + 1.0)
 }
@@ -387,7 +388,7 @@ fn content<'c>(cells: impl Iterator<Item = &'c [u8]>) -> Content {
     }
 }
 
-/// What most of the numbers that can tell say; a comma where nothing but commas could be one.
+/// Decimal sign of most unambiguous numbers. A comma, if there are only commas and no number is unambiguous.
 fn decimal_of<'c>(cells: impl Iterator<Item = &'c Vec<u8>>) -> Decimal {
     let (mut points, mut commas, mut doubtful_commas, mut doubtful_points) = (0, 0, 0, 0);
     for cell in cells {

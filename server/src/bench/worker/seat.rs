@@ -54,23 +54,15 @@ pub fn file_name(bench: &str) -> String {
     percent_encoding::utf8_percent_encode(bench, percent_encoding::NON_ALPHANUMERIC).to_string()
 }
 
-/// Gives control priority over fits and requests, if the system allows it. A bench in real time gets the real-time policy,
-/// which threads started later inherit. A simulation at full speed only gets a higher priority, because it would occupy a
-/// core with that policy.
+/// Gives control priority over fits and requests, if the system allows it. A bench in real time gets the real-time
+/// policy. A simulation at full speed only gets a higher priority, because it would occupy a core with that policy.
 pub(super) fn raise_priority(is_real_time: bool) {
+    if is_real_time && crate::priority::real_time() {
+        return;
+    }
     #[cfg(unix)]
-    {
-        use thread_priority::unix::{
-            RealtimeThreadSchedulePolicy, ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id,
-        };
-        let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::RoundRobin);
-        let least = thread_priority::ThreadPriority::Min;
-        if is_real_time && set_thread_priority_and_policy(thread_native_id(), least, policy).is_ok() {
-            return;
-        }
-        if let Err(fault) = rustix::process::setpriority_process(None, -10) {
-            tracing::debug!(%fault, "the worker keeps the priority that it was started with");
-        }
+    if let Err(fault) = rustix::process::setpriority_process(None, -10) {
+        tracing::debug!(%fault, "the worker keeps the priority that it was started with");
     }
 }
 
