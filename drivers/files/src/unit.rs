@@ -25,7 +25,9 @@ pub struct Unit {
     pub offset: f64,
 }
 
-/// Newton metres per ounce-force inch, and other units of the inch and the pound (NIST SP 811, appendix B.8).
+/// Units of the inch and the pound in SI (NIST SP 811, appendix B.8).
+const INCH: f64 = 0.0254;
+const LBF: f64 = 4.448_221_615;
 const OZF_IN: f64 = 7.061_551_814e-3;
 const LBF_IN: f64 = 0.112_984_829;
 const LBF_FT: f64 = 1.355_817_948;
@@ -38,7 +40,7 @@ const ICE_K: f64 = 273.15;
 type Row = (Dimension, f64, &'static [&'static str]);
 
 /// Names as normalized by [`plain`]; the first name of each row is the preferred one.
-const UNITS: [Row; 53] = {
+const UNITS: [Row; 59] = {
     use Dimension as D;
     [
         (D::Time, 1.0, &["s", "sec", "secs", "second", "seconds", "sek", "sekunden"]),
@@ -86,11 +88,17 @@ const UNITS: [Row; 53] = {
         (D::Length, 1e-3, &["mm"]),
         (D::Length, 1e-6, &["um"]),
         (D::Length, 1e-2, &["cm"]),
+        (D::Length, INCH, &["in", "inch", "inches"]),
+        (D::Length, 12.0 * INCH, &["ft", "foot", "feet"]),
         (D::Velocity, 1.0, &["m/s"]),
         (D::Velocity, 1e-3, &["mm/s"]),
+        (D::Velocity, INCH, &["in/s", "inch/s", "ips"]),
         (D::Force, 1.0, &["N", "newton", "newtons"]),
         (D::Force, 1e-3, &["mN"]),
         (D::Force, 1e3, &["kN"]),
+        (D::Force, LBF, &["lbf", "lb", "lbs"]),
+        (D::Force, 1e3 * LBF, &["kip", "kips", "klbf"]),
+        (D::Force, 9.806_65, &["kgf"]),
         (D::Other, 1.0, &["V", "volt", "volts"]),
         (D::Other, 1e-3, &["mV"]),
         (D::Other, 1.0, &["W", "watt"]),
@@ -227,6 +235,8 @@ mod tests {
             ("counts/4096", Dimension::Angle, 1024.0, TAU / 4.0),
             ("µs", Dimension::Time, 5.0, 5e-6),
             ("Second", Dimension::Time, 5.0, 5.0),
+            ("kip", Dimension::Force, 1.0, 1e3 * LBF),
+            ("in", Dimension::Length, 100.0, 2.54),
         ] {
             let unit = Unit::parse(word).unwrap_or_else(|| panic!("{word}"));
             assert_eq!(unit.dimension, dimension, "{word}");

@@ -54,3 +54,26 @@ fn nothing_is_named_of_columns_that_cannot_be_right() {
     assert!(turned.summary.contains("no effect is suggested until then"), "{}", turned.summary);
     assert_eq!(turned.undecided.as_deref(), Some("its columns contradict each other"));
 }
+
+/// A joint that a sine moves in both directions; `recorded`: the current in the file from the current in the motor.
+fn stroke(recorded: fn(f64) -> f64) -> Diagnosis {
+    let names = ["time_s", "motor_position_rad", "motor_current_a"];
+    let mut trace = Trace::new(names.map(Channel::new).into());
+    for row in 0..8000 {
+        let time = 0.005 * row as f64;
+        let (position, velocity) = (30.0 * (0.5 * time).sin(), 15.0 * (0.5 * time).cos());
+        let current = 0.3 * (velocity / 0.5).tanh() + 0.02 * velocity + 2e-3 * scatter(row, 1);
+        trace.push_row(&[time, position, recorded(current)]);
+    }
+    let run = RunTable::new(meta(Kind::Friction), trace).unwrap();
+    diagnose(&run, &ModelSpec::parse(Kind::Friction, "inertia,coulomb,viscous").unwrap(), &Options::default()).unwrap()
+}
+
+#[test]
+fn a_magnitude_of_the_current_is_a_data_problem() {
+    let summary = stroke(f64::abs).summary;
+    assert!(summary.contains("as a magnitude") && summary.contains("No effect was tested."), "{summary}");
+    assert!(!summary.contains("Rejected"), "{summary}");
+    let right = stroke(|current| current).summary;
+    assert!(!right.contains("magnitude"), "{right}");
+}

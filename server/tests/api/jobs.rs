@@ -69,7 +69,7 @@ fn a_computation_that_needs_too_much_says_so() {
 #[test]
 fn a_computation_that_takes_too_long_says_so() {
     let daemon = TestDaemon::start_with(None, |settings| settings.analysis.time = Duration::from_millis(1));
-    let (status, problem) = upload(&daemon, "time_s\n", &[("meta", META)]);
+    let (status, problem) = upload(&daemon, &table(MANY), &[("meta", META)]);
     assert_eq!(status, 413, "{problem}");
     assert!(problem["detail"].as_str().unwrap().contains("takes longer than"), "{problem}");
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::text::Stamp;
 
 fn names(layout: &Layout) -> Vec<&str> {
     layout.columns.iter().filter(|c| c.content != Content::Empty).map(|c| c.name.as_str()).collect()

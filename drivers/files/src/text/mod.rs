@@ -4,6 +4,7 @@
 //! detection of the layout and the interpretation of cells are implemented here.
 
 mod cell;
+mod content;
 mod encoding;
 mod layout;
 mod line;
@@ -12,7 +13,7 @@ mod source;
 mod stamp;
 
 pub use cell::{Decimal, Shape, is_missing, number};
-pub use layout::Content;
+pub use content::Content;
 pub use rows::Lines;
 pub use source::{Packed, Plain, Source};
 pub use stamp::Stamp;

@@ -1,7 +1,8 @@
 //! The rows of a text: each cell a number or another content.
 
 use super::cell::{self, Decimal, Shape};
-use super::layout::{Content, Layout};
+use super::content::Content;
+use super::layout::Layout;
 use super::line::{Separator, is_comment, spread};
 use super::stamp;
 use crate::Bounds;

@@ -311,6 +311,9 @@ fn impossible(fits: &[&Fit]) -> Option<String> {
 
 /// Statement about unexplained structure; a rejected effect might explain it.
 fn unexplained(found: &Findings) -> &'static str {
+    if !found.start.prepared.clashes.void.is_empty() {
+        return "No effect was tested.";
+    }
     let is_refused = found.decided.as_ref().is_some_and(|decided| !decided.refused.is_empty());
     match undetermined(found).next().is_some() || is_refused {
         true => "No effect of the library explains it with certainty.",

@@ -63,14 +63,14 @@ pub fn search<'p>(
     let start = TwoStageModel::new(prepared, spec, options)?;
     let libraries = Libraries { plain: OnceCell::new(), bristled: OnceCell::new() };
     let mut search = Search { prepared, spec, options, path: Path::new(start, on_advance), libraries };
-    // Contradicting columns make every effect spurious.
-    let most = if prepared.clashes.void.is_empty() { most.min(MOST_NAMED) } else { 0 };
-    if most > 0
-        && let Some(step) = offset(&search.path.start, options)
-    {
-        search.path.push(step);
+    // Contradicting columns make every effect spurious: none is tested.
+    let mut refused = Vec::new();
+    if prepared.clashes.void.is_empty() {
+        if let Some(step) = offset(&search.path.start, options).filter(|_| most > 0) {
+            search.path.push(step);
+        }
+        refused = search.grow(most.min(MOST_NAMED))?;
     }
-    let refused = search.grow(most)?;
     while let Some(id) = idle(search.path.end(), spec) {
         search.remove(id)?;
     }
