@@ -10,6 +10,9 @@ use crate::unit::{Unit, dimension_of};
 use crate::{ReadOptions, contradiction, facts, guess, naming, operating_points, order, time};
 use jointbench_instrument::{Meta, Motion, RunTable, TableFault, Trace};
 
+/// The fact that lets a run have lengths and forces.
+const LINEAR: &str = "\"motion\": \"linear\" in the meta file";
+
 /// The fact with the number of rows that were omitted because of empty cells.
 pub const LEFT_OUT_ROWS: &str = "left_out_rows";
 
@@ -203,6 +206,10 @@ impl RawTable {
                     column.values.iter_mut().for_each(|value| *value = unit.to_si(*value));
                     format!("{name} is {}, converted from {text}", column.source)
                 }
+                Some(unit) if unit.is_linear() => {
+                    let said = format!("the file says {text} for column {name}, a unit of a linear axis");
+                    return Err(FileFault::Choice { said, options: vec![LINEAR.to_owned()] });
+                }
                 Some(_) => return asked(&[si]),
                 None => match counts_of(&text, &name) {
                     Some(counts) => return asked(&[counts, si]),
@@ -222,9 +229,8 @@ impl RawTable {
         };
         for (wanted, unit) in &options.unit {
             if unit.is_linear() && motion != Motion::Linear {
-                let si = jointbench_instrument::units::unit_of(wanted).unwrap_or_default();
-                let said = format!("{wanted} has a unit of a sliding axis, and the facts state none (motion = linear)");
-                return Err(FileFault::Choice { said, options: vec![format!("--unit {wanted}={si}")] });
+                let said = format!("{wanted} has a unit of a linear axis, and the meta file states a rotary one");
+                return Err(FileFault::Choice { said, options: vec![LINEAR.to_owned()] });
             }
             let place = place(self, wanted)?;
             let column = &mut self.columns[place];

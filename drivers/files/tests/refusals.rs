@@ -309,7 +309,7 @@ fn a_unit_of_another_quantity_or_of_a_sliding_axis_is_refused() {
     let map = ["motor_position_rad=theta_m", "motor_current_a=Iq [V]"];
     assert!(mapped(text, &map, &[]).unwrap_err().contains("the file says V for column motor_current_a"));
     let said = mapped(text, &map, &["motor_current_a=A", "motor_position_rad=m"]).unwrap_err();
-    assert!(said.contains("sliding axis"), "{said}");
+    assert!(said.contains("linear axis") && said.contains("\"motion\": \"linear\""), "{said}");
     let run = mapped(text, &map, &["motor_current_a=A"]).unwrap();
     assert_eq!(run.column("motor_position_rad"), Some(&[0.0, 1.0][..]), "the m of theta_m is the motor");
 }

@@ -205,12 +205,12 @@ fn notes(layout: &Layout, pieces: &Pieces<'_>) -> Vec<Note> {
         notes.push(Note::new(format!("the text was read as {}", coding.encoding.name())));
     }
     if layout.above > 0 {
-        let comments = match layout.comments_above {
-            0 => String::new(),
-            count => format!(", {count} of them comments"),
+        let said = match layout.comments_above {
+            0 => format!("{} above the names skipped", plural(layout.above, "line")),
+            count if count == layout.above => format!("{} above the names skipped", plural(count, "comment line")),
+            count => format!("{} above the names skipped, {count} of them comments", plural(layout.above, "line")),
         };
-        let lines = plural(layout.above, "line");
-        notes.push(Note::new(format!("{lines} above the names skipped{comments}")));
+        notes.push(Note::new(said));
     }
     if matches!(layout.separator, Separator::Blanks | Separator::Sign(b'|')) {
         notes.push(Note::new(format!("columns are parted by {}", layout.separator.name())));

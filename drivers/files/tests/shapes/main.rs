@@ -101,7 +101,7 @@ fn what_was_skipped_or_assumed_is_said() {
     for (name, words) in [
         ("pandas_plain.csv", &[][..]),
         ("pandas_index.csv", &["the first column counts the rows and is omitted"]),
-        ("csv_comments.csv", &["2 lines above the names skipped, 2 of them comments"]),
+        ("csv_comments.csv", &["2 comment lines above the names skipped"]),
         ("csv_units_line.csv", &["line 2 was taken as units"]),
         ("pandas_german.csv", &["decimals stand behind commas (--decimal point)"]),
         (
