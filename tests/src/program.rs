@@ -1,10 +1,11 @@
 //! The real program `jointbench`.
 
 use crate::root;
+use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
 /// Built once for each test run, with the profile of the tests, unless `JOINTBENCH_PROGRAM` names an executable.
@@ -47,10 +48,14 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
+/// Lines of a daemon's log that are kept for the message of a failed test.
+const LOG_LINES: usize = 200;
+
 /// A daemon in a separate process, on a free port. Killed on drop.
 pub struct Daemon {
     child: Child,
     pub base: String,
+    log: Arc<Mutex<VecDeque<String>>>,
 }
 
 impl Daemon {
@@ -90,11 +95,26 @@ impl Daemon {
             child.stderr.take().expect("piped").read_to_string(&mut complaint).ok();
             panic!("the daemon did not name its address: {line:?} {complaint}");
         };
-        // Reads and discards the output, so that the daemon does not block on a full pipe.
-        let mut errors = child.stderr.take().expect("piped");
+        // Reads all output, so that the daemon does not block on a full pipe.
+        let errors = BufReader::new(child.stderr.take().expect("piped"));
+        let log = Arc::<Mutex<VecDeque<String>>>::default();
+        let kept = log.clone();
         std::thread::spawn(move || std::io::copy(&mut said, &mut std::io::sink()));
-        std::thread::spawn(move || std::io::copy(&mut errors, &mut std::io::sink()));
-        Self { child, base }
+        std::thread::spawn(move || {
+            for line in errors.lines().map_while(Result::ok) {
+                let mut kept = kept.lock().expect("no reader panics");
+                kept.push_back(line);
+                if kept.len() > LOG_LINES {
+                    kept.pop_front();
+                }
+            }
+        });
+        Self { child, base, log }
+    }
+
+    /// The last lines of its log.
+    pub fn log(&self) -> String {
+        self.log.lock().expect("no writer panics").iter().map(|line| format!("{line}\n")).collect()
     }
 
     /// `kill -9`: the daemon runs no cleanup.

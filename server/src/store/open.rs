@@ -23,6 +23,9 @@ const MAPPED_BYTES: &str = "33554432";
 const READERS: u32 = 4;
 /// Waiting time for a database that another program has locked, and for the one writer connection.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
+/// The same for a reader in a separate process, which runs only when the daemon leaves processor time: longer than the
+/// time limit of a computation, which ends the process.
+const READER_PATIENCE: Duration = Duration::from_secs(3600);
 
 impl Store {
     /// Opens the store in `folder`. Creates the folder if it is missing.
@@ -67,7 +70,8 @@ impl Store {
             .busy_timeout(PATIENCE)
             .pragma("mmap_size", MAPPED_BYTES)
             .disable_statement_logging();
-        let readers = pool(2).connect_with(options).await.map_err(|fault| not_ours(fault, &file))?;
+        let readers = pool(2).acquire_timeout(READER_PATIENCE).connect_with(options).await;
+        let readers = readers.map_err(|fault| not_ours(fault, &file))?;
         let health = Arc::default();
         Ok(Store {
             writer: readers.clone(),
@@ -145,6 +149,7 @@ fn writer(is_full: Arc<AtomicBool>, signals: Signals) -> SqlitePoolOptions {
 
 fn not_ours(fault: sqlx::Error, file: &Path) -> StoreError {
     match StoreError::from(fault) {
+        passing @ (StoreError::Held | StoreError::DiskFull) => passing,
         StoreError::Damaged(_) => StoreError::Foreign { file: file.into() },
         other => StoreError::Unwritable { folder: file.into(), what: other.to_string() },
     }
