@@ -22,11 +22,13 @@ pub fn unwrap(values: &mut [f64], period: f64) {
 pub fn proposals(run: &RunTable) -> Vec<Note> {
     let angles: &[&str] = match run.kind() {
         Kind::Friction | Kind::Stiffness => &["motor_position_rad", "link_position_rad"],
-        // The difference of two encoders wraps by definition.
-        Kind::Encoder => &[],
+        Kind::Encoder => &["reference_position_rad", "test_position_rad"],
         Kind::Brake => &["position_rad"],
     };
-    let wrapped: Vec<Note> = angles.iter().filter_map(|name| wrapped(run, name)).collect();
+    // The difference of two encoders wraps by definition.
+    let may_wrap = run.kind() == Kind::Encoder;
+    let leaps = |name: &str| wrapped(run, name).filter(|_| !may_wrap).or_else(|| in_degrees(run, name));
+    let wrapped: Vec<Note> = angles.iter().filter_map(|name| leaps(name)).collect();
     let (speed, angle) = motion(run.kind());
     // A wrapped angle has no valid slope.
     let slope = if wrapped.is_empty() { slope(run, speed, angle) } else { None };
@@ -86,10 +88,28 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
     if leaps.len() < 2 || !is_one_size || range <= 0.0 {
         return None;
     }
+    if (mean / DEGREES - 1.0).abs() < SAME_LEAP {
+        let said = format!("{name} leaps by {mean:.1} {} times: perhaps it is in degrees within a turn", leaps.len());
+        return Some(Note::with(said, format!("--unit {name}=deg --unwrap {name}")));
+    }
     let period = if is_turn { String::new() } else { format!("={mean:.4}") };
     let said =
         format!("{name} leaps by {mean:.3} rad {} times, as an angle that begins anew after a turn", leaps.len());
     Some(Note::with(said, format!("--unwrap {name}{period}")))
+}
+
+/// Degrees in a turn, and the relative tolerance of a range that is a whole turn.
+const DEGREES: f64 = 360.0;
+const SAME_TURN: f64 = 0.01;
+
+/// 360 rad are no whole number of turns: a range of 360 is one turn in degrees.
+fn in_degrees(run: &RunTable, name: &str) -> Option<Note> {
+    let values = run.column(name)?;
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    (((high - low) / DEGREES - 1.0).abs() < SAME_TURN).then(|| {
+        let said = format!("{name} ranges from {low:.1} to {high:.1} rad: perhaps it is in degrees");
+        Note::with(said, format!("--unit {name}=deg"))
+    })
 }
 
 /// Fraction of the total work above which the motor only absorbs power.
@@ -211,6 +231,19 @@ mod tests {
         );
         assert!(idle_velocity(&columns(1.0, 1.0), Kind::Friction).is_none());
         assert!(idle_velocity(&columns(0.0, 1e-3), Kind::Friction).is_none(), "at rest");
+    }
+
+    #[test]
+    fn an_angle_over_360_is_in_degrees() {
+        let told = |angle: &dyn Fn(f64) -> f64| proposals(&run(1.0, angle)).first().map(Note::to_string);
+        let turns = told(&|x| x.to_degrees().rem_euclid(360.0)).unwrap();
+        assert!(turns.ends_with("(--unit motor_position_rad=deg --unwrap motor_position_rad)"), "{turns}");
+        let one = told(&|x| 180.0 + 9.0 * x).unwrap();
+        assert!(
+            one.contains("ranges from 0.0 to 360.0 rad") && one.ends_with("--unit motor_position_rad=deg)"),
+            "{one}"
+        );
+        assert_eq!(told(&|x| 17.0 * x).filter(|said| said.contains("degrees")), None);
     }
 
     #[test]

@@ -172,7 +172,7 @@ fn open_unit(values: &[f64], rate_hz: Option<f64>) -> Result<(&'static str, Stri
     likely.sort_by_key(|(_, factor)| !STEPS_S.contains(&(step * factor)));
     let makes = |(name, factor): &&(&str, f64)| format!("{} with {name}", at(*factor));
     let said = format!(
-        "the time has no unit, and its rows are {step} apart: rows a second would be {}",
+        "the time has no unit, and its rows are {step:.4} apart: rows a second would be {}",
         likely.iter().map(makes).collect::<Vec<String>>().join(", ")
     );
     Err(FileFault::Choice { said, options: likely.iter().map(|(name, _)| format!("--unit {TIME}={name}")).collect() })

@@ -49,9 +49,10 @@ impl RawTable {
         naming::apply(&mut self.columns, &meta, &mut notes);
         self.notes = notes;
         let asked = options.asked();
+        let nearly_full = if meta.kind.is_none() { self.nearly_full() } else { Vec::new() };
         let is_needed = |name: &str| {
             let is_known = meta.kind.is_some_and(|kind| naming::known(kind).any(|known| known == name));
-            name == "time_s" || is_known || asked.contains(&name)
+            name == "time_s" || is_known || asked.contains(&name) || nearly_full.iter().any(|needed| needed == name)
         };
         self.refuse_wrong(file, is_needed, options.leave_empty_rows)?;
         self.refuse_doubtful(file, options)?;
@@ -77,6 +78,17 @@ impl RawTable {
         let trace = Trace::from_columns(channels, columns);
         let notes = std::mem::take(&mut self.notes);
         Ok(Understood { meta, trace, notes, left, guessed, file: file.to_owned(), table: self, starts })
+    }
+
+    /// Columns of numbers with few empty cells. Without a kind every column may be needed, and one empty cell does not
+    /// make it useless.
+    fn nearly_full(&self) -> Vec<String> {
+        let is_nearly_full = |column: &&Column| {
+            let found = &column.found;
+            let is_numbers = column.other_type.is_none() && !column.is_words() && found.wrong_rows.is_empty();
+            is_numbers && found.missing > 0 && 2 * found.missing < self.rows
+        };
+        self.columns.iter().filter(is_nearly_full).map(|column| column.name.clone()).collect()
     }
 
     /// Refuses a column in which a sign could separate thousands or decimals.

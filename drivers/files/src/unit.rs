@@ -27,11 +27,12 @@ pub struct Unit {
 
 /// Units of the inch and the pound in SI (NIST SP 811, appendix B.8).
 const INCH: f64 = 0.0254;
-const LBF: f64 = 4.448_221_615;
-const OZF_IN: f64 = 7.061_551_814e-3;
-const LBF_IN: f64 = 0.112_984_829;
-const LBF_FT: f64 = 1.355_817_948;
-const KGF_CM: f64 = 9.806_65e-2;
+const FOOT: f64 = 12.0 * INCH;
+const LBF: f64 = 4.448_221_615_260_5;
+const LBF_IN: f64 = LBF * INCH;
+const LBF_FT: f64 = LBF * FOOT;
+const OZF_IN: f64 = LBF_IN / 16.0;
+const KGF: f64 = 9.806_65;
 const DEGREE: f64 = TAU / 360.0;
 const DAY_S: f64 = 86_400.0;
 /// 0 °C in kelvin.
@@ -75,8 +76,8 @@ const UNITS: [Row; 59] = {
         (D::Torque, OZF_IN, &["ozf*in", "oz*in", "ozin", "ozfin", "inoz", "in*oz"]),
         (D::Torque, LBF_IN, &["lbf*in", "lb*in", "in*lb", "inlb", "inlbs", "lbin", "in*lbs", "in*lbf"]),
         (D::Torque, LBF_FT, &["lbf*ft", "lb*ft", "ft*lb", "ftlb", "ft*lbs", "ftlbs", "ft*lbf"]),
-        (D::Torque, KGF_CM, &["kgf*cm", "kg*cm", "kgcm", "kgfcm"]),
-        (D::Torque, 9.806_65, &["kgf*m", "kg*m"]),
+        (D::Torque, 0.01 * KGF, &["kgf*cm", "kg*cm", "kgcm", "kgfcm"]),
+        (D::Torque, KGF, &["kgf*m", "kg*m"]),
         (D::Current, 1.0, &["A", "amp", "amps", "ampere", "amperes"]),
         (D::Current, 1e-3, &["mA", "milliamp", "milliamps"]),
         (D::Current, 1e-6, &["uA"]),
@@ -89,7 +90,7 @@ const UNITS: [Row; 59] = {
         (D::Length, 1e-6, &["um"]),
         (D::Length, 1e-2, &["cm"]),
         (D::Length, INCH, &["in", "inch", "inches"]),
-        (D::Length, 12.0 * INCH, &["ft", "foot", "feet"]),
+        (D::Length, FOOT, &["ft", "foot", "feet"]),
         (D::Velocity, 1.0, &["m/s"]),
         (D::Velocity, 1e-3, &["mm/s"]),
         (D::Velocity, INCH, &["in/s", "inch/s", "ips"]),
@@ -98,7 +99,7 @@ const UNITS: [Row; 59] = {
         (D::Force, 1e3, &["kN"]),
         (D::Force, LBF, &["lbf", "lb", "lbs"]),
         (D::Force, 1e3 * LBF, &["kip", "kips", "klbf"]),
-        (D::Force, 9.806_65, &["kgf"]),
+        (D::Force, KGF, &["kgf"]),
         (D::Other, 1.0, &["V", "volt", "volts"]),
         (D::Other, 1e-3, &["mV"]),
         (D::Other, 1.0, &["W", "watt"]),

@@ -164,7 +164,7 @@ pub fn could_be_grouped(cell: &[u8], sign: u8) -> bool {
 }
 
 /// The decimal sign of the table, if this number determines it.
-pub fn tells(cell: &[u8]) -> Option<Decimal> {
+pub fn decimal_sign(cell: &[u8]) -> Option<Decimal> {
     let cell = cell.trim_ascii();
     let place = |sign: u8| cell.iter().rposition(|byte| *byte == sign);
     let sure = |decimal: Decimal| number(cell, decimal).is_some_and(|(_, shape)| shape != Shape::Doubtful);
@@ -237,7 +237,7 @@ mod tests {
             ("12", None),
             ("2.5e3", Some(Decimal::Point)),
         ] {
-            assert_eq!(tells(cell.as_bytes()), told, "{cell}");
+            assert_eq!(decimal_sign(cell.as_bytes()), told, "{cell}");
         }
     }
 

@@ -44,7 +44,7 @@ pub fn content<'c>(cells: impl Iterator<Item = &'c [u8]>) -> Content {
 pub fn decimal_of<'c>(cells: impl Iterator<Item = &'c Vec<u8>>) -> Decimal {
     let (mut points, mut commas, mut doubtful_commas, mut doubtful_points) = (0, 0, 0, 0);
     for cell in cells {
-        match cell::tells(cell) {
+        match cell::decimal_sign(cell) {
             Some(Decimal::Point) => points += 1,
             Some(Decimal::Comma) => commas += 1,
             None if cell::could_be_grouped(cell, b',') => doubtful_commas += 1,

@@ -154,10 +154,10 @@ impl Survey {
 
     /// For each column, whether most rows hold a number or a time.
     fn usual(&self) -> Vec<bool> {
-        let tells = |one: &Holds| matches!(one, Holds::Number | Holds::Stamp);
+        let holds_data = |one: &Holds| matches!(one, Holds::Number | Holds::Stamp);
         let rows: Vec<&Vec<Holds>> =
-            self.held.iter().filter(|held| held.len() == self.width && held.iter().any(tells)).collect();
-        (0..self.width).map(|i| 2 * rows.iter().filter(|held| tells(&held[i])).count() > rows.len()).collect()
+            self.held.iter().filter(|held| held.len() == self.width && held.iter().any(holds_data)).collect();
+        (0..self.width).map(|i| 2 * rows.iter().filter(|held| holds_data(&held[i])).count() > rows.len()).collect()
     }
 
     /// Index of the first row, or the number of lines if there are no rows.

@@ -94,7 +94,7 @@ fn lines_of_groups_and_sparse_columns_leave_the_names_alone() {
         // A sensor that is read now and then, and a column of remarks.
         ("temp,t,x\n20.5,0,1\n,1,2\n,2,3\n,3,4\n21,4,5\n", &["temp", "t", "x"]),
         ("event,t,x\n,0,1\n,1,2\nstart,2,3\n,3,4\n", &["event", "t", "x"]),
-        // A column of names of samples, and numbers beside a time.
+        // The first column names the samples, or numbers them while another column is the time.
         ("Name,t,x\nunit,s,rad\nfirst,0,1\nsecond,1,2\nthird,2,3\n", &["Name", "t", "x"]),
         ("Channel,time,x\nunit,s,rad\n1,0,1\n2,1,2\n1,2,3\n", &["Channel", "time", "x"]),
     ] {

@@ -66,7 +66,9 @@ pub fn search<'p>(
     // Contradicting columns make every effect spurious: none is tested.
     let mut refused = Vec::new();
     if prepared.clashes.void.is_empty() {
-        if let Some(step) = offset(&search.path.start, options).filter(|_| most > 0) {
+        if most > 0
+            && let Some(step) = offset(&search.path.start, options)
+        {
             search.path.push(step);
         }
         refused = search.grow(most.min(MOST_NAMED))?;
@@ -207,12 +209,12 @@ fn candidates<'l, 'p>(
         Some(form_error) => form_error.turn_s.iter().map(|turn_s| *turn_s < form_error.near_s).collect(),
         None => Vec::new(),
     };
-    let is_beside = |c: &Regressor| match c.effect.regime() {
+    let keeps_form_error = |c: &Regressor| match c.effect.regime() {
         Regime::SteadyState => true,
         Regime::Transient => c.id() != DELAY,
         Regime::Hysteresis => false,
     };
-    let (mut all, hidden) = evidence(&solution.ridge, &of(&is_beside), &near, forms);
+    let (mut all, hidden) = evidence(&solution.ridge, &of(&keeps_form_error), &near, forms);
     // Other candidates are judged without the form error that represents the same effect, and explain that error too.
     let mut judge_without = |lives: Lives, of: &[&'l Regressor<'p>]| {
         if !of.is_empty() {

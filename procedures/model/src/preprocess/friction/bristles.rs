@@ -11,6 +11,7 @@ use crate::preprocess::TELLING;
 use crate::report::fit::Bristles;
 use crate::view::Start;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// Number of reaches.
 const REACHES: usize = 9;
@@ -40,15 +41,39 @@ pub fn encoder_step(position: &[f64]) -> f64 {
     quantile(steps, 0.01).max(1e-7)
 }
 
+/// Smallest motion that differs from encoder noise.
+fn depth(position: &[f64], step: f64) -> f64 {
+    let (low, high) = position.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+    (TURN_STEPS * step).max(TURN_SHARE * (high - low))
+}
+
+fn recordings(samples: usize, starts: &[usize]) -> impl Iterator<Item = Range<usize>> {
+    let ends = starts.iter().skip(1).copied().chain([samples]);
+    starts.iter().zip(ends).map(|(start, end)| *start..end)
+}
+
 /// Samples at which the position reverses by more than the encoder noise, for each recording.
 pub fn turns(position: &[f64], starts: &[usize], step: f64) -> Vec<usize> {
-    let (low, high) = position.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
-    let depth = (TURN_STEPS * step).max(TURN_SHARE * (high - low));
-    let mut turns = Vec::new();
-    for (start, end) in starts.iter().zip(starts.iter().skip(1).chain([&position.len()])) {
-        zigzag(&position[*start..*end], depth).into_iter().for_each(|turn| turns.push(start + turn));
+    let depth = depth(position, step);
+    let turns_of = |range: Range<usize>| {
+        let start = range.start;
+        zigzag(&position[range], depth).into_iter().map(move |turn| start + turn)
+    };
+    recordings(position.len(), starts).flat_map(turns_of).collect()
+}
+
+/// The sign of the motion, if all recordings move in the same direction. Between recordings a joint may return unseen.
+/// A run that pauses at each point may move only between its recordings: then the positions of all of them count.
+pub fn only_direction(position: &[f64], starts: &[usize], step: f64) -> Option<f64> {
+    let depth = depth(position, step);
+    let over = |range: Range<usize>| position[range.end - 1] - position[range.start];
+    let mut moves: Vec<f64> = recordings(position.len(), starts).map(over).filter(|d| d.abs() > depth).collect();
+    if moves.is_empty() {
+        let turns = zigzag(position, depth);
+        moves.extend(turns.is_empty().then(|| over(0..position.len())));
     }
-    turns
+    let first = moves.first()?.signum();
+    moves.iter().all(|d| d.signum() == first).then_some(first)
 }
 
 fn zigzag(x: &[f64], depth: f64) -> Vec<usize> {

@@ -23,6 +23,8 @@ pub struct Work {
     pub torque: Vec<f64>,
     pub even: Even,
     pub turns: Vec<usize>,
+    /// The sign of the motion if it does not change.
+    pub only_direction: Option<f64>,
     /// Samples at which the joint reverses or rests.
     pub stills: Vec<usize>,
     pub encoder_step: f64,
@@ -104,6 +106,10 @@ pub fn read(run: &RunTable) -> Result<Work, ModelError> {
     let acceleration = slope(&velocity);
     let encoder_step = bristles::encoder_step(run.column("motor_position_rad").unwrap_or_default());
     let turns = bristles::turns(&position, &even.starts, encoder_step);
+    let only_direction = match turns.is_empty() {
+        true => bristles::only_direction(&position, &even.starts, encoder_step),
+        false => None,
+    };
     let fastest = quantile(velocity.iter().map(|w| w.abs()), 0.995).max(f64::MIN_POSITIVE);
     signals.set(Signal::Jerk, slope(&acceleration));
     signals.set(Signal::Acceleration, acceleration);
@@ -111,5 +117,5 @@ pub fn read(run: &RunTable) -> Result<Work, ModelError> {
     signals.set(Signal::Position, position);
     signals.set(Signal::Time, even.time_s.iter().map(|t| t - even.time_s[0]).collect());
     let torque = current.iter().map(|i| km * i).collect();
-    Ok(Work { signals, torque, even, turns, stills: Vec::new(), encoder_step, fastest })
+    Ok(Work { signals, torque, even, turns, only_direction, stills: Vec::new(), encoder_step, fastest })
 }

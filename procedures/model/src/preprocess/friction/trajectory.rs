@@ -42,9 +42,9 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
     let every = (every as usize).max(1);
     let velocity = work.signals.find(Signal::Velocity).unwrap_or_default().to_vec();
     let band = given.map_or_else(|| noise(&velocity, &work, cutoff_hz), |given| given.band_rad_s);
-    let direction = match work.turns.is_empty() {
-        true => vec![velocity.iter().sum::<f64>().signum(); velocity.len()],
-        false => velocity.iter().map(|w| (w / band).tanh()).collect(),
+    let direction = match work.only_direction {
+        Some(sign) => vec![sign; velocity.len()],
+        None => velocity.iter().map(|w| (w / band).tanh()).collect(),
     };
     work.signals.set(Signal::Direction, direction);
     work.set_stills(band);
