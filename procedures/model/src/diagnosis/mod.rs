@@ -184,6 +184,8 @@ fn suggestions(
             format!("Around reversals it reduces the squared error by {}.", percent(scored.share))
         } else if let Some(upheld) = found.upheld.iter().find(|u| u.effect == id) {
             format!("Removing it hardly changes the error, but without it {}.", narrative::elsewhere(upheld, false))
+        } else if found.decided.is_some() && reduction <= 0.0 {
+            format!("Away from reversals and rest it reduces the squared error by {}.", percent(importance))
         } else if found.decided.is_some() {
             format!("It reduces the squared validation error by {}.", percent(importance))
         } else {

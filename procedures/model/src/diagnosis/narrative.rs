@@ -51,6 +51,13 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
              {error} without it; {floor}.",
             percent(first.error_reduction)
         )
+    } else if first.validation_rms >= fit.validation_rms {
+        // The decision gives samples near reversals less weight.
+        format!(
+            "Away from reversals and rest, adding {effect} reduces the squared error by {}; over all samples the validation \
+             error is {with} with it and {error} without it; {floor}.",
+            percent(found.ranking().first().map_or(0.0, |(_, share)| *share))
+        )
     } else {
         format!("Adding {effect} reduces the validation error from {error} to {with}{all}; {floor}.")
     };
