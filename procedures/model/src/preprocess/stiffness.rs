@@ -32,21 +32,11 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let mut signals = Signals::new(run.len());
     signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
     let held_turns = held_turns(&target, link);
-    let rounding = match held_turns {
-        Some(_) => {
-            encoder_step(column("motor_position_rad"), torque).hypot(gear * encoder_step(link, torque))
-                / gear
-                / 12f64.sqrt()
-        }
-        None => 0.0,
-    };
-    let derived_velocity = match held_turns {
-        Some(_) => {
-            signals.set(Signal::Direction, segments::trend(torque));
-            false
-        }
-        None => motion(&mut signals, run, cutoff_hz, step_s),
-    };
+    let rounding = held_turns.map_or(0.0, |_| rounding(column("motor_position_rad"), link, torque, gear));
+    if held_turns.is_some() {
+        signals.set(Signal::Direction, segments::trend(torque));
+    }
+    let derived_velocity = held_turns.is_none() && motion(&mut signals, run, cutoff_hz, step_s);
     for (name, signal) in [("temperature_c", Signal::Temperature), ("repeat", Signal::Repeat)] {
         if let Some(values) = run.column(name) {
             signals.set(signal, values.to_vec());
@@ -66,12 +56,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         time_s,
         constants: Constants { held_turns, rounding, ..Constants::default() },
     };
-    let mut smooth = torque.to_vec();
-    let chunk = source.chunk(CHUNK_S);
-    for leg in source.legs() {
-        let even = source.even_part(&leg, chunk);
-        smooth[even.clone()].copy_from_slice(&smooth_leg(&torque[even]));
-    }
+    let smooth = smooth(&source, torque);
     source.signals.set(Signal::Load, smooth);
     let inputs = [Signal::Velocity, Signal::Load].map(Same::Value);
     let mut prepared = sweeps::prepare(run, source, CHUNK_S, &inputs, options)?;
@@ -87,6 +72,11 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         format!("motor and link have another zero in every repeat ({apart} RMS apart), as encoders that are zeroed before each: it is subtracted")
     }));
     Ok(prepared)
+}
+
+/// Standard deviation of the twist from the rounding of both encoders [rad].
+fn rounding(motor: &[f64], link: &[f64], torque: &[f64], gear: f64) -> f64 {
+    encoder_step(motor, torque).hypot(gear * encoder_step(link, torque)) / gear / 12f64.sqrt()
 }
 
 /// The count of an encoder [rad], a power of two in a turn: the readings are multiples of it, while the torque that
@@ -163,6 +153,17 @@ fn own_zeros(twist: &mut [f64], repeat: &[i64]) -> Option<f64> {
 
 /// Numbers of Chebyshev polynomials to choose from.
 const ORDERS: [usize; 5] = [3, 5, 8, 11, 15];
+
+/// The torque, smoothed within the even part of each leg.
+fn smooth(source: &Source, torque: &[f64]) -> Vec<f64> {
+    let mut smooth = torque.to_vec();
+    let chunk = source.chunk(CHUNK_S);
+    for leg in source.legs() {
+        let even = source.even_part(&leg, chunk);
+        smooth[even.clone()].copy_from_slice(&smooth_leg(&torque[even]));
+    }
+    smooth
+}
 
 /// The torque of a leg without sensor noise, which would disturb hysteresis and sign terms. A filter across the
 /// reversal would blur exactly what these terms depend on. One smooth curve if it leaves only noise, otherwise one

@@ -24,34 +24,7 @@ pub fn prepare(
 ) -> Result<Prepared, ModelError> {
     let raw = options.residual == Some(ResidualKind::Raw);
     let n = if raw { 1 } else { samples.chunk(options.chunk_s.unwrap_or(chunk_s)) };
-    let legs = samples.legs();
-    let conditions = conditions(&samples, &legs, inputs);
-    let thin = if raw { 1 } else { (run.len() / n).div_ceil(MOST_ROWS).max(1) };
-    let (mut chunks, mut group, mut phase, mut condition) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (number, leg) in legs.iter().enumerate() {
-        let leg = match run.kind() {
-            Kind::Stiffness | Kind::Brake => samples.even_part(leg, n),
-            _ => leg.clone(),
-        };
-        let held = match (run.kind(), samples.signals.find(Signal::Current)) {
-            (Kind::Brake, Some(current)) => current_dwells::held(&current[leg.clone()], n),
-            _ => Vec::new(),
-        };
-        // One chunk of several, not their mean, which would attenuate a short wave.
-        for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n * thin).enumerate() {
-            if held.get(k * thin) == Some(&false) {
-                continue;
-            }
-            chunks.push(start..start + n);
-            group.push(number);
-            phase.push(k);
-            condition.push(conditions[number]);
-        }
-    }
-    if chunks.len() < 12 {
-        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks" });
-    }
-    let layout = Layout { chunks, group, condition, phase: Some(phase), settled: false, inputs };
+    let layout = layout(&samples, run, inputs, n, raw)?;
     let mut main = problem(&samples, layout);
     let mut doubts = crate::preprocess::checks::metadata::doubts(run);
     doubts.extend(past(&mut main, run.kind()));
@@ -81,6 +54,44 @@ pub fn prepare(
     };
     let clashes = crate::preprocess::checks::unit_mismatch::clashes(run);
     Ok(Prepared { clashes, doubts, ..Prepared::of(run, main, about) })
+}
+
+/// The chunks of all legs, of `n` samples each. A `raw` run keeps all of them.
+fn layout<'a>(
+    samples: &Source,
+    run: &RunTable,
+    inputs: &'a [Same],
+    n: usize,
+    raw: bool,
+) -> Result<Layout<'a>, ModelError> {
+    let legs = samples.legs();
+    let conditions = conditions(samples, &legs, inputs);
+    let thin = if raw { 1 } else { (run.len() / n).div_ceil(MOST_ROWS).max(1) };
+    let (mut chunks, mut group, mut phase, mut condition) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (number, leg) in legs.iter().enumerate() {
+        let leg = match run.kind() {
+            Kind::Stiffness | Kind::Brake => samples.even_part(leg, n),
+            _ => leg.clone(),
+        };
+        let held = match (run.kind(), samples.signals.find(Signal::Current)) {
+            (Kind::Brake, Some(current)) => current_dwells::held(&current[leg.clone()], n),
+            _ => Vec::new(),
+        };
+        // One chunk of several, not their mean, which would attenuate a short wave.
+        for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n * thin).enumerate() {
+            if held.get(k * thin) == Some(&false) {
+                continue;
+            }
+            chunks.push(start..start + n);
+            group.push(number);
+            phase.push(k);
+            condition.push(conditions[number]);
+        }
+    }
+    if chunks.len() < 12 {
+        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks" });
+    }
+    Ok(Layout { chunks, group, condition, phase: Some(phase), settled: false, inputs })
 }
 
 /// A loading history before the run, in a sentence.

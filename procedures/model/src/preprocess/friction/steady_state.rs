@@ -104,29 +104,7 @@ pub fn prepare(
     options: &Options,
 ) -> Result<Prepared, ModelError> {
     let n = samples.chunk(options.chunk_s.unwrap_or(CHUNK_S));
-    let legs = samples.legs();
-    let mut chunks = Vec::new();
-    let mut group = Vec::new();
-    let mut phase = Vec::new();
-    let merge = plateaus.iter().map(|p| p.len() / n).sum::<usize>().div_ceil(MOST_ROWS);
-    for (number, plateau) in plateaus.iter().enumerate() {
-        let leg = legs.partition_point(|l| l.start <= plateau.start).saturating_sub(1);
-        let before = (plateau.start - legs.get(leg).map_or(plateau.start, |l| l.start)) / n;
-        // At least two, so that neighbours in different repeats can be compared.
-        let parts = (plateau.len() / n).div_ceil(merge).max(2);
-        for part in 0..parts {
-            let edge = |part: usize| plateau.start + plateau.len() / n * part / parts * n;
-            chunks.push(edge(part)..edge(part + 1));
-            group.push(number);
-            phase.push(before / merge + part);
-        }
-    }
-    if chunks.len() < 12 {
-        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks at steady speed" });
-    }
-    let condition = conditions(&samples, &plateaus, run.column("brake_torque_command_nm"));
-    let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
-    let layout = Layout { chunks, group, condition, phase: Some(phase), settled: true, inputs: &[] };
+    let layout = layout(&samples, &plateaus, run, n)?;
     let speed = |p: &Range<usize>| {
         median(samples.signals.find(Signal::Velocity).unwrap_or_default()[p.clone()].iter().map(|v| v.abs()))
     };
@@ -158,6 +136,38 @@ pub fn prepare(
         repeats_from: if repeats { "column" } else { "none" }.into(),
     };
     Ok(Prepared { clashes, doubts, moving, memory, ..Prepared::of(run, main, about) })
+}
+
+/// The chunks of all steady states, of `n` samples each or of several times that in a long run.
+fn layout(
+    samples: &Source,
+    plateaus: &[Range<usize>],
+    run: &RunTable,
+    n: usize,
+) -> Result<Layout<'static>, ModelError> {
+    let legs = samples.legs();
+    let mut chunks = Vec::new();
+    let mut group = Vec::new();
+    let mut phase = Vec::new();
+    let merge = plateaus.iter().map(|p| p.len() / n).sum::<usize>().div_ceil(MOST_ROWS);
+    for (number, plateau) in plateaus.iter().enumerate() {
+        let leg = legs.partition_point(|l| l.start <= plateau.start).saturating_sub(1);
+        let before = (plateau.start - legs.get(leg).map_or(plateau.start, |l| l.start)) / n;
+        // At least two, so that neighbours in different repeats can be compared.
+        let parts = (plateau.len() / n).div_ceil(merge).max(2);
+        for part in 0..parts {
+            let edge = |part: usize| plateau.start + plateau.len() / n * part / parts * n;
+            chunks.push(edge(part)..edge(part + 1));
+            group.push(number);
+            phase.push(before / merge + part);
+        }
+    }
+    if chunks.len() < 12 {
+        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks at steady speed" });
+    }
+    let condition = conditions(samples, plateaus, run.column("brake_torque_command_nm"));
+    let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
+    Ok(Layout { chunks, group, condition, phase: Some(phase), settled: true, inputs: &[] })
 }
 
 /// Sets the drive torque of steady-state or moving rows.
