@@ -1,6 +1,7 @@
 //! An effect: one physical cause with its formula, its parameters and the signals that it needs.
 
 use crate::signal::Signal;
+use crate::symbolic::{self, FittedForm, Symbolic};
 use crate::view::View;
 use jointbench_instrument::Kind;
 use jointbench_instrument::spelling::nearest;
@@ -148,6 +149,11 @@ pub trait Effect: Sync {
     /// The columns of one form at the points of the view.
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns;
 
+    /// The columns of a form as formulas for a controller, or why it cannot compute them.
+    fn symbolic(&self, _form: &FittedForm) -> Symbolic {
+        Err(symbolic::UNKNOWN)
+    }
+
     /// The formula of one form, if it differs from that of the effect.
     fn formula_of(&self, _form: &str) -> &str {
         self.info().formula
@@ -209,6 +215,12 @@ pub trait Effect: Sync {
     /// The effect whose formula this one corrects: it is a candidate only together with that one (marginality, Nelder
     /// 1977).
     fn corrects(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// A temperature effect over time instead of temperature, as an inline user effect: if temperature follows time in
+    /// a run, both explain it.
+    fn over_time(&self) -> Option<&'static str> {
         None
     }
 

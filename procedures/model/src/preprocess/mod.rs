@@ -20,6 +20,7 @@ pub(crate) mod sweeps;
 pub(crate) mod unknown_columns;
 
 use crate::effect::Regime;
+use crate::effects::friction::presliding;
 use crate::preprocess::checks::unit_mismatch::DataErrors;
 use crate::preprocess::checks::{metadata, unit_mismatch};
 pub use crate::preprocess::design::replicates::Unlike;
@@ -141,9 +142,6 @@ pub struct Prepared {
     pub about: Preparation,
 }
 
-/// The effect that replaces the direction by a presliding state.
-pub(crate) const BENDS: &str = "presliding";
-
 impl Prepared {
     /// A run with one problem, without data errors.
     fn of(run: &RunTable, main: Problem, about: Preparation) -> Self {
@@ -164,9 +162,9 @@ impl Prepared {
         }
     }
 
-    /// The problem that a model of these effects is judged on.
+    /// The problem that a model of these effects is judged on. Presliding replaces the direction by its state.
     pub fn judged(&self, effects: &[String]) -> &Problem {
-        let bends = effects.iter().any(|effect| effect == BENDS);
+        let bends = effects.iter().any(|effect| effect == presliding::ID);
         self.bristled.as_ref().filter(|_| bends).unwrap_or(&self.main)
     }
 

@@ -2,6 +2,7 @@
 //! error.
 
 use crate::effects;
+use crate::effects::friction::{presliding, signal_delay};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
 use crate::preprocess::form_error::{ErrorColumn, FormError, Lives};
@@ -17,8 +18,8 @@ const FIRST_RIDGE: f64 = 1e-4;
 const REWEIGHTED: usize = 2;
 
 /// The delay, whose column is the jerk, and presliding, which changes the friction direction.
-pub const DELAY: &str = "signal_delay";
-pub const PRESLIDING: &str = "presliding";
+pub const DELAY: &str = signal_delay::ID;
+pub const PRESLIDING: &str = presliding::ID;
 
 /// Nuisance columns of a model: form error, by its place in the list, and other forms of the effects.
 pub struct Nuisance<'a> {

@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::hysteresis_operators;
 use crate::signal::Signal;
+use crate::symbolic::{Column, FittedForm, Rule, Symbolic, memory};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -78,6 +79,14 @@ impl Effect for Hysteresis {
                 let bands = FORMS.iter().find(|known| known.0 == form).map_or(BANDS.len(), |known| known.1);
                 density(current, shape[0], bands, view)
             }
+        }
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        let bands = form.linear;
+        match FORMS.iter().any(|known| known.0 == form.name) {
+            true => Ok((0..bands).map(|band| Column::Band { stops: STOPS * bands, bands, band }).collect()),
+            false => memory(Rule::of(form.name), "current", "z + 1"),
         }
     }
 }

@@ -9,10 +9,11 @@ pub(crate) mod trajectory;
 pub(crate) mod unmeasured_gravity;
 pub(crate) mod work_rate;
 
+use crate::effects::friction::presliding;
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::segments;
-use crate::preprocess::{BENDS, Prepared, TELLING, filter, median, sample_s};
+use crate::preprocess::{Prepared, TELLING, filter, median, sample_s};
 use crate::report::fit::Bristles;
 use crate::signal::{Signal, Signals};
 use crate::view::Constants;
@@ -35,7 +36,7 @@ pub fn prepare(run: &RunTable, options: &Options, bristles: Option<&Bristles>) -
         || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > samples.legs().len());
     // If presliding is known, ramps and reversals are as informative as steady-state motion, and there are more of
     // them.
-    let bends = run.meta().baseline.iter().any(|effect| effect == BENDS);
+    let bends = run.meta().baseline.iter().any(|effect| effect == presliding::ID);
     match options.residual {
         None if !in_steps || bends => trajectory::prepare(run, options, bristles),
         _ => steady_state::prepare(run, samples, plateaus, options),
