@@ -1,6 +1,8 @@
 //! An effect: one physical cause with its formula, its parameters and the signals that it needs.
 
 use crate::signal::Signal;
+use crate::stats::summary::range;
+use crate::symbolic::{self, FittedForm, Symbolic};
 use crate::view::View;
 use jointbench_instrument::Kind;
 use jointbench_instrument::spelling::nearest;
@@ -148,6 +150,11 @@ pub trait Effect: Sync {
     /// The columns of one form at the points of the view.
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns;
 
+    /// The columns of a form as formulas for a controller, or why it cannot compute them.
+    fn symbolic(&self, _form: &FittedForm) -> Symbolic {
+        Err(symbolic::UNKNOWN)
+    }
+
     /// The formula of one form, if it differs from that of the effect.
     fn formula_of(&self, _form: &str) -> &str {
         self.info().formula
@@ -212,6 +219,12 @@ pub trait Effect: Sync {
         None
     }
 
+    /// A temperature effect over time instead of temperature, as an inline user effect: if temperature follows time in
+    /// a run, both explain it.
+    fn over_time(&self) -> Option<&'static str> {
+        None
+    }
+
     /// The missing excitation, or why the effect is not visible.
     fn unseen(&self) -> &str {
         self.info().looks
@@ -248,6 +261,6 @@ pub trait Effect: Sync {
 }
 
 fn is_constant(values: &[f64]) -> bool {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = range(values);
     high <= low + 1e-12 * high.abs().max(low.abs())
 }

@@ -1,7 +1,7 @@
 //! Fits a model to a run, and evaluates a fit on another run.
 
 use crate::inference::confounding;
-use crate::inference::form_error::{nuisance, presliding};
+use crate::inference::form_error::{Nuisance, nuisance, presliding};
 use crate::inference::intervals::intervals;
 use crate::linear::basis::dot;
 use crate::linear::condition;
@@ -10,7 +10,7 @@ use crate::preprocess::{Prepared, prepare};
 use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::fit::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport};
+use crate::report::fit::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport, TradeOff};
 use crate::words::figure;
 use crate::{ModelError, ModelSpec, Options, OwnEffect, ResidualKind, export};
 use jointbench_instrument::RunTable;
@@ -40,30 +40,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     if let Some(moving) = &assembly.moving {
         check_columns(moving)?;
     }
-    let mut parameters = Vec::new();
-    let mut trade_offs = Vec::new();
-    let mut terms = Vec::new();
-    for part in std::iter::once(main).chain(&assembly.moving) {
-        let found = intervals(part, prepared.motion);
-        parameters.extend(found.parameters);
-        trade_offs.extend(found.trade_offs);
-        for (term, coefficients) in part.terms.iter().zip(part.linear().coefficients) {
-            terms.push(TermReport {
-                effect: term.id().into(),
-                form: term.form.name.into(),
-                shape: term.shape.clone(),
-                linear: coefficients,
-                names: term
-                    .form
-                    .linear
-                    .iter()
-                    .copied()
-                    .chain(term.form.shape.iter().map(|s| s.name))
-                    .map(String::from)
-                    .collect(),
-            });
-        }
-    }
+    let (mut terms, mut parameters, trade_offs) = fitted_terms(assembly);
     if let Some((term, found)) = presliding(assembly, &parameters) {
         terms.push(term);
         parameters.extend(found);
@@ -76,21 +53,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     terms.sort_by_key(|t| order(&t.effect));
 
     let target = &prepared.main.target;
-    let mut notes: Vec<String> = prepared.clashes.all().chain(&prepared.doubts).cloned().collect();
-    notes.extend(nuisance.as_ref().map(|nuisance| nuisance.note.clone()));
-    notes.extend(assembly.hidden.iter().map(|h| format!("{} is not testable with this run: {}", h.effect, h.why)));
-    if assembly.effects.iter().any(|e| e == "direction_offset") {
-        notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
-    }
-    if prepared.main.view.is_one_directional() && main.contains("coulomb") {
-        let note = "the motion has one direction only (less than a tenth of a trajectory in the other is omitted): Coulomb \
-                    friction and an offset are confounded, and tau_c contains both; measure the other direction as well";
-        notes.push(note.into());
-    }
-    notes.extend(undetermined);
-    notes.extend(main.terms.iter().filter_map(written));
-    let mut instead = main.terms.iter().map(|term| confounding::instead(term.effect, prepared));
-    notes.extend(instead.find(|said| !said.is_empty()).unwrap_or_default());
+    let notes = notes(assembly, nuisance.as_ref(), undetermined);
     let own: Vec<OwnEffect> =
         assembly.spec.own.iter().filter(|o| assembly.effects.iter().any(|e| e == o.id())).cloned().collect();
     let scope = Scope::of(prepared, &own);
@@ -115,6 +78,48 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     };
     export::measure(&mut fit, &prepared.main)?;
     Ok(fit)
+}
+
+/// The terms of both stages, with their parameters and the trade-offs between these.
+fn fitted_terms(assembly: &TwoStageModel) -> (Vec<TermReport>, Vec<Parameter>, Vec<TradeOff>) {
+    let (mut terms, mut parameters, mut trade_offs) = (Vec::new(), Vec::new(), Vec::new());
+    for part in std::iter::once(&assembly.main).chain(&assembly.moving) {
+        let found = intervals(part, assembly.prepared.motion);
+        parameters.extend(found.parameters);
+        trade_offs.extend(found.trade_offs);
+        for (term, coefficients) in part.terms.iter().zip(part.linear().coefficients) {
+            let names = term.form.linear.iter().copied().chain(term.form.shape.iter().map(|s| s.name));
+            terms.push(TermReport {
+                effect: term.id().into(),
+                form: term.form.name.into(),
+                shape: term.shape.clone(),
+                linear: coefficients,
+                names: names.map(String::from).collect(),
+            });
+        }
+    }
+    (terms, parameters, trade_offs)
+}
+
+/// What a reader of the fit has to know, in sentences.
+fn notes(assembly: &TwoStageModel, nuisance: Option<&Nuisance>, undetermined: Option<String>) -> Vec<String> {
+    let (prepared, main) = (assembly.prepared, &assembly.main);
+    let mut notes: Vec<String> = prepared.clashes.all().chain(&prepared.doubts).cloned().collect();
+    notes.extend(nuisance.map(|nuisance| nuisance.note.clone()));
+    notes.extend(assembly.hidden.iter().map(|h| format!("{} is not testable with this run: {}", h.effect, h.why)));
+    if assembly.effects.iter().any(|e| e == "direction_offset") {
+        notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
+    }
+    if prepared.main.view.is_one_directional() && main.contains("coulomb") {
+        let note = "the motion has one direction only (less than a tenth of a trajectory in the other is omitted): Coulomb \
+                    friction and an offset are confounded, and tau_c contains both; measure the other direction as well";
+        notes.push(note.into());
+    }
+    notes.extend(undetermined);
+    notes.extend(main.terms.iter().filter_map(written));
+    let mut instead = main.terms.iter().map(|term| confounding::instead(term.effect, prepared));
+    notes.extend(instead.find(|said| !said.is_empty()).unwrap_or_default());
+    notes
 }
 
 /// At steady state the acceleration is small, and mostly noise of the velocity. If the set-up states another inertia,

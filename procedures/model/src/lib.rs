@@ -25,6 +25,7 @@ mod selection;
 pub mod signal;
 mod spec;
 mod stats;
+mod symbolic;
 pub mod thresholds;
 mod user_effects;
 pub mod view;

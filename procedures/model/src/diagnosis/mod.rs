@@ -165,21 +165,7 @@ fn suggestions(
         };
         let info = scored.term.effect.info();
         let confounded_with = found.ties_of(id);
-        let tie = if confounded_with.is_empty() {
-            String::new()
-        } else {
-            let mut alike = Vec::new();
-            for scored in &confounded_with {
-                let other = spec.with(scored)?;
-                let other = TwoStageModel::new(found.start.prepared, &other, options)?;
-                alike.push(format!("{:.2}", evidence::correlation(&found.start.main, &alone.main, &other.main)));
-            }
-            format!(
-                " Confounded with {}: each reduces the error equally well (correlation of the contributions {}).",
-                list(&confounded_with),
-                list(&alike)
-            )
-        };
+        let tie = tie(&found.start, &alone, &confounded_with, spec, options)?;
         let evidence = if apart {
             format!("Around reversals it reduces the squared error by {}.", percent(scored.share))
         } else if let Some(upheld) = found.upheld.iter().find(|u| u.effect == id) {
@@ -216,6 +202,30 @@ fn suggestions(
         });
     }
     Ok(out)
+}
+
+/// The effects that are confounded with an added one, in a sentence.
+fn tie(
+    start: &TwoStageModel,
+    alone: &TwoStageModel,
+    confounded_with: &[String],
+    spec: &ModelSpec,
+    options: &Options,
+) -> Result<String, ModelError> {
+    if confounded_with.is_empty() {
+        return Ok(String::new());
+    }
+    let mut alike = Vec::new();
+    for scored in confounded_with {
+        let other = spec.with(scored)?;
+        let other = TwoStageModel::new(start.prepared, &other, options)?;
+        alike.push(format!("{:.2}", evidence::correlation(&start.main, &alone.main, &other.main)));
+    }
+    Ok(format!(
+        " Confounded with {}: each reduces the error equally well (correlation of the contributions {}).",
+        list(confounded_with),
+        list(&alike)
+    ))
 }
 
 /// The interval of a parameter assumes that no effect is missing. If an effect may be present as well, the interval

@@ -10,10 +10,11 @@ pub(crate) mod unobserved;
 use crate::experiment_design::separation::{Noise, Side};
 use crate::experiment_design::simulate::simulate;
 use crate::inference::confounding;
-use crate::preprocess::{Prepared, prepare};
+use crate::preprocess::{Prepared, Problem, prepare};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Diagnosis, Discovery, Experiment, Verdict};
 use crate::signal::Signal;
+use crate::stats::summary::peak;
 use crate::thresholds::{NEARLY_COVERED, SEPARATED_Z, USELESS_Z};
 use crate::words::list;
 use crate::{ModelError, ModelSpec, Options, OwnEffect};
@@ -135,39 +136,80 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     if !prepared.clashes.is_empty() {
         return Ok(Next::default());
     }
-    let spec = |effects: &[String]| ModelSpec::with_own(run.kind(), effects, open.own.clone());
-    let with_all = spec(&open.model)?;
-    let model = TwoStageModel::new(&prepared, &with_all, options)?;
+    let spec = ModelSpec::with_own(run.kind(), &open.model, open.own.clone())?;
+    let model = TwoStageModel::new(&prepared, &spec, options)?;
     let noise = Noise::of(&model.main);
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
-    let side = Side::new(&model.main, &noise);
     let known = menu.iter().filter(|choice| !choice.stretches.is_empty());
-    let mut simulated: Vec<_> = known.map(|choice| (choice, simulate(choice, &prepared, &model, gear))).collect();
-
-    let decided = |others: &[ModelSpec]| -> Result<Option<Bid>, ModelError> {
-        let others = others.iter().map(|s| TwoStageModel::new(&prepared, s, options));
-        let others: Vec<TwoStageModel> = others.collect::<Result<_, _>>()?;
-        let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
-        // An encoder is power-cycled only for effects that depend on it.
-        let asks_for_power_ups = side.changes_by_run() || others.iter().any(Side::changes_by_run);
-        let useful = simulated.iter().filter(|(choice, _)| asks_for_power_ups || !choice.powers_anew());
-        Ok(decide(useful.map(|(choice, problem)| {
-            let apart = others.iter().map(|other| side.separation(other, problem, &noise));
-            Bid { choice, z: apart.fold(f64::INFINITY, f64::min) }
-        })))
-    };
+    let simulated = known.map(|choice| (choice, simulate(choice, &prepared, &model, gear))).collect();
+    let side = Side::new(&model.main, &noise);
+    let offer = Offer { menu, simulated, prepared: &prepared, model: &model, side, noise, options };
     let mut in_vain = Vec::new();
     for (effect, alternatives) in &open.ties {
+        let (experiment, vain) = offer.distinguish(effect, alternatives, open)?;
+        if let Some(mut next) = experiment {
+            next.why.extend(
+                vain.map(|vain| format!("; no run within the limits of this bench is expected to distinguish {vain}")),
+            );
+            return Ok(next.into());
+        }
+        in_vain.extend(vain);
+    }
+    let next = offer.without_ties(open)?;
+    let in_vain = (!in_vain.is_empty()).then(|| {
+        let ties = list(&in_vain);
+        format!("run within the limits of this bench is expected to distinguish {ties}: use another speed, load or temperature")
+    });
+    Ok(match (next, in_vain) {
+        (Some(next), Some(vain)) => Experiment { why: format!("no {vain}; but {}", next.why), ..next }.into(),
+        (Some(next), None) => next.into(),
+        (None, vain) => Next { experiment: None, in_vain: vain.map(|vain| format!("No {vain}.")) },
+    })
+}
+
+/// The menu with its simulated runs, and the model on the measured run.
+struct Offer<'a> {
+    menu: &'a [Choice],
+    simulated: Vec<(&'a Choice, Problem)>,
+    prepared: &'a Prepared,
+    model: &'a TwoStageModel<'a>,
+    side: Side<'a>,
+    noise: Noise,
+    options: &'a Options,
+}
+
+impl<'a> Offer<'a> {
+    /// The run that separates the model from all these alternatives.
+    fn decided(&self, alternatives: &[ModelSpec]) -> Result<Option<Bid<'a>>, ModelError> {
+        let others = alternatives.iter().map(|spec| TwoStageModel::new(self.prepared, spec, self.options));
+        let others: Vec<TwoStageModel> = others.collect::<Result<_, _>>()?;
+        let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &self.noise)).collect();
+        // An encoder is power-cycled only for effects that depend on it.
+        let asks_for_power_ups = self.side.changes_by_run() || others.iter().any(Side::changes_by_run);
+        let useful = self.simulated.iter().filter(|(choice, _)| asks_for_power_ups || !choice.powers_anew());
+        Ok(decide(useful.map(|(choice, problem)| {
+            let apart = others.iter().map(|other| self.side.separation(other, problem, &self.noise));
+            Bid { choice, z: apart.fold(f64::INFINITY, f64::min) }
+        })))
+    }
+
+    /// The run that distinguishes an effect from its alternatives, and the pairs that no run distinguishes, in words.
+    fn distinguish(
+        &self,
+        effect: &String,
+        alternatives: &[String],
+        open: &Open,
+    ) -> Result<(Option<Experiment>, Option<String>), ModelError> {
         let instead = |alternative: &String| {
             let effects: Vec<String> =
                 open.model.iter().map(|e| if e == effect { alternative } else { e }.clone()).collect();
-            spec(&effects)
+            ModelSpec::with_own(self.prepared.kind, effects, open.own.clone())
         };
         // A candidate that no run separates does not prevent the separation of the others.
         let (mut apart, mut specs, mut alike, mut first) = (Vec::new(), Vec::new(), Vec::new(), None);
         for alternative in alternatives.iter().filter(|alternative| !open.model.contains(alternative)) {
             let other = [instead(alternative)?];
-            match decided(&other)? {
+            match self.decided(&other)? {
                 Some(bid) => {
                     first.get_or_insert(bid);
                     apart.push(alternative.clone());
@@ -178,48 +220,39 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
         }
         let vain = (!alike.is_empty()).then(|| format!("{effect} from {}", list(&alike)));
         // One run for all of them, or one for the first.
-        let together = if apart.len() > 1 { decided(&specs)? } else { None };
+        let together = if apart.len() > 1 { self.decided(&specs)? } else { None };
         if together.is_none() {
             apart.truncate(1);
         }
-        let bid = together.or(first);
-        if let Some(bid) = bid {
+        let experiment = together.or(first).map(|bid| {
             let question = format!("distinguish {effect} from {}", list(&apart));
-            let mut next = experiment(bid, &question, std::iter::once(effect).chain(&apart));
-            next.why.extend(
-                vain.map(|vain| format!("; no run within the limits of this bench is expected to distinguish {vain}")),
-            );
-            return Ok(next.into());
-        }
-        in_vain.extend(vain);
+            experiment(bid, &question, std::iter::once(effect).chain(&apart))
+        });
+        Ok((experiment, vain))
     }
-    let next = if let Some(effect) = &open.imitated
-        && let Some(bid) = decided(&[with_all.with(effect)?])?
-    {
-        Some(experiment(bid, &format!("decide whether {effect} is present"), [effect]))
-    } else if let Some((effect, spec)) = over_time(&with_all, &prepared)?
-        && let Some(bid) = decided(&[spec])?
-    {
-        Some(experiment(bid, &format!("distinguish {effect} from a drift over time"), [&effect]))
-    } else if !open.has_noise_floor
-        && let Some(choice) = nearest(menu, &prepared)
-    {
-        Some(again(choice))
-    } else if open.has_structure {
-        None
-    } else {
-        simulated.retain(|(choice, _)| !choice.powers_anew());
-        unobserved::unseen(&model, &noise, &simulated)
-    };
-    let in_vain = (!in_vain.is_empty()).then(|| {
-        let ties = list(&in_vain);
-        format!("run within the limits of this bench is expected to distinguish {ties}: use another speed, load or temperature")
-    });
-    Ok(match (next, in_vain) {
-        (Some(next), Some(vain)) => Experiment { why: format!("no {vain}; but {}", next.why), ..next }.into(),
-        (Some(next), None) => next.into(),
-        (None, vain) => Next { experiment: None, in_vain: vain.map(|vain| format!("No {vain}.")) },
-    })
+
+    /// The run for the other open questions, in the order of their priority.
+    fn without_ties(mut self, open: &Open) -> Result<Option<Experiment>, ModelError> {
+        let spec = self.model.spec;
+        if let Some(effect) = &open.imitated
+            && let Some(bid) = self.decided(&[spec.with(effect)?])?
+        {
+            Ok(Some(experiment(bid, &format!("decide whether {effect} is present"), [effect])))
+        } else if let Some((effect, spec)) = over_time(spec, self.prepared)?
+            && let Some(bid) = self.decided(&[spec])?
+        {
+            Ok(Some(experiment(bid, &format!("distinguish {effect} from a drift over time"), [&effect])))
+        } else if !open.has_noise_floor
+            && let Some(choice) = nearest(self.menu, self.prepared)
+        {
+            Ok(Some(again(choice)))
+        } else if open.has_structure {
+            Ok(None)
+        } else {
+            self.simulated.retain(|(choice, _)| !choice.powers_anew());
+            Ok(unobserved::unseen(self.model, &self.noise, &self.simulated))
+        }
+    }
 }
 
 impl From<Experiment> for Next {
@@ -288,7 +321,7 @@ fn in_words(z: f64) -> String {
 /// which is the default.
 fn nearest<'m>(menu: &'m [Choice], prepared: &Prepared) -> Option<&'m Choice> {
     let points = &prepared.main.view.points;
-    let largest = |signal| points.find(signal).map_or(0.0, |of| of.iter().fold(0.0f64, |most, v| most.max(v.abs())));
+    let largest = |signal| points.find(signal).map_or(0.0, peak);
     let (fastest, heaviest) = (largest(Signal::Velocity), prepared.load_scale * largest(Signal::Load));
     let share = |choice: &Choice, of: fn(&Stretch) -> f64, all: f64| {
         let most = choice.stretches.iter().fold(0.0f64, |most, stretch| most.max(of(stretch).abs()));

@@ -1,6 +1,6 @@
 //! Effects that the measured run could not show, but another run would.
 
-use crate::effect::{Regime, ShapeSearch};
+use crate::effect::{Effect, Regime, ShapeSearch};
 use crate::experiment_design::separation::{Noise, Side};
 use crate::experiment_design::{Bid, Choice, SEPARATED_Z};
 use crate::linear::basis::dot;
@@ -21,40 +21,18 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, simulated: &[(&Choice, Probl
     let side = Side::new(&model.main, noise);
     let mut best: Option<(Bid, Vec<&str>)> = None;
     for (choice, run) in simulated {
-        let mut seen: Vec<(&str, f64)> = Vec::new();
+        let worth = match is_friction {
+            true => WORTH_SEEING * dot(&run.target, &run.target).sqrt(),
+            false => noise.row * (run.rows() as f64).sqrt(),
+        };
         let own = side.at(run, noise);
+        let mut seen: Vec<(&str, f64)> = Vec::new();
         for effect in model.spec.known() {
-            let id = effect.info().id;
-            let open = effect.regime() == Regime::SteadyState && !effect.is_offset() && !model.main.contains(id);
-            if !open || effect.hidden(&run.view).is_some() {
-                continue;
-            }
-            let forms = effect.forms(&run.view);
-            let Some(form) = forms.first() else { continue };
-            // A changepoint can only be shown by the run in which it occurs.
-            if form.shape.iter().any(|shape| shape.search == ShapeSearch::Jump) {
-                continue;
-            }
-            let shape = &form.grid[form.grid.len() / 2];
-            let mut then = columns(effect, form.name, shape, run).swap_remove(0);
-            let mut now = match effect.hidden(&model.main.problem.view) {
-                Some(_) => vec![0.0; model.main.problem.rows()],
-                None => columns(effect, form.name, shape, model.main.problem).swap_remove(0),
-            };
-            let size = dot(&then, &then).sqrt();
-            if size == 0.0 {
-                continue;
-            }
-            let worth = match is_friction {
-                true => WORTH_SEEING * dot(&run.target, &run.target).sqrt(),
-                false => noise.row * (run.rows() as f64).sqrt(),
-            };
-            let scale = worth / size;
-            now.iter_mut().chain(&mut then).for_each(|x| *x *= scale);
+            let Some((now, then)) = columns_of(effect, model, run, worth) else { continue };
             let (now, then) = (noise.whiten(&now, model.main.problem), noise.whiten(&then, run));
             let (before, after) = side.information(&now, &then, &own);
             if before.sqrt() < FOUND_Z && after.sqrt() >= SEPARATED_Z {
-                seen.push((id, after.sqrt()));
+                seen.push((effect.info().id, after.sqrt()));
             }
         }
         let z = seen.iter().map(|s| s.1).fold(f64::INFINITY, f64::min);
@@ -65,23 +43,55 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, simulated: &[(&Choice, Probl
             best = Some((Bid { choice, z }, seen.into_iter().map(|s| s.0).collect()));
         }
     }
-    let (bid, effects) = best?;
+    best.map(|(bid, effects)| experiment(bid, &effects, is_friction))
+}
+
+/// The first column of an effect in the measured run and in another one, both scaled to the norm `worth` in the latter.
+/// `None` for an effect of the model, and for one that the other run cannot show either.
+fn columns_of(effect: &dyn Effect, model: &TwoStageModel, run: &Problem, worth: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+    let is_in_model = model.main.contains(effect.info().id);
+    let open = effect.regime() == Regime::SteadyState && !effect.is_offset() && !is_in_model;
+    if !open || effect.hidden(&run.view).is_some() {
+        return None;
+    }
+    let forms = effect.forms(&run.view);
+    let form = forms.first()?;
+    // A changepoint can only be shown by the run in which it occurs.
+    if form.shape.iter().any(|shape| shape.search == ShapeSearch::Jump) {
+        return None;
+    }
+    let shape = &form.grid[form.grid.len() / 2];
+    let mut then = columns(effect, form.name, shape, run).swap_remove(0);
+    let mut now = match effect.hidden(&model.main.problem.view) {
+        Some(_) => vec![0.0; model.main.problem.rows()],
+        None => columns(effect, form.name, shape, model.main.problem).swap_remove(0),
+    };
+    let size = dot(&then, &then).sqrt();
+    if size == 0.0 {
+        return None;
+    }
+    let scale = worth / size;
+    now.iter_mut().chain(&mut then).for_each(|x| *x *= scale);
+    Some((now, then))
+}
+
+fn experiment(bid: Bid, effects: &[&str], is_friction: bool) -> Experiment {
     let worth = match is_friction {
         true => format!("{} % of the torque there", 100.0 * WORTH_SEEING),
         false => "what is as large as the scatter of one reading".to_owned(),
     };
-    Some(Experiment {
+    Experiment {
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
             "it would make {} detectable, which the data so far could not show: {worth} would be at least {:.1} standard \
              deviations{}",
-            list(&effects),
+            list(effects),
             bid.z.min(100.0),
             bid.choice.provided(),
         ),
         expected_z: Some(bid.z),
         expected_duration_s: Some(bid.choice.duration_s),
-        separates: effects.into_iter().map(Into::into).collect(),
-    })
+        separates: effects.iter().copied().map(Into::into).collect(),
+    }
 }

@@ -5,11 +5,11 @@
 
 use crate::ModelError;
 use crate::export::parts::{Part, PartColumn, Parts};
-use crate::export::symbolic::Rule;
 use crate::prediction::predict_on;
 use crate::preprocess::Problem;
 use crate::report::fit::Fit;
 use crate::signal::{Signal, Signals};
+use crate::symbolic::Rule;
 use crate::view::{Start, View};
 
 /// Half width of the dead band, in standard deviations of the noise: a narrower band passes noise peaks, a wider one

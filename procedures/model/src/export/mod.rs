@@ -8,7 +8,6 @@ pub(crate) mod online_prediction;
 pub(crate) mod parts;
 pub(crate) mod predict;
 pub(crate) mod suffix;
-pub(crate) mod symbolic;
 pub(crate) mod table;
 pub(crate) mod terms;
 

@@ -1,13 +1,13 @@
 //! A fit divided into parts: every term as formulas, for library and user effects alike.
 
-use crate::ModelError;
-use crate::export::symbolic::{Column, Rule, written};
 use crate::formula::expression::Expression;
 use crate::formula::signals::left_hand_side;
 use crate::formula::syntax;
 use crate::report::fit::{Fit, Term};
 use crate::signal::Signal;
+use crate::symbolic::{Column, FittedForm, Rule};
 use crate::user_effects::find_with_own;
+use crate::{Effect, ModelError};
 
 /// One effect of the model as a controller computes it.
 #[derive(Debug)]
@@ -62,7 +62,7 @@ impl<'f> Parts<'f> {
                 parts.left_out.push((id, "the run that was fitted could not show it".into()));
                 continue;
             };
-            match columns(fit, term)? {
+            match columns(fit, effect, term)? {
                 Ok(columns) => parts.parts.push(part(id, title, term, columns)?),
                 Err(why) => parts.left_out.push((id, why.into())),
             }
@@ -100,14 +100,15 @@ fn part<'f>(effect: &'f str, title: &'f str, term: &'f Term, columns: Vec<PartCo
 }
 
 /// The columns, or why a controller cannot compute them.
-fn columns(fit: &Fit, term: &Term) -> Result<Result<Vec<PartColumn>, &'static str>, ModelError> {
+fn columns(fit: &Fit, effect: &dyn Effect, term: &Term) -> Result<Result<Vec<PartColumn>, &'static str>, ModelError> {
     if let Some(own) = fit.own.iter().find(|own| own.id() == term.effect) {
         // The definition numbers all parameters, the part only the nonlinear ones.
         let formula = own.formula();
         let number = |p: usize| formula.shape.iter().position(|s| *s == p).unwrap_or(usize::MAX);
         return Ok(Ok(formula.columns.iter().map(|(_, e)| PartColumn::Formula(e.renumbered(&number))).collect()));
     }
-    let columns = match written(fit.kind, term) {
+    let form = FittedForm { name: &term.form, linear: term.linear.len(), shape: term.shape.len() };
+    let columns = match effect.symbolic(&form) {
         Ok(columns) => columns,
         Err(why) => return Ok(Err(why)),
     };

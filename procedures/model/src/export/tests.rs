@@ -39,12 +39,12 @@ fn view(kind: Kind) -> View {
     view
 }
 
-/// A fit of all effects of a kind, each in its `n`-th form.
-fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
+/// The effects of a kind with their terms, each in its `n`-th form. Offset effects have no term.
+fn terms_of_all(kind: Kind, n: usize, own: &[OwnEffect]) -> (Vec<String>, Vec<Term>) {
     let view = view(kind);
     let mut terms = Vec::new();
     let mut ids: Vec<String> = Vec::new();
-    for effect in user_effects::with_own(kind, &own) {
+    for effect in user_effects::with_own(kind, own) {
         let forms = effect.forms(&view);
         if effect.is_offset() {
             ids.push(effect.info().id.into());
@@ -60,9 +60,13 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
             });
         }
     }
-    let parameters = terms.iter().flat_map(|term| {
+    (ids, terms)
+}
+
+fn parameters_of(terms: &[Term]) -> Vec<crate::Parameter> {
+    let of_term = |term: &Term| {
         let values = term.linear.iter().chain(&term.shape);
-        term.names.iter().zip(values).map(|(name, value)| crate::Parameter {
+        let parameter = |(name, value): (&String, &f64)| crate::Parameter {
             effect: term.effect.clone(),
             name: name.clone(),
             value: *value,
@@ -70,12 +74,38 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
             ci95: [0.9 * value, 1.1 * value],
             state: crate::ParameterState::AtBound,
             note: Some("at its bound */ of 3 °C".into()),
-        })
-    });
-    let parameters = parameters.collect();
+        };
+        term.names.iter().zip(values).map(parameter).collect::<Vec<_>>()
+    };
+    terms.iter().flat_map(of_term).collect()
+}
+
+fn scope(kind: Kind) -> Scope {
+    let range = |(name, values): (&str, Vec<f64>)| SignalRange {
+        name: name.into(),
+        unit: "1".into(),
+        min: values.iter().copied().fold(f64::INFINITY, f64::min),
+        max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        noise: None,
+    };
+    Scope {
+        motion: Motion::Rotary,
+        load_scale: 50.0,
+        sample_s: STEP_S,
+        constants: Vec::new(),
+        fed_rms: None,
+        means: Vec::new(),
+        table_rms: None,
+        signals: moments(kind).into_iter().map(range).collect(),
+    }
+}
+
+/// A fit of all effects of a kind, each in its `n`-th form.
+fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
+    let (effects, terms) = terms_of_all(kind, n, &own);
     Fit {
         kind,
-        effects: ids,
+        effects,
         own,
         rms: 1.0,
         validation_rms: 1.1,
@@ -83,7 +113,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
         unit: kind.target_unit().into(),
         residual: ResidualKind::Raw,
         relative_error: 0.1,
-        parameters,
+        parameters: parameters_of(&terms),
         trade_offs: Vec::new(),
         condition: 1.0,
         notes: Vec::new(),
@@ -103,25 +133,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
         },
         terms,
         form_error: Vec::new(),
-        scope: Some(Scope {
-            motion: Motion::Rotary,
-            load_scale: 50.0,
-            sample_s: STEP_S,
-            constants: Vec::new(),
-            fed_rms: None,
-            means: Vec::new(),
-            table_rms: None,
-            signals: moments(kind)
-                .into_iter()
-                .map(|(name, values)| SignalRange {
-                    name: name.into(),
-                    unit: "1".into(),
-                    min: values.iter().copied().fold(f64::INFINITY, f64::min),
-                    max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-                    noise: None,
-                })
-                .collect(),
-        }),
+        scope: Some(scope(kind)),
     }
 }
 

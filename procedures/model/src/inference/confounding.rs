@@ -29,17 +29,7 @@ pub fn instead(effect: &dyn Effect, prepared: &Prepared) -> Vec<String> {
 /// The same effect over time instead of temperature, as a formula, if this run cannot distinguish them.
 pub fn over_time(effect: &dyn Effect, prepared: &Prepared) -> Option<OwnEffect> {
     drift(prepared)?;
-    OwnEffect::inline(prepared.kind, formula_over_time(effect.info().id)?).ok()
-}
-
-fn formula_over_time(effect: &str) -> Option<&'static str> {
-    match effect {
-        "temperature_coulomb" => Some("over_time: tau = a * time * direction; a [Nm/s]"),
-        "temperature_viscous" => Some("over_time: tau = a * time * velocity; a [Nm/rad]"),
-        "temperature_drift" => Some("over_time: error = a * time; a [rad/s]"),
-        "temperature_compliance" => Some("over_time: torsion = a * time * load; a [rad/(Nm·s)]"),
-        _ => None,
-    }
+    OwnEffect::inline(prepared.kind, effect.over_time()?).ok()
 }
 
 fn is_of_temperature(effect: &dyn Effect) -> bool {
@@ -75,7 +65,7 @@ mod tests {
         let all = [Kind::Friction, Kind::Encoder, Kind::Stiffness].map(|kind| {
             let effects: Vec<_> = of_temperature(kind).collect();
             for effect in &effects {
-                let own = OwnEffect::inline(kind, formula_over_time(effect.info().id).unwrap()).unwrap();
+                let own = OwnEffect::inline(kind, effect.over_time().unwrap()).unwrap();
                 assert_eq!(own.doubts(None), []);
             }
             effects.len()

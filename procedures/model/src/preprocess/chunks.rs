@@ -132,24 +132,8 @@ impl Source {
 /// The means of response and signals over chunks, as a problem.
 pub fn problem(samples: &Source, layout: Layout) -> Problem {
     let Layout { chunks, group, condition, phase, settled, inputs } = layout;
-    let mean = |values: &[f64]| -> Vec<f64> {
-        chunks.iter().map(|c| values[c.clone()].iter().sum::<f64>() / c.len() as f64).collect()
-    };
-    let mut points = Signals::new(chunks.len());
-    for (signal, values) in samples.signals.iter() {
-        let still = settled && matches!(signal, Signal::Acceleration | Signal::Jerk);
-        points.set(signal, if still { vec![0.0; chunks.len()] } else { mean(values) });
-    }
-    if settled && let Some(position) = samples.signals.find(Signal::Position) {
-        let wavering = residual_acceleration::accelerations(&samples.time_s, position, samples.step_s, &chunks, &group);
-        points.set(Signal::Acceleration, wavering);
-    }
-    if settled && let Some(velocity) = points.find(Signal::Velocity) {
-        // The sign of the filtered velocity rings after a fast reversal, far into a slow dwell.
-        let direction = velocity.iter().map(|v| v.signum()).collect();
-        points.set(Signal::Direction, direction);
-    }
-    let target = mean(&samples.target);
+    let points = if settled { steady_means(samples, &chunks, &group) } else { means(samples, &chunks) };
+    let target = mean(&samples.target, &chunks);
     let (block, blocks) = blocks::blocks(&group, 48);
     let left_out_unit = if settled { blocks::left_out_unit(&condition, &group) } else { &condition };
     let (mut fold, folds) = blocks::folds(left_out_unit, &block, 10);
@@ -200,6 +184,36 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
     };
     replicates::believe(&mut problem, &of, inputs);
     problem
+}
+
+fn mean(values: &[f64], chunks: &[Range<usize>]) -> Vec<f64> {
+    chunks.iter().map(|c| values[c.clone()].iter().sum::<f64>() / c.len() as f64).collect()
+}
+
+fn means(samples: &Source, chunks: &[Range<usize>]) -> Signals {
+    let mut points = Signals::new(chunks.len());
+    samples.signals.iter().for_each(|(signal, values)| points.set(signal, mean(values, chunks)));
+    points
+}
+
+/// The means at constant speed: without jerk, and with the residual acceleration as the acceleration.
+fn steady_means(samples: &Source, chunks: &[Range<usize>], group: &[usize]) -> Signals {
+    let mut points = means(samples, chunks);
+    for signal in [Signal::Acceleration, Signal::Jerk] {
+        if points.find(signal).is_some() {
+            points.set(signal, vec![0.0; chunks.len()]);
+        }
+    }
+    if let Some(position) = samples.signals.find(Signal::Position) {
+        let wavering = residual_acceleration::accelerations(&samples.time_s, position, samples.step_s, chunks, group);
+        points.set(Signal::Acceleration, wavering);
+    }
+    if let Some(velocity) = points.find(Signal::Velocity) {
+        // The sign of the filtered velocity rings after a fast reversal, far into a slow dwell.
+        let direction = velocity.iter().map(|v| v.signum()).collect();
+        points.set(Signal::Direction, direction);
+    }
+    points
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use crate::preprocess::design::segments;
 use crate::preprocess::held_side::held_turns;
 use crate::preprocess::{Prepared, filter, sample_s, sweeps};
 use crate::signal::{Signal, Signals};
+use crate::stats::summary::{mean, peak, range};
 use crate::view::Constants;
 use crate::words::figure;
 use crate::{ModelError, Options};
@@ -32,21 +33,11 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let mut signals = Signals::new(run.len());
     signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
     let held_turns = held_turns(&target, link);
-    let rounding = match held_turns {
-        Some(_) => {
-            encoder_step(column("motor_position_rad"), torque).hypot(gear * encoder_step(link, torque))
-                / gear
-                / 12f64.sqrt()
-        }
-        None => 0.0,
-    };
-    let derived_velocity = match held_turns {
-        Some(_) => {
-            signals.set(Signal::Direction, segments::trend(torque));
-            false
-        }
-        None => motion(&mut signals, run, cutoff_hz, step_s),
-    };
+    let rounding = held_turns.map_or(0.0, |_| rounding(column("motor_position_rad"), link, torque, gear));
+    if held_turns.is_some() {
+        signals.set(Signal::Direction, segments::trend(torque));
+    }
+    let derived_velocity = held_turns.is_none() && motion(&mut signals, run, cutoff_hz, step_s);
     for (name, signal) in [("temperature_c", Signal::Temperature), ("repeat", Signal::Repeat)] {
         if let Some(values) = run.column(name) {
             signals.set(signal, values.to_vec());
@@ -66,12 +57,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         time_s,
         constants: Constants { held_turns, rounding, ..Constants::default() },
     };
-    let mut smooth = torque.to_vec();
-    let chunk = source.chunk(CHUNK_S);
-    for leg in source.legs() {
-        let even = source.even_part(&leg, chunk);
-        smooth[even.clone()].copy_from_slice(&smooth_leg(&torque[even]));
-    }
+    let smooth = smooth(&source, torque);
     source.signals.set(Signal::Load, smooth);
     let inputs = [Signal::Velocity, Signal::Load].map(Same::Value);
     let mut prepared = sweeps::prepare(run, source, CHUNK_S, &inputs, options)?;
@@ -89,13 +75,17 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     Ok(prepared)
 }
 
+/// Standard deviation of the twist from the rounding of both encoders [rad].
+fn rounding(motor: &[f64], link: &[f64], torque: &[f64], gear: f64) -> f64 {
+    encoder_step(motor, torque).hypot(gear * encoder_step(link, torque)) / gear / 12f64.sqrt()
+}
+
 /// The count of an encoder [rad], a power of two in a turn: the readings are multiples of it, while the torque that
 /// moves the angle is continuous. Zero if no count is detected.
 fn encoder_step(angle: &[f64], torque: &[f64]) -> f64 {
     /// Resultant length of readings on multiples with a noise of a fifth of a count, and of arbitrary angles.
     const ON: f64 = 0.5;
     const ANYWHERE: f64 = 0.25;
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (middle, centre) = (mean(angle), mean(torque));
     let product =
         |f: &dyn Fn(f64, f64) -> f64| angle.iter().zip(torque).map(|(a, t)| f(a - middle, t - centre)).sum::<f64>();
@@ -108,11 +98,8 @@ fn encoder_step(angle: &[f64], torque: &[f64]) -> f64 {
             .fold((0.0, 0.0), |s, v| (s.0 + v.0, s.1 + v.1));
         sin.hypot(cos) / values.len() as f64
     };
-    let range = |values: &[f64]| {
-        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-        high - low
-    };
-    let travel = range(&moved);
+    let (low, high) = range(&moved);
+    let travel = high - low;
     let mut steps =
         (8..=24).map(|bits| std::f64::consts::TAU / f64::from(1u32 << bits)).filter(|step| 2.0 * step < travel);
     let is_counted = |step: &f64| on_multiples(angle, *step) > ON && on_multiples(&moved, *step) < ANYWHERE;
@@ -133,7 +120,7 @@ fn motion(signals: &mut Signals, run: &RunTable, cutoff_hz: f64, step_s: f64) ->
         },
         <[f64]>::to_vec,
     );
-    let fastest = velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let fastest = peak(&velocity);
     signals.set(Signal::Direction, segments::direction(&velocity, 0.01 * fastest));
     signals.set(Signal::Link, link.to_vec());
     signals.set(Signal::Position, column("motor_position_rad").to_vec());
@@ -144,7 +131,6 @@ fn motion(signals: &mut Signals, run: &RunTable, cutoff_hz: f64, step_s: f64) ->
 /// Subtracts a separate zero of each repeat if the zeros differ by more than the variation within the repeats.
 /// Returns their RMS difference.
 fn own_zeros(twist: &mut [f64], repeat: &[i64]) -> Option<f64> {
-    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
     let all = mean(twist);
     let mut sums: BTreeMap<i64, (f64, f64)> = BTreeMap::new();
     for (t, r) in twist.iter().zip(repeat) {
@@ -163,6 +149,17 @@ fn own_zeros(twist: &mut [f64], repeat: &[i64]) -> Option<f64> {
 
 /// Numbers of Chebyshev polynomials to choose from.
 const ORDERS: [usize; 5] = [3, 5, 8, 11, 15];
+
+/// The torque, smoothed within the even part of each leg.
+fn smooth(source: &Source, torque: &[f64]) -> Vec<f64> {
+    let mut smooth = torque.to_vec();
+    let chunk = source.chunk(CHUNK_S);
+    for leg in source.legs() {
+        let even = source.even_part(&leg, chunk);
+        smooth[even.clone()].copy_from_slice(&smooth_leg(&torque[even]));
+    }
+    smooth
+}
 
 /// The torque of a leg without sensor noise, which would disturb hysteresis and sign terms. A filter across the
 /// reversal would blur exactly what these terms depend on. One smooth curve if it leaves only noise, otherwise one

@@ -8,6 +8,7 @@ use crate::preprocess::design::replicates::Same;
 use crate::preprocess::{Prepared, Problem, current_dwells, initial_hysteresis_state, loading_history};
 use crate::report::fit::Preparation;
 use crate::signal::Signal;
+use crate::stats::summary::peak;
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Kind, RunTable};
 use std::ops::Range;
@@ -24,34 +25,7 @@ pub fn prepare(
 ) -> Result<Prepared, ModelError> {
     let raw = options.residual == Some(ResidualKind::Raw);
     let n = if raw { 1 } else { samples.chunk(options.chunk_s.unwrap_or(chunk_s)) };
-    let legs = samples.legs();
-    let conditions = conditions(&samples, &legs, inputs);
-    let thin = if raw { 1 } else { (run.len() / n).div_ceil(MOST_ROWS).max(1) };
-    let (mut chunks, mut group, mut phase, mut condition) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (number, leg) in legs.iter().enumerate() {
-        let leg = match run.kind() {
-            Kind::Stiffness | Kind::Brake => samples.even_part(leg, n),
-            _ => leg.clone(),
-        };
-        let held = match (run.kind(), samples.signals.find(Signal::Current)) {
-            (Kind::Brake, Some(current)) => current_dwells::held(&current[leg.clone()], n),
-            _ => Vec::new(),
-        };
-        // One chunk of several, not their mean, which would attenuate a short wave.
-        for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n * thin).enumerate() {
-            if held.get(k * thin) == Some(&false) {
-                continue;
-            }
-            chunks.push(start..start + n);
-            group.push(number);
-            phase.push(k);
-            condition.push(conditions[number]);
-        }
-    }
-    if chunks.len() < 12 {
-        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks" });
-    }
-    let layout = Layout { chunks, group, condition, phase: Some(phase), settled: false, inputs };
+    let layout = layout(&samples, run, inputs, n, raw)?;
     let mut main = problem(&samples, layout);
     let mut doubts = crate::preprocess::checks::metadata::doubts(run);
     doubts.extend(past(&mut main, run.kind()));
@@ -83,6 +57,44 @@ pub fn prepare(
     Ok(Prepared { clashes, doubts, ..Prepared::of(run, main, about) })
 }
 
+/// The chunks of all legs, of `n` samples each. A `raw` run keeps all of them.
+fn layout<'a>(
+    samples: &Source,
+    run: &RunTable,
+    inputs: &'a [Same],
+    n: usize,
+    raw: bool,
+) -> Result<Layout<'a>, ModelError> {
+    let legs = samples.legs();
+    let conditions = conditions(samples, &legs, inputs);
+    let thin = if raw { 1 } else { (run.len() / n).div_ceil(MOST_ROWS).max(1) };
+    let (mut chunks, mut group, mut phase, mut condition) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (number, leg) in legs.iter().enumerate() {
+        let leg = match run.kind() {
+            Kind::Stiffness | Kind::Brake => samples.even_part(leg, n),
+            _ => leg.clone(),
+        };
+        let held = match (run.kind(), samples.signals.find(Signal::Current)) {
+            (Kind::Brake, Some(current)) => current_dwells::held(&current[leg.clone()], n),
+            _ => Vec::new(),
+        };
+        // One chunk of several, not their mean, which would attenuate a short wave.
+        for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n * thin).enumerate() {
+            if held.get(k * thin) == Some(&false) {
+                continue;
+            }
+            chunks.push(start..start + n);
+            group.push(number);
+            phase.push(k);
+            condition.push(conditions[number]);
+        }
+    }
+    if chunks.len() < 12 {
+        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks" });
+    }
+    Ok(Layout { chunks, group, condition, phase: Some(phase), settled: false, inputs })
+}
+
 /// A loading history before the run, in a sentence.
 fn past(main: &mut Problem, kind: Kind) -> Option<String> {
     let (signal, message) = match kind {
@@ -107,7 +119,7 @@ fn conditions(samples: &Source, legs: &[Range<usize>], inputs: &[Same]) -> Vec<u
     for same in inputs {
         let Some(values) = samples.signals.find(same.signal()) else { continue };
         let values = same.of(values);
-        let peak = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        let peak = peak(&values);
         let early = |leg: &Range<usize>| leg.start + leg.len() / 4..leg.start + leg.len() / 2;
         let late = |leg: &Range<usize>| leg.end - leg.len() / 4..leg.end;
         for part in [early as fn(&Range<usize>) -> Range<usize>, late] {

@@ -2,12 +2,14 @@
 //! error.
 
 use crate::effects;
+use crate::effects::friction::{presliding, signal_delay};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
 use crate::preprocess::form_error::{ErrorColumn, FormError, Lives};
 use crate::regression::evidence::LEAST_VISIBLE;
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
 use crate::regression::weights::weights;
+use crate::stats::jackknife;
 use jointbench_instrument::Kind;
 use std::sync::Arc;
 
@@ -17,8 +19,8 @@ const FIRST_RIDGE: f64 = 1e-4;
 const REWEIGHTED: usize = 2;
 
 /// The delay, whose column is the jerk, and presliding, which changes the friction direction.
-pub const DELAY: &str = "signal_delay";
-pub const PRESLIDING: &str = "presliding";
+pub const DELAY: &str = signal_delay::ID;
+pub const PRESLIDING: &str = presliding::ID;
 
 /// Nuisance columns of a model: form error, by its place in the list, and other forms of the effects.
 pub struct Nuisance<'a> {
@@ -134,11 +136,7 @@ impl Solution {
     /// Standard errors of the coefficients of the effects, by a jackknife over blocks.
     pub fn standard_errors(&self) -> Vec<f64> {
         let replicates: Vec<Vec<f64>> = self.ridge.replicates().collect();
-        let groups = replicates.len() as f64;
-        let of = |k: usize| {
-            let mean = replicates.iter().map(|r| r[k]).sum::<f64>() / groups;
-            ((groups - 1.0) / groups * replicates.iter().map(|r| (r[k] - mean).powi(2)).sum::<f64>()).sqrt()
-        };
+        let of = |k: usize| jackknife::variance_about_mean(replicates.iter().map(|r| r[k])).sqrt();
         (0..self.coefficients.len()).map(of).collect()
     }
 

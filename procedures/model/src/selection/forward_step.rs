@@ -1,7 +1,8 @@
 //! One forward step: the best candidate, its significance, and the effects that are confounded with it.
 
+use crate::Options;
 use crate::linear::augmented_gram::AugmentedGrams;
-use crate::regression::candidates::CandidateSet;
+use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::linear_model::{LinearModel, Term, varpro};
 use crate::regression::partial_regression::{Orthogonalized, PartialRegression};
 use crate::regression::significance::family_wise;
@@ -42,20 +43,34 @@ pub fn step<'p>(
     bar: AcceptanceThreshold,
 ) -> Option<(ScoredCandidate<'p>, Vec<&'p str>)> {
     let options = bar.options;
-    let problem = now.problem;
     let ground = PartialRegression::of(now);
-    let PartialRegression { basis, residual, energy, .. } = &ground;
-    let energy = *energy;
-    if now.is_negligible((energy / problem.rows() as f64).sqrt(), bar.kind) {
+    if now.is_negligible((ground.energy / now.problem.rows() as f64).sqrt(), bar.kind) {
         return None;
     }
-    let is_open = |id| !now.contains(id) && !withdrawn.contains(&id);
-    let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
-    let gains: Vec<Orthogonalized> = open.par_iter().map(|i| ground.own(&library.candidates[*i].columns)).collect();
+    let is_open = |candidate: &&Regressor| !now.contains(candidate.id()) && !withdrawn.contains(&candidate.id());
+    let open: Vec<&Regressor> = library.candidates.iter().filter(is_open).collect();
+    let gains: Vec<Orthogonalized> = open.par_iter().map(|candidate| ground.own(&candidate.columns)).collect();
+    let best = short_list(&open, &gains, options);
+    if best.is_empty() {
+        return None;
+    }
+    let acceptable = acceptable(now, &best, &ground, bar);
+    let (mut ranked, present) = cross_validated(now, &acceptable, &ground.residual);
+    let (winner, ties) = winner_and_ties(now, &ranked, present, library, options)?;
+    let mut scored = ranked.swap_remove(winner);
+    let scores = open.par_iter().zip(&gains).map(|(candidate, own)| ground.score(&candidate.columns, own)).collect();
+    scored.p_value = family_wise(&scored.term.columns, scores, &ground, options);
+    (scored.p_value <= options.alpha).then_some((scored, ties))
+}
 
-    // The best grid point of each form of each effect, by decreasing partial R².
+/// The best grid point of each form of each effect, by decreasing partial R².
+fn short_list<'l, 'p>(
+    open: &[&'l Regressor<'p>],
+    gains: &[Orthogonalized],
+    options: &Options,
+) -> Vec<&'l Regressor<'p>> {
     let mut best: Vec<usize> = Vec::new();
-    let form = |at: usize| (library.candidates[open[at]].id(), library.candidates[open[at]].form.name);
+    let form = |at: usize| (open[at].id(), open[at].form.name);
     for at in 0..open.len() {
         match best.iter_mut().find(|b| form(**b) == form(at)) {
             Some(b) if gains[at].share > gains[*b].share => *b = at,
@@ -66,31 +81,47 @@ pub fn step<'p>(
     best.sort_by(|a, b| gains[*b].share.total_cmp(&gains[*a].share));
     best.truncate(SHORT_LIST);
     best.retain(|b| gains[*b].share > 0.5 * options.practical_share);
-    if best.is_empty() {
-        return None;
-    }
+    best.into_iter().map(|at| open[at]).collect()
+}
 
-    let least_share = bar.least_share(energy);
-    let worth_it: Vec<(Term, f64)> = best
-        .par_iter()
-        .map(|b| {
-            let mut term = [library.candidates[open[*b]].term(problem)];
-            let sse = varpro(&mut term, basis, residual, problem);
+/// The refined candidates that no acceptance rule refuses, each with its partial R².
+fn acceptable<'p>(
+    now: &LinearModel<'p>,
+    best: &[&Regressor<'p>],
+    ground: &PartialRegression,
+    bar: AcceptanceThreshold,
+) -> Vec<(Term<'p>, f64)> {
+    let PartialRegression { basis, residual, energy, .. } = ground;
+    let least_share = bar.least_share(*energy);
+    best.par_iter()
+        .map(|candidate| {
+            let mut term = [candidate.term(now.problem)];
+            let sse = varpro(&mut term, basis, residual, now.problem);
             let [term] = term;
             let possible =
                 term.allows(&ground.own(&term.columns).coefficients()) && bar.keeps_parameters_feasible(now, &term);
             let possible = possible
-                && !between_leg_variance::is_random_leg_effect(&term, now, &ground, bar.kind, options)
-                && !aliasing::is_none(&term, now, &ground);
-            let sse = if possible { sse } else { energy };
+                && !between_leg_variance::is_random_leg_effect(&term, now, ground, bar.kind, bar.options)
+                && !aliasing::is_none(&term, now, ground);
+            let sse = if possible { sse } else { *energy };
             (term, 1.0 - sse / energy)
         })
         .filter(|(term, share)| *share >= least_share.max(aliasing::least_share(term)))
-        .collect();
-    let sets = std::iter::once([].as_slice()).chain(worth_it.iter().map(|(term, _)| term.columns.as_slice()));
+        .collect()
+}
+
+/// The candidates that reduce the validation error, by increasing error, and the present error. The best form of an
+/// effect represents all its forms.
+fn cross_validated<'p>(
+    now: &LinearModel<'p>,
+    candidates: &[(Term<'p>, f64)],
+    residual: &[f64],
+) -> (Vec<ScoredCandidate<'p>>, f64) {
+    let problem = now.problem;
+    let sets = std::iter::once([].as_slice()).chain(candidates.iter().map(|(term, _)| term.columns.as_slice()));
     let grams = AugmentedGrams::new(&now.columns(), sets, residual, &problem.fold, problem.folds);
     let present: f64 = grams.grams(0).validation_losses().iter().sum();
-    let mut ranked: Vec<ScoredCandidate> = worth_it
+    let mut ranked: Vec<ScoredCandidate> = candidates
         .par_iter()
         .enumerate()
         .map(|(k, (term, share))| {
@@ -106,7 +137,6 @@ pub fn step<'p>(
         .filter(|r| r.validation_losses < present)
         .collect();
     ranked.sort_by(|a, b| a.validation_losses.total_cmp(&b.validation_losses));
-    // The best form of an effect represents all its forms.
     let mut seen: Vec<&str> = Vec::new();
     ranked.retain(|r| {
         !seen.contains(&r.term.id()) && {
@@ -114,13 +144,22 @@ pub fn step<'p>(
             true
         }
     });
-    let first = ranked.first()?;
+    (ranked, present)
+}
 
+/// Among equal candidates the one with the fewest columns wins, then the first one in the order of the library.
+fn winner_and_ties<'p>(
+    now: &LinearModel<'p>,
+    ranked: &[ScoredCandidate<'p>],
+    present: f64,
+    library: &CandidateSet,
+    options: &Options,
+) -> Option<(usize, Vec<&'p str>)> {
+    let first = ranked.first()?;
     let mut ties: Vec<usize> = (1..ranked.len()).filter(|i| is_tie(&first.losses, &ranked[*i].losses)).collect();
-    // Among equal candidates the one with the fewest columns wins, then the first one in the order of the library.
     let near = |i: &usize| {
         let gain = |i: usize| present - ranked[i].validation_losses;
-        let as_good = ranked[*i].validation_losses < (1.0 + options.practical_share) * ranked[0].validation_losses;
+        let as_good = ranked[*i].validation_losses < (1.0 + options.practical_share) * first.validation_losses;
         as_good && gain(*i) >= SIMPLER_GAIN * gain(0)
     };
     let rank = |i: &usize| {
@@ -130,11 +169,5 @@ pub fn step<'p>(
     let winner = ties.iter().copied().filter(near).chain([0]).min_by_key(rank).unwrap_or(0);
     ties.push(0);
     ties.retain(|i| *i != winner && !encompasses(now, &ranked[winner].term, &ranked[*i].term, options));
-
-    let ties = ties.into_iter().map(|i| ranked[i].term.id()).collect();
-    let mut scored = ranked.swap_remove(winner);
-    let scores =
-        open.par_iter().zip(&gains).map(|(i, own)| ground.score(&library.candidates[*i].columns, own)).collect();
-    scored.p_value = family_wise(&scored.term.columns, scores, &ground, options);
-    (scored.p_value <= options.alpha).then_some((scored, ties))
+    Some((winner, ties.into_iter().map(|i| ranked[i].term.id()).collect()))
 }

@@ -10,12 +10,12 @@ use crate::linear::basis::dot;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::alone;
+use crate::regression::solution::DELAY;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::{DELAY_HALF_WIDTHS, DELAY_POWER, DELAY_ROWS};
 
-const DELAY: &str = "signal_delay";
 /// The coefficient of the delay divided by the inertia is the delay time.
 const INERTIA: &str = "inertia";
 

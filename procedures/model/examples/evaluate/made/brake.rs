@@ -24,6 +24,7 @@ struct Iron {
     steep: f64,
     /// Domains that switch back when the current has fallen this far, each with its share.
     domains: Vec<(f64, f64)>,
+    drag: f64,
     eddies: f64,
     air: f64,
     pull: f64,
@@ -55,7 +56,29 @@ impl Iron {
         let raised = current.max(0.0).powf(self.steep);
         raised / (raised + self.half.powf(self.steep)) * (1.0 + self.half.powf(self.steep))
     }
+
+    /// Torque at a state of the domains and an angle of the poles.
+    fn torque(&self, bent: &[f64], current: f64, speed: f64, warmth: f64, poles: f64) -> f64 {
+        let mut torque = self.drag + self.curve(current);
+        for (bent, (_, part)) in bent.iter().zip(&self.domains) {
+            torque -= part * bent;
+        }
+        torque * (1.0 + self.eddies * speed / 60.0) * (1.0 - self.warm * warmth)
+            + self.air * speed / 60.0
+            + self.pull * current * poles.sin()
+    }
 }
+
+const NAMES: [&str; 8] = [
+    "time_s",
+    "brake_current_a",
+    "brake_torque_nm",
+    "velocity_rad_s",
+    "position_rad",
+    "temperature_c",
+    "segment",
+    "repeat",
+];
 
 pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
     let rated = *dice.pick(&[0.6, 1.0, 1.5, 2.0]);
@@ -63,7 +86,7 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
     let poles = *dice.pick(&[12u32, 16, 20, 24]);
     let mut iron = Iron::default();
     hidden.iter().for_each(|h| iron.hide(h, dice));
-    let drag = dice.uniform(0.005, 0.02);
+    iron.drag = dice.uniform(0.005, 0.02);
     let mut noise = Coloured::new(dice.uniform(1e-3, 4e-3), dice.uniform(0.1, 0.5), dice.uniform(0.6, 0.9));
     let scatter = dice.uniform(5e-5, 2e-4);
     let speeds = [5.0, 20.0, 60.0].map(|v| v * dice.uniform(0.8, 1.2));
@@ -71,7 +94,7 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
 
     let (mut angle, mut time, mut segment, mut last) = (0.0, 0.0f64, 0.0, 0.0);
     let mut bent = vec![0.0f64; iron.domains.len()];
-    let mut columns = vec![Vec::new(); 8];
+    let mut columns = vec![Vec::new(); NAMES.len()];
     for repeat in 0..3 {
         for speed in speeds {
             for up in [true, false] {
@@ -82,15 +105,11 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
                     time += STEP_S;
                     angle += speed * STEP_S;
                     let warmth = heating * (1.0 - (-time / heats_s).exp());
-                    let mut torque = drag + iron.curve(current);
-                    for (bent, (wide, part)) in bent.iter_mut().zip(&iron.domains) {
+                    for (bent, (wide, _)) in bent.iter_mut().zip(&iron.domains) {
                         *bent = (*bent + (current - last) / wide).clamp(-1.0, 1.0);
-                        torque -= part * *bent;
                     }
                     last = current;
-                    torque = torque * (1.0 + iron.eddies * speed / 60.0) * (1.0 - iron.warm * warmth)
-                        + iron.air * speed / 60.0
-                        + iron.pull * current * (f64::from(poles) * angle + phase).sin();
+                    let torque = iron.torque(&bent, current, speed, warmth, f64::from(poles) * angle + phase);
                     let values = [
                         time,
                         rated * (current + 4e-4 * dice.normal()),
@@ -107,16 +126,6 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
             }
         }
     }
-    let names = [
-        "time_s",
-        "brake_current_a",
-        "brake_torque_nm",
-        "velocity_rad_s",
-        "position_rad",
-        "temperature_c",
-        "segment",
-        "repeat",
-    ];
     let meta = Meta {
         kind: Some(Kind::Brake),
         rated_current_a: Some(rated),
@@ -125,5 +134,5 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
         sample_rate_hz: Some(1.0 / STEP_S),
         ..Meta::default()
     };
-    table(meta, names.map(String::from).into(), columns)
+    table(meta, NAMES.map(String::from).into(), columns)
 }

@@ -38,6 +38,7 @@ struct Ring {
     play: f64,
     warm: f64,
     slip: (f64, f64),
+    zero: f64,
     zeros: [f64; 3],
     phase: f64,
 }
@@ -60,6 +61,16 @@ impl Ring {
         }
     }
 
+    /// Angle of the encoder behind its play, at first without a past.
+    fn carried(&self, before: f64, shaft: f64) -> f64 {
+        if before.is_nan() { shaft } else { before.clamp(shaft - self.play, shaft + self.play) }
+    }
+
+    fn read(&self, angle: f64, time: f64, warmth: f64, repeat: usize) -> f64 {
+        let jump = if time > self.slip.0 { self.slip.1 } else { 0.0 };
+        angle + self.error(angle) + self.zero + self.warm * warmth + jump + self.zeros[repeat]
+    }
+
     /// Error of the reading at a true angle.
     fn error(&self, angle: f64) -> f64 {
         let (s, c) = (angle + self.phase).sin_cos();
@@ -76,6 +87,9 @@ impl Ring {
     }
 }
 
+const NAMES: [&str; 7] =
+    ["time_s", "reference_position_rad", "test_position_rad", "velocity_rad_s", "temperature_c", "segment", "repeat"];
+
 pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
     let pole_pairs = *dice.pick(&[16u32, 32, 64]);
     let slow = dice.uniform(1.0, 2.5);
@@ -88,7 +102,7 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
         ring.hide("delay", last_s, dice);
     }
     hidden.iter().for_each(|h| ring.hide(h, last_s, dice));
-    let zero = dice.uniform(-3.0, 3.0);
+    ring.zero = dice.uniform(-3.0, 3.0);
     let (test_bits, reference_bits) = (*dice.pick(&[16u32, 18]), *dice.pick(&[14u32, 16]));
     let (test_step, reference_step) = (TAU / f64::from(1u32 << test_bits), TAU / f64::from(1u32 << reference_bits));
     let mut noise = Coloured::new(dice.size(3e-5, 8e-5), dice.uniform(0.1, 0.5), dice.uniform(0.7, 0.95));
@@ -97,7 +111,7 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
 
     let (mut angle, mut velocity, mut carried, mut segment) = (dice.phase(), 0.0f64, f64::NAN, 0.0);
     let mut time = 0.0f64;
-    let mut columns = vec![Vec::new(); 7];
+    let mut columns = vec![Vec::new(); NAMES.len()];
     for repeat in 0..3 {
         for (speed, lasts_s) in speeds.iter().zip(lasts_s) {
             for side in [1.0, -1.0] {
@@ -106,15 +120,9 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
                     time += STEP_S;
                     velocity += (side * pace - velocity).clamp(-3.0, 3.0);
                     angle += velocity * STEP_S;
-                    let delayed = angle - velocity * ring.delay_s;
-                    carried = if carried.is_nan() {
-                        delayed
-                    } else {
-                        carried.clamp(delayed - ring.play, delayed + ring.play)
-                    };
+                    carried = ring.carried(carried, angle - velocity * ring.delay_s);
                     let warmth = heating * (1.0 - (-time / heats_s).exp());
-                    let jump = if time > ring.slip.0 { ring.slip.1 } else { 0.0 };
-                    let read = carried + ring.error(carried) + zero + ring.warm * warmth + jump + ring.zeros[repeat];
+                    let read = ring.read(carried, time, warmth, repeat);
                     let values = [
                         time,
                         rounded(angle + 4e-5 * dice.normal(), reference_step).rem_euclid(TAU),
@@ -130,15 +138,6 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
             }
         }
     }
-    let names = [
-        "time_s",
-        "reference_position_rad",
-        "test_position_rad",
-        "velocity_rad_s",
-        "temperature_c",
-        "segment",
-        "repeat",
-    ];
     let meta = Meta {
         kind: Some(Kind::Encoder),
         reference_bits: Some(reference_bits),
@@ -148,5 +147,5 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
         sample_rate_hz: Some(1.0 / STEP_S),
         ..Meta::default()
     };
-    table(meta, names.map(String::from).into(), columns)
+    table(meta, NAMES.map(String::from).into(), columns)
 }

@@ -69,7 +69,47 @@ impl Train {
         }
         twist + self.soft_teeth * (torque / 0.25).atan()
     }
+
+    /// Twist under a torque at a link angle, both as shares of the full values.
+    fn twist(&self, past: &Past, torque: f64, side: f64, warmth: f64, link: f64) -> f64 {
+        let mut twist = self.spring(torque) * (1.0 + self.warm * warmth);
+        twist += self.rest * side + self.gap * (torque / 0.01).clamp(-1.0, 1.0);
+        for (bent, (slips, carries)) in past.bent.iter().zip(&self.contacts) {
+            twist += carries * bent / slips;
+        }
+        twist += self.slow.0 * past.crept;
+        let (order, size, phase) = self.uneven;
+        twist + size * (order * link + phase).cos()
+    }
 }
+
+/// Loading history of a gear train.
+struct Past {
+    /// Deflection of each dry contact.
+    bent: Vec<f64>,
+    crept: f64,
+}
+
+impl Past {
+    /// One time step under a torque, after its change by `added`.
+    fn load(&mut self, train: &Train, torque: f64, added: f64) {
+        for (bent, (slips, _)) in self.bent.iter_mut().zip(&train.contacts) {
+            *bent = (*bent + added).clamp(-slips, *slips);
+        }
+        self.crept += (torque - self.crept) * (1.0 - (-STEP_S / train.slow.1.max(1e-9)).exp());
+    }
+}
+
+const NAMES: [&str; 8] = [
+    "time_s",
+    "motor_position_rad",
+    "link_position_rad",
+    "link_velocity_rad_s",
+    "link_torque_nm",
+    "temperature_c",
+    "segment",
+    "repeat",
+];
 
 pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
     let gear = *dice.pick(&[36.0, 50.0, 100.0, 121.0, 177.8]);
@@ -86,9 +126,9 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
     let (heating, heats_s) = (dice.uniform(6.0, 14.0), dice.uniform(50.0, 120.0));
     let (motor_step, link_step) = (TAU / 4096.0, TAU / 524_288.0);
 
-    let (mut link, mut torque, mut crept, mut time, mut segment) = (0.0f64, 0.0f64, 0.0, 0.0f64, 0.0);
-    let mut bent = vec![0.0f64; train.contacts.len()];
-    let mut columns = vec![Vec::new(); 8];
+    let (mut link, mut torque, mut time, mut segment) = (0.0f64, 0.0f64, 0.0f64, 0.0);
+    let mut past = Past { bent: vec![0.0; train.contacts.len()], crept: 0.0 };
+    let mut columns = vec![Vec::new(); NAMES.len()];
     for repeat in 0..3 {
         for level in &levels {
             for side in [1.0, -1.0] {
@@ -100,16 +140,8 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
                     torque += (side * level - torque) * (1.0 - (-STEP_S / rise_s).exp());
                     let share = torque / full_nm;
                     let warmth = heating * (1.0 - (-time / heats_s).exp());
-                    let mut twist = train.spring(share) * (1.0 + train.warm * warmth);
-                    twist += train.rest * side + train.gap * (share / 0.01).clamp(-1.0, 1.0);
-                    for (bent, (slips, carries)) in bent.iter_mut().zip(&train.contacts) {
-                        *bent = (*bent + (torque - before) / full_nm).clamp(-slips, *slips);
-                        twist += carries * *bent / slips;
-                    }
-                    crept += (share - crept) * (1.0 - (-STEP_S / train.slow.1.max(1e-9)).exp());
-                    twist += train.slow.0 * crept;
-                    let (order, size, phase) = train.uneven;
-                    twist += size * (order * link + phase).cos();
+                    past.load(&train, share, (torque - before) / full_nm);
+                    let twist = train.twist(&past, share, side, warmth, link);
                     let motor = (link + zero + full_twist * twist + moved + noise.next(dice)) * gear;
                     let values = [
                         time,
@@ -127,16 +159,6 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
             }
         }
     }
-    let names = [
-        "time_s",
-        "motor_position_rad",
-        "link_position_rad",
-        "link_velocity_rad_s",
-        "link_torque_nm",
-        "temperature_c",
-        "segment",
-        "repeat",
-    ];
     let meta = Meta {
         kind: Some(Kind::Stiffness),
         gear_ratio: Some(gear),
@@ -144,5 +166,5 @@ pub fn make(dice: &mut Dice, hidden: &[&str]) -> RunTable {
         sample_rate_hz: Some(1.0 / STEP_S),
         ..Meta::default()
     };
-    table(meta, names.map(String::from).into(), columns)
+    table(meta, NAMES.map(String::from).into(), columns)
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, orders, waves};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -50,5 +51,10 @@ impl Effect for Cogging {
             columns.iter_mut().for_each(|c| c.iter_mut().zip(current).for_each(|(c, i)| *c *= i));
         }
         columns.into()
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        let times = if form.name == "excited" { " * current" } else { "" };
+        Ok(waves("position", times, &orders(form)))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{Column, FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -84,6 +85,36 @@ impl Effect for Saturation {
             _ => vec![view.map(Signal::Current, |i| ((i - shape[0]) / shape[1]).tanh() + (shape[0] / shape[1]).tanh())],
         }
     }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        let power = |n: usize| Column::Formula(vec!["current"; n].join(" * "));
+        match form.name {
+            "polynomial" => Ok([2, 3].map(power).into()),
+            "quintic" => Ok([2, 3, 4, 5].map(power).into()),
+            "curve" => Ok((2..).take(form.linear).map(|n| Column::Formula(from_zero(n))).collect()),
+            "tanh" => formula("tanh(current / i_s)"),
+            _ => formula("tanh((current - i_0) / i_s) + tanh(i_0 / i_s)"),
+        }
+    }
+}
+
+/// Chebyshev polynomial minus its value at zero current, as a formula for a controller.
+fn from_zero(degree: usize) -> String {
+    let sign = if degree.is_multiple_of(2) { '-' } else { '+' };
+    format!("({} {sign} 1)", horner(degree))
+}
+
+/// Chebyshev polynomial over the range of currents, by Horner's rule.
+fn horner(degree: usize) -> String {
+    let next = |before: &[i64], now: &[i64]| -> Vec<i64> {
+        let at = |c: &[i64], k: Option<usize>| k.and_then(|k| c.get(k)).copied().unwrap_or(0);
+        (0..=now.len()).map(|k| 2 * at(now, k.checked_sub(1)) - at(before, Some(k))).collect()
+    };
+    let (_, coefficients) =
+        (1..degree).fold((vec![1], vec![0, 1]), |(before, now), _| (now.clone(), next(&before, &now)));
+    let rest = coefficients.iter().rev().map(i64::to_string);
+    rest.reduce(|inner, coefficient| format!("({inner}) * (2 * current / i_max - 1) + {coefficient}"))
+        .unwrap_or_default()
 }
 
 fn chebyshev(degree: usize, x: f64) -> f64 {

@@ -7,6 +7,10 @@ use crate::effect::{Form, Shape, ShapeSearch};
 use crate::signal::Signal;
 use crate::view::View;
 
+/// Why a controller cannot compute such an effect.
+pub const NOT_IN_A_CONTROLLER: &str =
+    "it grows with the torque that current and history explain, which is known for a recording only";
+
 /// The usual value of a signal while the brake holds: its mean, weighted with the squared torque.
 pub fn usual(view: &View, signal: Signal, of: impl Fn(f64) -> f64) -> f64 {
     let weights = view.get(Signal::Drive).iter().map(|d| d * d);

@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::effects::brake::scaled;
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -42,5 +43,13 @@ impl Effect for TemperatureDependence {
             "excited" => view.map2(Signal::Temperature, Signal::Current, |t, i| (t - 25.0) * i),
             _ => view.map2(Signal::Temperature, Signal::Drive, |t, d| (t - shape[0]) * d),
         }]
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        match form.name {
+            "plain" => formula("temperature - 25"),
+            "excited" => formula("(temperature - 25) * current"),
+            _ => Err(scaled::NOT_IN_A_CONTROLLER),
+        }
     }
 }

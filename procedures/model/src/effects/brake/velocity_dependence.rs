@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::effects::brake::scaled;
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -50,6 +51,14 @@ impl Effect for VelocityDependence {
             "excited" => view.map2(Signal::Velocity, Signal::Current, |w, i| w.abs() * i),
             _ => view.map2(Signal::Velocity, Signal::Drive, |w, t| (w.abs() - shape[0]) * t),
         }]
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        match form.name {
+            "plain" => formula("abs(velocity)"),
+            "excited" => formula("abs(velocity) * current"),
+            _ => Err(scaled::NOT_IN_A_CONTROLLER),
+        }
     }
 }
 

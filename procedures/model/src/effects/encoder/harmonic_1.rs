@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, waves};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -33,5 +34,9 @@ impl Effect for Harmonic1 {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         view.harmonic(Signal::Position, 1.0).into()
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        Ok(waves("position", "", &["1"]))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, orders, waves};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -43,5 +44,9 @@ impl Effect for HarmonicN {
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         view.harmonic(Signal::Position, shape[0]).into()
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        Ok(waves("position", "", &orders(form)))
     }
 }

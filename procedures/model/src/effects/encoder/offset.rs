@@ -1,6 +1,7 @@
 //! Offset.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -29,5 +30,9 @@ impl Effect for Offset {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![vec![1.0; view.len()]]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("1")
     }
 }

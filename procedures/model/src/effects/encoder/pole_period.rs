@@ -2,13 +2,14 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, waves};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct PolePeriod;
 
 /// Name of the form without the second harmonic.
-pub(crate) const FUNDAMENTAL: &str = "fundamental";
+const FUNDAMENTAL: &str = "fundamental";
 
 static INFO: EffectInfo = EffectInfo {
     id: "pole_period",
@@ -52,5 +53,10 @@ impl Effect for PolePeriod {
             columns.extend(view.harmonic(Signal::Position, 2.0 * shape[0]));
         }
         columns
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        let orders = ["pole_pairs", "2 * pole_pairs"];
+        Ok(waves("position", "", if form.name == FUNDAMENTAL { &orders[..1] } else { &orders }))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -35,5 +36,9 @@ impl Effect for Slip {
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         vec![view.map(Signal::Time, |t| if t >= shape[0] { 1.0 } else { 0.0 })]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("max(sign(time - t_s), 0)")
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic};
 use crate::view::View;
 use jointbench_instrument::Kind;
 use std::sync::LazyLock;
@@ -45,6 +46,10 @@ impl Effect for StartupOffset {
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         let is = |k: f64| view.map(Signal::Repeat, |r| f64::from(u8::from(r == k)));
         restarts(view).into_iter().map(is).collect()
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        Err("it has an offset for each power-up of the recording, and a controller's own is another")
     }
 }
 

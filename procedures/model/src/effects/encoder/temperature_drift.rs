@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -30,5 +31,13 @@ impl Effect for TemperatureDrift {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.map(Signal::Temperature, |t| t - 25.0)]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("temperature - 25")
+    }
+
+    fn over_time(&self) -> Option<&'static str> {
+        Some("over_time: error = a * time; a [rad/s]")
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, orders, waves};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -50,6 +51,10 @@ impl Effect for Cogging {
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         shape.iter().flat_map(|h| view.harmonic(Signal::Position, *h)).collect()
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        Ok(waves("position", "", &orders(form)))
     }
     fn extended(&self, form: &Form) -> Option<(&'static str, Form<'static>)> {
         crate::effects::one_more_harmonic(form)

@@ -1,6 +1,7 @@
 //! Direction offset.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -30,6 +31,10 @@ impl Effect for DirectionOffset {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![vec![1.0; view.len()]]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("1")
     }
 
     fn same_as(&self, view: &View) -> Option<&'static str> {

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -50,5 +51,12 @@ impl Effect for Drift {
             "settling" => view.map(Signal::Time, |t| 1.0 - (-t / shape[0]).exp()),
             _ => view.get(Signal::Time).to_vec(),
         }]
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        match form.name {
+            "settling" => formula("1 - exp(-time / t_d)"),
+            _ => formula("time"),
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, orders, waves};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -56,6 +57,14 @@ impl Effect for FrictionRipple {
             columns.extend([times(&cos, Signal::Velocity), times(&sin, Signal::Velocity)]);
         }
         columns
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        let mut columns = waves("link_position", " * direction", &orders(form));
+        if form.name == "with_speed" {
+            columns.extend(waves("link_position", " * velocity", &orders(form)));
+        }
+        Ok(columns)
     }
 
     fn same_as(&self, view: &View) -> Option<&'static str> {

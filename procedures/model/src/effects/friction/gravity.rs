@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, waves};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -37,5 +38,9 @@ impl Effect for Gravity {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         view.harmonic(Signal::Link, 1.0).into()
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        Ok(waves("link_position", "", &["1"]))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -30,6 +31,10 @@ impl Effect for Inertia {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.get(Signal::Acceleration).to_vec()]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("acceleration")
     }
 
     fn regime(&self) -> crate::effect::Regime {

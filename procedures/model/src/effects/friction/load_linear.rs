@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::effects::friction::teeth;
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -43,5 +44,12 @@ impl Effect for LoadLinear {
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         let borne = teeth::bear(shape, view);
         vec![borne.iter().zip(view.get(Signal::Direction)).map(|(l, d)| l.abs() * d).collect()]
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        match form.name {
+            teeth::WITH_WEIGHT => formula(format!("abs({}) * direction", teeth::TORQUE)),
+            _ => formula("abs(load) * direction"),
+        }
     }
 }

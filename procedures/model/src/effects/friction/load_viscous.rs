@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::effects::friction::teeth;
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -40,5 +41,12 @@ impl Effect for LoadViscous {
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         let borne = teeth::bear(shape, view);
         vec![borne.iter().zip(view.get(Signal::Velocity)).map(|(l, w)| l.abs() * w).collect()]
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        match form.name {
+            teeth::WITH_WEIGHT => formula(format!("abs({}) * velocity", teeth::TORQUE)),
+            _ => formula("abs(load) * velocity"),
+        }
     }
 }

@@ -3,13 +3,16 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::hysteresis_operators;
 use crate::signal::Signal;
+use crate::symbolic::{Column, FittedForm, Rule, Symbolic, memory};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Presliding;
 
+pub(crate) const ID: &str = "presliding";
+
 static INFO: EffectInfo = EffectInfo {
-    id: "presliding",
+    id: ID,
     kind: Kind::Friction,
     title: "Presliding hysteresis",
     sentence: "After a reversal the contacts deform elastically before they slide: friction builds up over a short \
@@ -68,6 +71,20 @@ impl Effect for Presliding {
             }
             _ => relative_to_direction(hysteresis_operators::stop(position, shape[0], &view.starts)),
         })]
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        let rule = Rule::of(form.name);
+        match form.name {
+            "lugre" => Ok(vec![Column::Memory {
+                rule,
+                signal: "position",
+                reach: 0,
+                end: "1 + rho * exp(-(velocity / omega_s) ^ 2)",
+                formula: "z - (1 + rho * exp(-(velocity / omega_s) ^ 2)) * direction",
+            }]),
+            _ => memory(rule, "position", "z - direction"),
+        }
     }
 
     fn regime(&self) -> crate::effect::Regime {

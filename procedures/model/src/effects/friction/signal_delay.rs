@@ -2,13 +2,16 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct SignalDelay;
 
+pub(crate) const ID: &str = "signal_delay";
+
 static INFO: EffectInfo = EffectInfo {
-    id: "signal_delay",
+    id: ID,
     kind: Kind::Friction,
     title: "Delay between torque and velocity",
     sentence: "Torque and motion are recorded at different times because of a drive delay, a filter or a flexible \
@@ -31,6 +34,10 @@ impl Effect for SignalDelay {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.get(Signal::Jerk).to_vec()]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("jerk")
     }
 
     fn regime(&self) -> crate::effect::Regime {

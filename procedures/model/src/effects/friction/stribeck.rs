@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::fast_math;
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 use multiversion::multiversion;
@@ -85,6 +86,10 @@ impl Effect for Stribeck {
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         vec![fading(view, shape)]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("exp(-(abs(velocity) / omega_s) ^ delta) * direction")
     }
 
     fn exponent_parameter(&self) -> Option<&'static str> {

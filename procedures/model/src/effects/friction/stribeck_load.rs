@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -38,6 +39,10 @@ impl Effect for StribeckLoad {
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         let fading = crate::effects::friction::stribeck::fading(view, shape);
         vec![fading.iter().zip(view.get(Signal::Load)).map(|(f, l)| f * l.abs()).collect()]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("exp(-(abs(velocity) / omega_s) ^ delta) * direction * abs(load)")
     }
 
     fn exponent_parameter(&self) -> Option<&'static str> {

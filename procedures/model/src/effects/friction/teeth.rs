@@ -11,6 +11,9 @@ pub const WITH_WEIGHT: &str = "with_weight";
 pub const COS: ParameterInfo = parameter("g_c", "Nm", f64::NEG_INFINITY, f64::INFINITY);
 pub const SIN: ParameterInfo = parameter("g_s", "Nm", f64::NEG_INFINITY, f64::INFINITY);
 
+/// Torque that the gear teeth transmit if the sensor does not measure the weight, as a formula for a controller.
+pub const TORQUE: &str = "load + g_c * cos(link_position) + g_s * sin(link_position)";
+
 /// Search range: twice the gravity torque in the motor torque, with either sign.
 const REACH: f64 = 2.0;
 

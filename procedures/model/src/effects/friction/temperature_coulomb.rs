@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -30,6 +31,14 @@ impl Effect for TemperatureCoulomb {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.map2(Signal::Temperature, Signal::Direction, |t, d| (t - 25.0) * d)]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("(temperature - 25) * direction")
+    }
+
+    fn over_time(&self) -> Option<&'static str> {
+        Some("over_time: tau = a * time * direction; a [Nm/s]")
     }
 
     fn corrects(&self) -> Option<&'static str> {

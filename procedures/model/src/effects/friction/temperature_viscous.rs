@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -30,6 +31,14 @@ impl Effect for TemperatureViscous {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.map2(Signal::Temperature, Signal::Velocity, |t, w| (t - 25.0) * w)]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("(temperature - 25) * velocity")
+    }
+
+    fn over_time(&self) -> Option<&'static str> {
+        Some("over_time: tau = a * time * velocity; a [Nm/rad]")
     }
 
     fn corrects(&self) -> Option<&'static str> {

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 use std::iter;
@@ -47,5 +48,12 @@ impl Effect for TorqueConstantSaturation {
             "power" => view.map(Signal::Drive, |t| t.abs().powf(shape[0]) * t),
             _ => view.map(Signal::Drive, |t| t * t * t),
         }]
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        match form.name {
+            "power" => formula("abs(motor_torque) ^ n * motor_torque"),
+            _ => formula("motor_torque * motor_torque * motor_torque"),
+        }
     }
 }

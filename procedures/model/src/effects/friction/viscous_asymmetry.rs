@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -30,6 +31,10 @@ impl Effect for ViscousAsymmetry {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.map(Signal::Velocity, f64::abs)]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("abs(velocity)")
     }
 
     fn same_as(&self, view: &View) -> Option<&'static str> {

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -38,5 +39,12 @@ impl Effect for ViscousQuadratic {
             "one_sided" => view.map(Signal::Velocity, |w| w * w),
             _ => view.map(Signal::Velocity, |w| w * w.abs()),
         }]
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        match form.name {
+            "one_sided" => formula("velocity * velocity"),
+            _ => formula("velocity * abs(velocity)"),
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -65,5 +66,12 @@ impl Effect for ViscousSublinear {
             "limited" => view.map2(Signal::Velocity, Signal::Direction, |w, d| (1.0 - (-w.abs() / shape[0]).exp()) * d),
             _ => view.map2(Signal::Velocity, Signal::Direction, |w, d| w.abs().powf(shape[0]) * d),
         }]
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        match form.name {
+            "limited" => formula("(1 - exp(-abs(velocity) / omega_l)) * direction"),
+            _ => formula("abs(velocity) ^ alpha * direction"),
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -33,5 +34,9 @@ impl Effect for Backlash {
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         vec![view.mean_of(Signal::Load, |t| (t / shape[0]).tanh())]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("tanh(load / tau_b)")
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -30,5 +31,9 @@ impl Effect for Compliance {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.get(Signal::Load).to_vec()]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("load")
     }
 }

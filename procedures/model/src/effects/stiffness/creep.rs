@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::hysteresis_operators;
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Rule, Symbolic, memory};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -40,5 +41,9 @@ impl Effect for Creep {
         let torque = view.samples.find(Signal::Load).unwrap_or_default();
         let lag = hysteresis_operators::lag(torque, view.sample_s / shape[0], &view.starts);
         vec![view.average(lag.iter().zip(torque).map(|(s, t)| s - t).collect())]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        memory(Rule::Lag, "load", "z - load")
     }
 }

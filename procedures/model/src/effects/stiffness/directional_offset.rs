@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -34,5 +35,9 @@ impl Effect for DirectionalOffset {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.get(Signal::Direction).to_vec()]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("direction")
     }
 }

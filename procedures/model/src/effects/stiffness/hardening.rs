@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -51,5 +52,13 @@ impl Effect for Hardening {
             _ => view
                 .mean_of(Signal::Load, |t| t / (shape[0].powf(shape[1]) + t.abs().powf(shape[1])).powf(1.0 / shape[1])),
         }]
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        match form.name {
+            "cubic" => formula("load * load * load"),
+            "root" => formula("(sqrt(1 + abs(load) / tau_h) - 1) * sign(load)"),
+            _ => formula("load / (tau_h^n + abs(load)^n)^(1 / n)"),
+        }
     }
 }

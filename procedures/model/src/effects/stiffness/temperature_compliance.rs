@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -30,5 +31,13 @@ impl Effect for TemperatureCompliance {
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.map2(Signal::Temperature, Signal::Load, |c, t| (c - 25.0) * t)]
+    }
+
+    fn symbolic(&self, _: &FittedForm) -> Symbolic {
+        formula("(temperature - 25) * load")
+    }
+
+    fn over_time(&self) -> Option<&'static str> {
+        Some("over_time: torsion = a * time * load; a [rad/(Nm·s)]")
     }
 }

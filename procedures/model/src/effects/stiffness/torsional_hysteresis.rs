@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::hysteresis_operators;
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Rule, Symbolic, component};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -54,6 +55,12 @@ impl Effect for TorsionalHysteresis {
             })
         };
         shape.iter().enumerate().map(column).collect()
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        let first = component(0, Rule::of(form.name), "load", "z");
+        let stops = (1..form.shape).map(|k| component(k, Rule::Stop, "load", "z"));
+        Ok(std::iter::once(first).chain(stops).collect())
     }
 
     /// Dry contacts that slip one after the other, each with its own strength.

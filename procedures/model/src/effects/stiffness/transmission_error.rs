@@ -2,6 +2,7 @@
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
+use crate::symbolic::{FittedForm, Symbolic, orders, waves};
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -42,5 +43,9 @@ impl Effect for TransmissionError {
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         view.harmonic(Signal::Link, shape[0]).into()
+    }
+
+    fn symbolic(&self, form: &FittedForm) -> Symbolic {
+        Ok(waves("link_position", "", &orders(form)))
     }
 }

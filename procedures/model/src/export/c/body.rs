@@ -2,12 +2,12 @@
 
 use crate::export::c::expression::{c, number};
 use crate::export::parts::{Part, PartColumn, Parts};
-use crate::export::symbolic::Rule;
 use crate::export::{load_noise, suffix};
 use crate::formula::signals::NamedSignal;
 use crate::hysteresis_operators;
 use crate::report::fit::Fit;
 use crate::signal::Signal;
+use crate::symbolic::Rule;
 use crate::user_effects::signals_with;
 use jointbench_instrument::Motion;
 

@@ -9,12 +9,14 @@ pub(crate) mod trajectory;
 pub(crate) mod unmeasured_gravity;
 pub(crate) mod work_rate;
 
+use crate::effects::friction::presliding;
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::segments;
-use crate::preprocess::{BENDS, Prepared, TELLING, filter, median, sample_s};
+use crate::preprocess::{Prepared, TELLING, filter, sample_s};
 use crate::report::fit::Bristles;
 use crate::signal::{Signal, Signals};
+use crate::stats::summary::{median, peak};
 use crate::view::Constants;
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
@@ -35,7 +37,7 @@ pub fn prepare(run: &RunTable, options: &Options, bristles: Option<&Bristles>) -
         || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > samples.legs().len());
     // If presliding is known, ramps and reversals are as informative as steady-state motion, and there are more of
     // them.
-    let bends = run.meta().baseline.iter().any(|effect| effect == BENDS);
+    let bends = run.meta().baseline.iter().any(|effect| effect == presliding::ID);
     match options.residual {
         None if !in_steps || bends => trajectory::prepare(run, options, bristles),
         _ => steady_state::prepare(run, samples, plateaus, options),
@@ -56,59 +58,10 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
     let step_s = sample_s(&time_s);
     let starts = segments::recordings(&time_s, position, step_s);
     let cutoff_hz = crate::preprocess::cutoff_hz(options, step_s)?;
-    let smooth = filter::LowPass::butterworth(4, 2.0 * cutoff_hz * step_s);
-    let smoothed = |values: &[f64]| filter::by_recording(values, &starts, |_, v| smooth.both_ways(v, 12));
-    let slope =
-        |values: &[f64]| filter::by_recording(values, &starts, |range, v| filter::derivative(&time_s[range], v));
-
-    let measured = run.column("motor_velocity_rad_s");
-    let motion = || {
-        let (velocity, smooth_velocity) = match measured {
-            Some(v) => (v.to_vec(), smoothed(v)),
-            None => {
-                let v = slope(&smoothed(position));
-                (v.clone(), v)
-            }
-        };
-        let slopes = || {
-            let acceleration = slope(&smooth_velocity);
-            (slope(&acceleration), acceleration)
-        };
-        let ways = || {
-            let every = velocity.len().div_ceil(TELLING);
-            let off = velocity.iter().zip(&smooth_velocity).step_by(every).map(|(a, b)| (a - b).abs());
-            let noise = median(off);
-            let fastest = smooth_velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-            let direction = segments::direction(&smooth_velocity, (2.0 * noise).min(0.02 * fastest));
-            segments::without_swings(direction, position, &starts)
-        };
-        let ((jerk, acceleration), direction) = rayon::join(slopes, ways);
-        [
-            (Signal::Velocity, velocity),
-            (Signal::Acceleration, acceleration),
-            (Signal::Jerk, jerk),
-            (Signal::Direction, direction),
-        ]
-    };
+    let motion = || motion(run, &starts, 2.0 * cutoff_hz * step_s);
     let other_columns = || {
-        let gear = run.meta().gear_ratio.unwrap_or(1.0);
-        let mut signals = Signals::new(run.len());
-        signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
-        signals.set(Signal::Position, position.to_vec());
-        let link = match run.column("link_position_rad") {
-            Some(link) => link.to_vec(),
-            None => position.iter().map(|q| q / gear).collect(),
-        };
-        signals.set(Signal::Link, link);
-        if let Some(load) = run.column("link_torque_nm") {
-            signals.set(Signal::Load, load.iter().map(|t| t / gear).collect());
-        }
-        if let Some(temperature) = run.column("temperature_c") {
-            signals.set(Signal::Temperature, temperature.to_vec());
-        }
-        crate::preprocess::unknown_columns::keep(&mut signals, run);
         let torque_nm: Vec<f64> = column("motor_current_a").iter().map(|i| km * i).collect();
-        (signals, torque_nm, segments::numbered(run), segments::integers(run, "repeat"))
+        (other_signals(run), torque_nm, segments::numbered(run), segments::integers(run, "repeat"))
     };
     let (of_motion, (mut signals, target, segment, repeat)) = rayon::join(motion, other_columns);
     of_motion.into_iter().for_each(|(signal, values)| signals.set(signal, values));
@@ -122,10 +75,68 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
         cutoff_hz,
         segment,
         repeat,
-        derived_velocity: measured.is_none(),
+        derived_velocity: run.column("motor_velocity_rad_s").is_none(),
         constants: Constants { slides, rotor_inertia: run.meta().rotor_inertia_kg_m2, ..Constants::default() },
         time_s,
     })
+}
+
+/// Velocity, acceleration, jerk and direction. `cutoff` is the corner frequency as a share of the Nyquist frequency.
+fn motion(run: &RunTable, starts: &[usize], cutoff: f64) -> [(Signal, Vec<f64>); 4] {
+    let column = |name: &str| run.column(name).unwrap_or_default();
+    let (time_s, position) = (column("time_s"), column("motor_position_rad"));
+    let smooth = filter::LowPass::butterworth(4, cutoff);
+    let smoothed = |values: &[f64]| filter::by_recording(values, starts, |_, v| smooth.both_ways(v, 12));
+    let slope = |values: &[f64]| filter::by_recording(values, starts, |range, v| filter::derivative(&time_s[range], v));
+    let (velocity, smooth_velocity) = match run.column("motor_velocity_rad_s") {
+        Some(v) => (v.to_vec(), smoothed(v)),
+        None => {
+            let v = slope(&smoothed(position));
+            (v.clone(), v)
+        }
+    };
+    let slopes = || {
+        let acceleration = slope(&smooth_velocity);
+        (slope(&acceleration), acceleration)
+    };
+    let ways = || {
+        let every = velocity.len().div_ceil(TELLING);
+        let off = velocity.iter().zip(&smooth_velocity).step_by(every).map(|(a, b)| (a - b).abs());
+        let noise = median(off);
+        let fastest = peak(&smooth_velocity);
+        let direction = segments::direction(&smooth_velocity, (2.0 * noise).min(0.02 * fastest));
+        segments::without_swings(direction, position, starts)
+    };
+    let ((jerk, acceleration), direction) = rayon::join(slopes, ways);
+    [
+        (Signal::Velocity, velocity),
+        (Signal::Acceleration, acceleration),
+        (Signal::Jerk, jerk),
+        (Signal::Direction, direction),
+    ]
+}
+
+/// Time, positions, load, temperature, and the columns that the model does not know.
+fn other_signals(run: &RunTable) -> Signals {
+    let column = |name: &str| run.column(name).unwrap_or_default();
+    let (time_s, position) = (column("time_s"), column("motor_position_rad"));
+    let gear = run.meta().gear_ratio.unwrap_or(1.0);
+    let mut signals = Signals::new(run.len());
+    signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
+    signals.set(Signal::Position, position.to_vec());
+    let link = match run.column("link_position_rad") {
+        Some(link) => link.to_vec(),
+        None => position.iter().map(|q| q / gear).collect(),
+    };
+    signals.set(Signal::Link, link);
+    if let Some(load) = run.column("link_torque_nm") {
+        signals.set(Signal::Load, load.iter().map(|t| t / gear).collect());
+    }
+    if let Some(temperature) = run.column("temperature_c") {
+        signals.set(Signal::Temperature, temperature.to_vec());
+    }
+    crate::preprocess::unknown_columns::keep(&mut signals, run);
+    signals
 }
 
 /// The motor torque as explained by load, direction, speed and acceleration. It excludes the noise of the measured

@@ -7,9 +7,10 @@
 use crate::preprocess::chunks::{Layout, Source, problem};
 use crate::preprocess::design::{blocks, segments};
 use crate::preprocess::friction::unmeasured_gravity;
-use crate::preprocess::{Prepared, Problem, median};
+use crate::preprocess::{Prepared, Problem};
 use crate::report::fit::Preparation;
 use crate::signal::Signal;
+use crate::stats::summary::{mean, median, peak};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
 use rayon::prelude::*;
@@ -39,7 +40,7 @@ pub fn find(samples: &Source, gear_ratio: f64, options: &Options) -> Vec<Range<u
     let n = samples.chunk(options.chunk_s.unwrap_or(CHUNK_S));
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let load = samples.signals.find(Signal::Load);
-    let heaviest = load.map_or(0.0, |l| l.iter().fold(0.0f64, |m, v| m.max(v.abs())));
+    let heaviest = load.map_or(0.0, peak);
     let link_s = n as f64 * samples.step_s / gear_ratio.abs();
     samples.legs().into_par_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, (n, link_s))).collect()
 }
@@ -82,7 +83,6 @@ fn settled(
     let kept = longest.start.max(second_half.start).min(longest.end)..longest.end;
     let changes = |of: &[f64]| {
         let (first, second) = of[kept.clone()].split_at(kept.len() / 2);
-        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
         (mean(second) - mean(first)).abs()
     };
     let by_chance = 3.0 * scatter * (4.0 / kept.len() as f64).sqrt();
@@ -104,29 +104,7 @@ pub fn prepare(
     options: &Options,
 ) -> Result<Prepared, ModelError> {
     let n = samples.chunk(options.chunk_s.unwrap_or(CHUNK_S));
-    let legs = samples.legs();
-    let mut chunks = Vec::new();
-    let mut group = Vec::new();
-    let mut phase = Vec::new();
-    let merge = plateaus.iter().map(|p| p.len() / n).sum::<usize>().div_ceil(MOST_ROWS);
-    for (number, plateau) in plateaus.iter().enumerate() {
-        let leg = legs.partition_point(|l| l.start <= plateau.start).saturating_sub(1);
-        let before = (plateau.start - legs.get(leg).map_or(plateau.start, |l| l.start)) / n;
-        // At least two, so that neighbours in different repeats can be compared.
-        let parts = (plateau.len() / n).div_ceil(merge).max(2);
-        for part in 0..parts {
-            let edge = |part: usize| plateau.start + plateau.len() / n * part / parts * n;
-            chunks.push(edge(part)..edge(part + 1));
-            group.push(number);
-            phase.push(before / merge + part);
-        }
-    }
-    if chunks.len() < 12 {
-        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks at steady speed" });
-    }
-    let condition = conditions(&samples, &plateaus, run.column("brake_torque_command_nm"));
-    let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
-    let layout = Layout { chunks, group, condition, phase: Some(phase), settled: true, inputs: &[] };
+    let layout = layout(&samples, &plateaus, run, n)?;
     let speed = |p: &Range<usize>| {
         median(samples.signals.find(Signal::Velocity).unwrap_or_default()[p.clone()].iter().map(|v| v.abs()))
     };
@@ -160,6 +138,38 @@ pub fn prepare(
     Ok(Prepared { clashes, doubts, moving, memory, ..Prepared::of(run, main, about) })
 }
 
+/// The chunks of all steady states, of `n` samples each or of several times that in a long run.
+fn layout(
+    samples: &Source,
+    plateaus: &[Range<usize>],
+    run: &RunTable,
+    n: usize,
+) -> Result<Layout<'static>, ModelError> {
+    let legs = samples.legs();
+    let mut chunks = Vec::new();
+    let mut group = Vec::new();
+    let mut phase = Vec::new();
+    let merge = plateaus.iter().map(|p| p.len() / n).sum::<usize>().div_ceil(MOST_ROWS);
+    for (number, plateau) in plateaus.iter().enumerate() {
+        let leg = legs.partition_point(|l| l.start <= plateau.start).saturating_sub(1);
+        let before = (plateau.start - legs.get(leg).map_or(plateau.start, |l| l.start)) / n;
+        // At least two, so that neighbours in different repeats can be compared.
+        let parts = (plateau.len() / n).div_ceil(merge).max(2);
+        for part in 0..parts {
+            let edge = |part: usize| plateau.start + plateau.len() / n * part / parts * n;
+            chunks.push(edge(part)..edge(part + 1));
+            group.push(number);
+            phase.push(before / merge + part);
+        }
+    }
+    if chunks.len() < 12 {
+        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks at steady speed" });
+    }
+    let condition = conditions(samples, plateaus, run.column("brake_torque_command_nm"));
+    let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
+    Ok(Layout { chunks, group, condition, phase: Some(phase), settled: true, inputs: &[] })
+}
+
 /// Sets the drive torque of steady-state or moving rows.
 pub fn set_drive(problem: &mut Problem) {
     let drive = crate::preprocess::friction::drive(&problem.view.points, &problem.target);
@@ -173,13 +183,12 @@ pub fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&
     let speeds: Vec<f64> = plateaus.iter().map(|p| middle(velocity, p)).collect();
     let lengths: Vec<f64> = plateaus.iter().map(|p| p.len() as f64).collect();
     let middles = |signal: &[f64]| -> Vec<f64> { plateaus.iter().map(|p| middle(signal, p)).collect() };
-    let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let measured = samples.signals.find(Signal::Load);
     let loads = command.or(measured).map_or_else(|| vec![0.0; plateaus.len()], middles);
     // Without a load, the load signal is noise and small compared with the torque.
     let peak = match command {
-        Some(_) => largest(&loads),
-        None => largest(&loads).max(largest(&middles(&samples.target))),
+        Some(_) => peak(&loads),
+        None => peak(&loads).max(peak(&middles(&samples.target))),
     };
     let speed = blocks::clusters(&speeds, |v| 0.03 * v.abs());
     let load = blocks::clusters(&loads, |l| 0.03 * l.abs() + 0.01 * peak);

@@ -8,9 +8,10 @@ use crate::preprocess::friction::bristles;
 use crate::preprocess::friction::layout::Layout;
 use crate::preprocess::friction::signals::{Work, filtered, read};
 use crate::preprocess::friction::unmeasured_gravity;
-use crate::preprocess::{Prepared, median, sample_s};
+use crate::preprocess::{Prepared, sample_s};
 use crate::report::fit::{Bristles, Preparation};
 use crate::signal::Signal;
+use crate::stats::summary::median;
 use crate::view::{Constants, View};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
@@ -35,29 +36,14 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
     let cutoff_hz = corner(options, rate_hz)?;
     let whole = work.torque.len() as f64 * work.even.step_s * cutoff_hz;
     let rows = ROWS.min((MOST_ROWS / whole).max(2.0));
-    let every = match options.decimation {
-        Some(every) => (every as f64 / work.even.every as f64).round(),
-        None => (rate_hz / (rows * cutoff_hz)).round(),
-    };
-    let every = (every as usize).max(1);
+    let every = decimation(options, &work, rate_hz / (rows * cutoff_hz));
     let velocity = work.signals.find(Signal::Velocity).unwrap_or_default().to_vec();
     let band = given.map_or_else(|| noise(&velocity, &work, cutoff_hz), |given| given.band_rad_s);
-    let direction = match work.only_direction {
-        Some(sign) => vec![sign; velocity.len()],
-        None => velocity.iter().map(|w| (w / band).tanh()).collect(),
-    };
-    work.signals.set(Signal::Direction, direction);
-    work.set_stills(band);
-    let drive = crate::preprocess::friction::drive(&work.signals, &work.torque);
-    work.signals.set(Signal::Drive, drive);
+    set_direction(&mut work, &velocity, band);
     let position = work.signals.find(Signal::Position).unwrap_or_default();
-    let reaches = match given {
-        Some(given) => given.reaches_rad.clone(),
-        None => {
-            let slides = run.meta().motion == Motion::Linear;
-            bristles::reaches(position, &work.turns, work.encoder_step, slides)
-        }
-    };
+    let slides = run.meta().motion == Motion::Linear;
+    let of_run = || bristles::reaches(position, &work.turns, work.encoder_step, slides);
+    let reaches = given.map_or_else(of_run, |given| given.reaches_rad.clone());
     let states = bristles::states(position, &work.even.starts, &reaches);
     let layout = Layout::new(&work, &states, cutoff_hz, every, run);
     if layout.rows.len() < 24 {
@@ -80,13 +66,7 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
         main
     };
     let main = problem(&view);
-    let bristled = (!states.is_empty()).then(|| {
-        let mut view = view.clone();
-        let felt = bristles::felt(&states, &bristles);
-        view.points.set(Signal::Direction, felt.clone());
-        view.samples.set(Signal::Direction, felt);
-        problem(&view)
-    });
+    let bristled = (!states.is_empty()).then(|| problem(&bristled(&view, bristles::felt(&states, &bristles))));
     let about = Preparation {
         residual: ResidualKind::Raw,
         sample_rate_hz: 1.0 / sample_s(run.column("time_s").unwrap_or_default()),
@@ -117,6 +97,32 @@ fn corner(options: &Options, rate_hz: f64) -> Result<f64, ModelError> {
         Some(cutoff_hz) => Ok(cutoff_hz),
         None => Ok(CUTOFF_HZ.min(MOST_OF_RATE * rate_hz)),
     }
+}
+
+/// Samples of the work rate in a row, at least one.
+fn decimation(options: &Options, work: &Work, default: f64) -> usize {
+    let every = options.decimation.map_or(default, |every| every as f64 / work.even.every as f64);
+    (every.round() as usize).max(1)
+}
+
+/// Sets the direction, which changes within a band of velocities, and the signals that depend on it.
+fn set_direction(work: &mut Work, velocity: &[f64], band: f64) {
+    let direction = match work.only_direction {
+        Some(sign) => vec![sign; velocity.len()],
+        None => velocity.iter().map(|w| (w / band).tanh()).collect(),
+    };
+    work.signals.set(Signal::Direction, direction);
+    work.set_stills(band);
+    let drive = crate::preprocess::friction::drive(&work.signals, &work.torque);
+    work.signals.set(Signal::Drive, drive);
+}
+
+/// The view with the state of the presliding elements as the direction.
+fn bristled(view: &View, felt: Vec<f64>) -> View {
+    let mut view = view.clone();
+    view.points.set(Signal::Direction, felt.clone());
+    view.samples.set(Signal::Direction, felt);
+    view
 }
 
 fn constants(work: &Work, bristles: &Bristles, cutoff_hz: f64, run: &RunTable) -> Constants {

@@ -2,6 +2,7 @@
 
 use crate::preprocess::{Prepared, Problem};
 use crate::signal::Signal;
+use crate::stats::summary::range;
 use jointbench_instrument::Kind;
 use std::f64::consts::TAU;
 
@@ -52,44 +53,13 @@ pub fn scales(prepared: &Prepared) -> Vec<BinnedAxis> {
         let Some(values) = problem.view.find(signal).filter(|_| is_informative) else {
             continue;
         };
-        let unit_scale = prepared.column_scale(signal);
-        let values: Vec<f64> = problem.reduce.apply(values.to_vec()).into_iter().map(|v| v * unit_scale).collect();
-        let (name, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
-        let scale = match signal {
-            Signal::Velocity | Signal::Load if problem.settled => {
-                let held = block_means(&values, problem);
-                BinnedAxis::new(name, unit, levels(&held), held).held()
-            }
-            // The residual contains the noise of the response, so that bins of the response itself would show a false
-            // line. The mean over a block has little noise.
-            Signal::Drive if problem.settled => {
-                let held = block_means(&values, problem);
-                BinnedAxis::new(name, unit, quantiles(&held, BINS), held).held()
-            }
-            Signal::Link | Signal::Position => {
-                let values = if problem.view.constants.slides { values } else { turned(values) };
-                BinnedAxis::new(name, unit, even(&values, ANGLE_BINS), values)
-            }
-            Signal::Repeat => BinnedAxis::new(name, unit, levels(&values), values),
-            Signal::Direction => {
-                let values: Vec<f64> = values.iter().map(|d| if *d > 0.0 { 1.0 } else { -1.0 }).collect();
-                let both = values.contains(&1.0) && values.contains(&-1.0);
-                let bin = values.iter().map(|d| usize::from(both && *d > 0.0)).collect();
-                BinnedAxis::new(name, unit, bin, values).held()
-            }
-            _ => BinnedAxis::new(name, unit, quantiles(&values, BINS), values),
-        };
+        let scale = BinnedAxis::of(prepared, signal, values);
         if scale.bins.len() > 1 && !scales.iter().any(|s| s.says_the_same(&scale)) {
             scales.push(scale);
         }
     }
     for signal in problem.view.points.unknown() {
-        let values = problem.reduce.apply(problem.view.get(signal).to_vec());
-        let (column, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
-        let as_read = BinnedAxis::new(column, unit.clone(), quantiles(&values, BINS), values);
-        // An unknown sensor may share the noise of the response; the mean over a block has little noise.
-        let held = block_means(&as_read.values, problem);
-        let scale = BinnedAxis::new(column, unit, quantiles(&held, BINS), held);
+        let (as_read, scale) = BinnedAxis::of_unknown(prepared, signal);
         if scale.bins.len() > 1 && !scales.iter().any(|s| s.says_the_same(&as_read)) {
             scales.push(scale);
         }
@@ -101,6 +71,50 @@ pub fn scales(prepared: &Prepared) -> Vec<BinnedAxis> {
 }
 
 impl BinnedAxis {
+    /// A known signal, in bins that suit it.
+    fn of(prepared: &Prepared, signal: Signal, values: &[f64]) -> Self {
+        let problem = &prepared.main;
+        let unit_scale = prepared.column_scale(signal);
+        let values: Vec<f64> = problem.reduce.apply(values.to_vec()).into_iter().map(|v| v * unit_scale).collect();
+        let (name, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
+        match signal {
+            Signal::Velocity | Signal::Load if problem.settled => {
+                let held = block_means(&values, problem);
+                Self::new(name, unit, levels(&held), held).held()
+            }
+            // The residual contains the noise of the response, so that bins of the response itself would show a false
+            // line. The mean over a block has little noise.
+            Signal::Drive if problem.settled => {
+                let held = block_means(&values, problem);
+                Self::new(name, unit, quantiles(&held, BINS), held).held()
+            }
+            Signal::Link | Signal::Position => {
+                let values = if problem.view.constants.slides { values } else { turned(values) };
+                Self::new(name, unit, even(&values, ANGLE_BINS), values)
+            }
+            Signal::Repeat => Self::new(name, unit, levels(&values), values),
+            Signal::Direction => {
+                let values: Vec<f64> = values.iter().map(|d| if *d > 0.0 { 1.0 } else { -1.0 }).collect();
+                let both = values.contains(&1.0) && values.contains(&-1.0);
+                let bin = values.iter().map(|d| usize::from(both && *d > 0.0)).collect();
+                Self::new(name, unit, bin, values).held()
+            }
+            _ => Self::new(name, unit, quantiles(&values, BINS), values),
+        }
+    }
+
+    /// An unknown column as read, and its means over blocks: an unknown sensor may share the noise of the response, and
+    /// the mean over a block has little noise.
+    fn of_unknown(prepared: &Prepared, signal: Signal) -> (Self, Self) {
+        let problem = &prepared.main;
+        let values = problem.reduce.apply(problem.view.get(signal).to_vec());
+        let (column, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
+        let as_read = Self::new(column, unit.clone(), quantiles(&values, BINS), values);
+        let held = block_means(&as_read.values, problem);
+        let scale = Self::new(column, unit, quantiles(&held, BINS), held);
+        (as_read, scale)
+    }
+
     fn new(name: &str, unit: String, bin: Vec<usize>, values: Vec<f64>) -> Self {
         let count = bin.iter().max().map_or(0, |b| b + 1);
         let mut bins = vec![(f64::INFINITY, f64::NEG_INFINITY, 0.0, 0.0f64); count];
@@ -146,14 +160,14 @@ impl BinnedAxis {
 
     fn says_the_same(&self, other: &Self) -> bool {
         let pairs = || self.values.iter().zip(&other.values);
-        let range = self.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        let range = range(&self.values);
         self.unit == other.unit && pairs().all(|(a, b)| (a - b).abs() <= 0.01 * (range.1 - range.0))
     }
 }
 
 /// Angles of more than one turn, folded into one turn.
 fn turned(values: Vec<f64>) -> Vec<f64> {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = range(&values);
     if high - low > TAU { values.into_iter().map(|a| a.rem_euclid(TAU)).collect() } else { values }
 }
 
@@ -185,7 +199,7 @@ fn since_reversal(problem: &Problem) -> Vec<f64> {
 
 /// Bins of equal width over the range, without empty ones.
 fn even(values: &[f64], count: usize) -> Vec<usize> {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = range(values);
     if high <= low {
         return vec![0; values.len()];
     }
