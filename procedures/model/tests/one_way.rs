@@ -39,3 +39,28 @@ fn a_run_in_one_direction_has_one_name_for_confounded_effects() {
         assert!((coulomb.value - 0.03).abs() < 1e-3, "{coulomb:?}");
     }
 }
+
+/// Strokes in both directions, recorded one after the other with pauses between: in one recording each, or in several
+/// pieces that each hold a part of a stroke.
+#[test]
+fn recordings_in_opposite_directions_are_not_one_direction() {
+    const STEP_S: f64 = 0.005;
+    for pieces in [1, 40] {
+        let mut trace = Trace::new(["time_s", "motor_position_rad", "motor_current_a"].map(Channel::new).to_vec());
+        let (rows, speeds) = (2_400, [3.0, -3.0, 6.0, -6.0]);
+        let (mut position, mut pause_s) = (0.0, 0.0);
+        for i in 0..speeds.len() * rows {
+            let velocity = speeds[i / rows] * (1.0 + 0.5 * (0.004 * i as f64).sin());
+            position += velocity * STEP_S;
+            pause_s += if i % (rows / pieces) == 0 { 0.2 } else { 0.0 };
+            let torque = 0.03 * velocity.signum() + 0.002 * velocity + 0.004 + 2e-4 * scatter(i, 3);
+            trace.push_row(&[STEP_S * i as f64 + pause_s, position, torque / 0.08]);
+        }
+        let baseline = ["coulomb", "viscous"].map(String::from).to_vec();
+        let run = RunTable::new(Meta { gear_ratio: Some(1.0), baseline, ..meta(Kind::Friction) }, trace).unwrap();
+        let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4, |_| {}).unwrap();
+        assert_eq!(found.model, ["coulomb", "viscous", "direction_offset"], "{pieces} pieces: {}", found.summary);
+        let coulomb = found.fit.parameters.iter().find(|p| p.name == "tau_c").unwrap();
+        assert!((coulomb.value - 0.03).abs() < 1e-3, "{pieces} pieces: {coulomb:?}");
+    }
+}

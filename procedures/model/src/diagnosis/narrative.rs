@@ -2,14 +2,14 @@
 
 use crate::diagnosis::findings::Findings;
 use crate::effect::{Effect, Regime};
-use crate::report::diagnosis::{Evidence, Imitated, Suggestion, UndecidedReason, Verdict};
+use crate::report::diagnosis::{Evidence, Imitated, RemovalReason, Suggestion, UndecidedReason, Verdict};
 use crate::report::fit::{Parameter, ParameterState};
 use crate::report::maps::{PairMap, Region};
 use crate::residual_analysis::events::Events;
 use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::Left;
-use crate::selection::removal::{RemovalReason, Withdrawn};
+use crate::selection::removal::Withdrawn;
 use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, SMALL_REDUCTION, TOLD_LOSS};
 use crate::words::{Scale, figure, list, percent, spoken_axis};
 use crate::{Fit, Options};

@@ -211,13 +211,69 @@ pub struct Invisible {
     pub why: String,
 }
 
+/// Why an added effect was removed again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RemovalReason {
+    /// The fitted error is as small without it.
+    Redundant,
+    /// Its coefficients are physically impossible.
+    Infeasible,
+    /// With it, a coefficient of the given model is negative.
+    MutuallyCancelling,
+    /// The others predict equally well without it.
+    Insignificant,
+    /// Another effect predicts better in its place.
+    Swapped,
+    /// A random-walk offset explains as much.
+    RandomWalk,
+    /// The run does not determine its size or shape.
+    Unidentified,
+    /// It explains only a part of the structure over its own axis.
+    PartialExplanation,
+    /// Together with a free function of the axis with structure it explains nothing.
+    Spurious,
+}
+
+impl RemovalReason {
+    /// In the order in which the pruning rules run.
+    pub const ALL: [RemovalReason; 9] = [
+        RemovalReason::Redundant,
+        RemovalReason::Infeasible,
+        RemovalReason::MutuallyCancelling,
+        RemovalReason::Insignificant,
+        RemovalReason::Swapped,
+        RemovalReason::RandomWalk,
+        RemovalReason::Unidentified,
+        RemovalReason::PartialExplanation,
+        RemovalReason::Spurious,
+    ];
+
+    /// The reason in a sentence about the effect.
+    pub fn words(self) -> &'static str {
+        match self {
+            RemovalReason::Redundant => "the model fits equally well without it",
+            RemovalReason::Infeasible => "its size would be physically impossible",
+            RemovalReason::MutuallyCancelling => "with it, a coefficient of the given model would be negative",
+            RemovalReason::Insignificant => "it adds nothing to the other effects",
+            RemovalReason::Swapped => "another effect predicts better in its place",
+            RemovalReason::RandomWalk => "a zero that drifts over time explains as much",
+            RemovalReason::Unidentified => "this run does not determine its size",
+            RemovalReason::PartialExplanation => "it explains only part of the structure over its axis",
+            RemovalReason::Spurious => "it explains nothing beyond the remaining structure",
+        }
+    }
+}
+
 /// One step of `discover`. The first one is the given model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     pub added: Option<String>,
-    /// An effect that later effects made redundant.
+    /// An added effect that is removed again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub removed: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub removal_reason: Option<RemovalReason>,
     /// Effects that explain this data as well as the added one, in the final model too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub confounded_with: Vec<String>,

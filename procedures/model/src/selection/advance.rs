@@ -1,12 +1,13 @@
 //! The steps of a selection.
 
 use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::RemovalReason;
 use crate::selection::forward_step::ScoredCandidate;
 
 /// An added or removed effect, and the model after this step.
 pub struct SelectionStep<'p> {
     pub added: Option<ScoredCandidate<'p>>,
-    pub removed: Option<&'p str>,
+    pub removed: Option<(&'p str, RemovalReason)>,
     pub ties: Vec<&'p str>,
     pub after: TwoStageModel<'p>,
 }

@@ -13,6 +13,7 @@ use crate::regression::evidence::{Evidence, chance, errors, evidence};
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_coefficient, effect_columns, nuisance, without};
 use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::RemovalReason;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::{self, Left};
 use crate::selection::advance::{Path, SelectionStep};
@@ -74,7 +75,7 @@ pub fn search<'p>(
         refused = search.grow(most.min(MOST_NAMED))?;
     }
     while let Some(id) = idle(search.path.end(), spec) {
-        search.remove(id)?;
+        search.remove(id, RemovalReason::Insignificant)?;
     }
     let left = search.left()?;
     search.finish(left, refused)
@@ -135,10 +136,10 @@ impl<'p> Search<'_, 'p> {
         })
     }
 
-    fn remove(&mut self, id: &'p str) -> Result<(), ModelError> {
+    fn remove(&mut self, id: &'p str, why: RemovalReason) -> Result<(), ModelError> {
         let effects = self.path.end().effects.iter().filter(|e| *e != id).cloned().collect();
         let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
-        self.path.push(SelectionStep { added: None, removed: Some(id), ties: Vec::new(), after });
+        self.path.push(SelectionStep { added: None, removed: Some((id, why)), ties: Vec::new(), after });
         Ok(())
     }
 
@@ -154,7 +155,7 @@ impl<'p> Search<'_, 'p> {
         }
         let spec = self.spec;
         for id in self.path.end().effects.clone().iter().filter(|e| !spec.contains(e)) {
-            self.remove(spec.find(id)?.info().id)?;
+            self.remove(spec.find(id)?.info().id, RemovalReason::Spurious)?;
         }
         Ok(of(self).or(left))
     }

@@ -7,6 +7,7 @@ use crate::regression::canonical_fit::fit_canonical;
 use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
+use crate::report::diagnosis::RemovalReason;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use crate::selection::equivalence::{encompasses, is_tie};
 use crate::selection::forward_step::{ScoredCandidate, step};
@@ -19,7 +20,7 @@ type CachedTerms<'p> = Vec<(&'p dyn Effect, Arc<Form<'p>>, Vec<f64>)>;
 
 pub enum Move<'p> {
     Added { scored: Box<ScoredCandidate<'p>>, ties: Vec<&'p str> },
-    Removed(&'p str),
+    Removed { id: &'p str, why: RemovalReason },
 }
 
 /// A scored candidate with the effects that are confounded with it.
@@ -36,6 +37,8 @@ pub struct FloatingSearch<'l, 'p> {
     pub(crate) initial_terms: Vec<&'p str>,
     /// Effects that were removed and are not tried again.
     pub(crate) withdrawn: Vec<&'p str>,
+    /// The last reason for the removal of each of them.
+    reasons: BTreeMap<&'p str, RemovalReason>,
     /// Effects that are kept because the other coefficients are biased without them, not because of the error.
     pub retained_for_bias: Vec<&'p str>,
     /// Squared validation errors, fold by fold, of the models before each removal.
@@ -76,6 +79,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
             plain,
             initial_terms,
             withdrawn: Vec::new(),
+            reasons: BTreeMap::new(),
             retained_for_bias: Vec::new(),
             rejected_losses: Vec::new(),
             last: None,
@@ -96,10 +100,16 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     }
 
     /// Removes an effect that was found to be wrong.
-    pub fn withdraw(&mut self, id: &'p str) -> Move<'p> {
-        self.withdrawn.push(id);
+    pub fn withdraw(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
         self.rejected_losses.push(validation_losses(&self.now));
-        self.remove(id)
+        self.give_back(id, why)
+    }
+
+    /// Removes an effect that is not tried again.
+    fn give_back(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
+        self.withdrawn.push(id);
+        self.reasons.insert(id, why);
+        self.remove(id, why)
     }
 
     /// Adds an effect that hardly changes the error, and keeps it.
@@ -116,14 +126,14 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         Move::Added { scored: scored.into(), ties }
     }
 
-    fn remove(&mut self, id: &'p str) -> Move<'p> {
+    fn remove(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
         self.left += 1;
-        self.drop(id)
+        self.drop(id, why)
     }
 
-    fn drop(&mut self, id: &'p str) -> Move<'p> {
+    fn drop(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
         self.now = self.model_without(id);
-        Move::Removed(id)
+        Move::Removed { id, why }
     }
 
     /// The next effect to add.
@@ -228,9 +238,18 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         self.added().filter(|term| !self.retained_for_bias.contains(&term.id()))
     }
 
-    /// Effects that were removed and are not in the model.
-    pub fn given_back(&self) -> impl Iterator<Item = &'p str> {
-        self.withdrawn.iter().copied().filter(|id| !self.now.contains(id))
+    /// Effects that were removed and are not in the model, in the order of their removal.
+    pub fn given_back(&self) -> impl Iterator<Item = (&'p str, RemovalReason)> {
+        let out = self.withdrawn.iter().copied().filter(|id| !self.now.contains(id));
+        out.filter_map(|id| Some((id, *self.reasons.get(id)?)))
+    }
+
+    /// An effect of the last model that a pruning rule rejects. The rules run in this order.
+    fn pruned(&self) -> Option<(&'p str, RemovalReason)> {
+        let infeasible = || Some((self.impossible(&self.now)?, RemovalReason::Infeasible));
+        let cancelling = || Some((self.mutually_cancelling()?, RemovalReason::MutuallyCancelling));
+        let insignificant = || Some((self.idle()?, RemovalReason::Insignificant));
+        infeasible().or_else(cancelling).or_else(insignificant)
     }
 }
 
@@ -239,7 +258,7 @@ impl<'p> Iterator for FloatingSearch<'_, 'p> {
 
     fn next(&mut self) -> Option<Move<'p>> {
         if let Some(id) = self.redundant() {
-            return Some(self.drop(id));
+            return Some(self.drop(id, RemovalReason::Redundant));
         }
         if self.unmodelled_structure {
             return None;
@@ -256,15 +275,13 @@ impl<'p> Iterator for FloatingSearch<'_, 'p> {
         let found = self.pending_swap.take().or_else(|| if self.left > 0 { self.best() } else { None });
         let found = found.filter(|(scored, _)| !stands_in(scored));
         let Some((scored, ties)) = found else {
-            if let Some(id) = self.impossible(&self.now).or_else(|| self.mutually_cancelling()).or_else(|| self.idle())
-            {
-                self.withdrawn.push(id);
-                return Some(self.remove(id));
+            if let Some((id, why)) = self.pruned() {
+                return Some(self.give_back(id, why));
             }
             self.exchanges = self.exchanges.checked_sub(1)?;
             let (id, better) = self.swapped()?;
             self.pending_swap = Some(better);
-            return Some(self.remove(id));
+            return Some(self.remove(id, RemovalReason::Swapped));
         };
         Some(self.add(scored, ties))
     }

@@ -6,6 +6,7 @@ use crate::regression::candidates::CandidateSet;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::Imitated;
+use crate::report::diagnosis::RemovalReason;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::{lack_of_fit, undersampled_harmonics};
 use crate::selection::advance::{Path, SelectionStep};
@@ -18,7 +19,7 @@ use crate::selection::pruning::partial_explanation::{bump, half_explained};
 use crate::selection::pruning::spurious::borrowing;
 use crate::selection::pruning::unidentified::{Doubt, is_decided, undecided};
 use crate::selection::ramp_stage::delay;
-use crate::selection::removal::{self, RemovalReason};
+use crate::selection::removal;
 use crate::{ModelError, ModelSpec, Options};
 
 /// Result of the search on the steady-state part.
@@ -27,8 +28,6 @@ struct SteadyState<'p> {
     residual: Vec<f64>,
     /// An effect that may be present as well, with the model that includes it.
     open: Option<Found<'p>>,
-    /// Reasons of removals that the search itself did not cause.
-    taken_back: Vec<(&'p str, RemovalReason)>,
 }
 
 /// `on_advance` gets each step when it is made.
@@ -50,7 +49,7 @@ pub fn search<'p>(
     }
     let left = most.saturating_sub(path.advances.len());
     let mut search = FloatingSearch::new(path.end().main.clone(), &library, &prepared.baseline, left, options);
-    let SteadyState { maps, residual, open, taken_back } = steady_state(&mut search, &mut path, prepared, options);
+    let SteadyState { maps, residual, open } = steady_state(&mut search, &mut path, prepared, options);
     if let Some(last) = path.advances.last_mut() {
         last.after = last.after.clone().settled(options)?;
     }
@@ -58,7 +57,7 @@ pub fn search<'p>(
     let open = open.and_then(|open| moves(open.scored.term.id(), &search.now, &open.with));
     let upheld = search.retained_for_bias.iter().filter(|id| search.now.contains(id));
     let upheld = upheld.filter_map(|id| moves(id, &search.now.without(id), &search.now)).collect();
-    let withdrawn = removal::all(&search, &taken_back);
+    let withdrawn = removal::all(&search);
     let ties = open_ties(&search, &path.advances);
     if !search.unmodelled_structure {
         ramps(&mut path, most, options)?;
@@ -90,14 +89,12 @@ fn steady_state<'p>(
     options: &Options,
 ) -> SteadyState<'p> {
     let mut effects = path.end().effects.clone();
-    let mut taken_back = Vec::new();
     loop {
         let made = search.next().or_else(|| {
             let undecided = || Some((undecided(search, prepared)?, RemovalReason::Unidentified));
             let (id, why) =
                 search.follows_random_walk().map(|id| (id, RemovalReason::RandomWalk)).or_else(undecided)?;
-            taken_back.push((id, why));
-            Some(search.withdraw(id))
+            Some(search.withdraw(id, why))
         });
         let made = match made {
             Some(made) => made,
@@ -106,9 +103,8 @@ fn steady_state<'p>(
                 let maps = maps_of(&search.now, residual.clone(), prepared, options);
                 let axis = lack_of_fit::structured(&maps);
                 if let Some((id, why)) = outside_the_library(search, &maps, axis, prepared, options) {
-                    taken_back.push((id, why));
                     search.unmodelled_structure = true;
-                    search.withdraw(id)
+                    search.withdraw(id, why)
                 } else {
                     let is_decided = |with: &LinearModel<'p>, term: &Term<'p>| is_decided(with, term, prepared);
                     let nothing_shows = axis.is_none();
@@ -117,7 +113,7 @@ fn steady_state<'p>(
                         Some(found) if found.is_clear && is_all(&found.with) => search.uphold(found.scored),
                         open => {
                             let open = open.filter(|_| nothing_shows);
-                            return SteadyState { maps, residual, open, taken_back };
+                            return SteadyState { maps, residual, open };
                         }
                     }
                 }
@@ -128,9 +124,9 @@ fn steady_state<'p>(
                 effects.push(scored.term.id().into());
                 (Some(*scored), None, ties)
             }
-            Move::Removed(id) => {
+            Move::Removed { id, why } => {
                 effects.retain(|e| e != id);
-                (None, Some(id), Vec::new())
+                (None, Some((id, why)), Vec::new())
             }
         };
         let after = path.start.of(search.now.clone(), effects.clone());
