@@ -1,6 +1,7 @@
 //! An effect: one physical cause with its formula, its parameters and the signals that it needs.
 
 use crate::signal::Signal;
+use crate::stats::summary::range;
 use crate::symbolic::{self, FittedForm, Symbolic};
 use crate::view::View;
 use jointbench_instrument::Kind;
@@ -260,6 +261,6 @@ pub trait Effect: Sync {
 }
 
 fn is_constant(values: &[f64]) -> bool {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = range(values);
     high <= low + 1e-12 * high.abs().max(low.abs())
 }

@@ -4,6 +4,7 @@
 //! points and averaged over them.
 
 use crate::signal::{Signal, Signals};
+use crate::stats::summary::range;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -112,7 +113,7 @@ impl View {
 
     /// Turns between the extremes of an angle.
     pub fn turns(&self, angle: Signal) -> f64 {
-        let ends = self.get(angle).iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+        let ends = range(self.get(angle));
         (ends.1 - ends.0) / TAU
     }
 

@@ -4,18 +4,16 @@ use crate::linear::basis::dot;
 use crate::preprocess::independent_blocks::independent_blocks;
 use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::LinearModel;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use crate::stats::{jackknife, student};
 
 /// 95 % interval of the relative reduction of the validation RMS between two models: jackknife over folds, on the
 /// logarithm of the ratio. `None` with too few folds.
 pub fn reduction(before: &LinearModel, after: &LinearModel) -> Option<[f64; 2]> {
     let each: Vec<(f64, f64)> = validation_losses(before).into_iter().zip(validation_losses(after)).collect();
     let (from, to) = each.iter().fold((0.0, 0.0), |(b, a), fold| (b + fold.0, a + fold.1));
-    let groups = each.len() as f64;
     let logs: Vec<f64> = each.iter().map(|(b, a)| ((to - a) / (from - b)).ln()).collect();
-    let mean = logs.iter().sum::<f64>() / groups;
-    let spread = (groups - 1.0) / groups * logs.iter().map(|l| (l - mean).powi(2)).sum::<f64>();
-    let t = StudentsT::new(0.0, 1.0, groups - 1.0).ok()?.inverse_cdf(0.975);
+    let spread = jackknife::variance_about_mean(logs.iter().copied());
+    let t = student::quantile(logs.len() as f64 - 1.0, 0.975)?;
     let share = |log: f64| 1.0 - (0.5 * log).exp();
     let (middle, reach) = ((to / from).ln(), t * spread.sqrt());
     let ci95 = [share(middle + reach), share(middle - reach)];

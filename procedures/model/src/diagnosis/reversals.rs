@@ -5,8 +5,8 @@ use crate::report::fit::Fit;
 use crate::report::maps::Region;
 use crate::residual_analysis::maps::regions::ReferenceMagnitude;
 use crate::signal::Signal;
+use crate::stats::{student, summary};
 use crate::words::figure;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Difference between measured and predicted friction within `reach` of a reversal. The interval is Student's t over
 /// the reversals. `None` with fewer than three.
@@ -27,10 +27,9 @@ pub fn region(model: &TwoStageModel, reach: f64, fit: &Fit, yardstick: Option<&R
     }
     let samples = of_turn.iter().map(|t| t.1).sum();
     let means: Vec<f64> = of_turn.iter().filter(|t| t.1 > 0).map(|(sum, count)| sum / *count as f64).collect();
-    let n = means.len() as f64;
-    let mean = means.iter().sum::<f64>() / n;
-    let t = StudentsT::new(0.0, 1.0, n - 1.0).ok().filter(|_| n >= 3.0)?.inverse_cdf(0.975);
-    let half_width = t * (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt();
+    let mean = summary::mean(&means);
+    let t = student::quantile(means.len() as f64 - 1.0, 0.975).filter(|_| means.len() >= 3)?;
+    let half_width = t * summary::standard_error(&means);
     let side = if mean > 0.0 { "low" } else { "high" };
     let measure = yardstick.map_or_else(String::new, |y| format!(", {}", y.says(mean.abs())));
     let angle = model.prepared.column_unit(Signal::Position);

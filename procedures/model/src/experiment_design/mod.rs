@@ -14,6 +14,7 @@ use crate::preprocess::{Prepared, Problem, prepare};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Diagnosis, Discovery, Experiment, Verdict};
 use crate::signal::Signal;
+use crate::stats::summary::peak;
 use crate::thresholds::{NEARLY_COVERED, SEPARATED_Z, USELESS_Z};
 use crate::words::list;
 use crate::{ModelError, ModelSpec, Options, OwnEffect};
@@ -320,7 +321,7 @@ fn in_words(z: f64) -> String {
 /// which is the default.
 fn nearest<'m>(menu: &'m [Choice], prepared: &Prepared) -> Option<&'m Choice> {
     let points = &prepared.main.view.points;
-    let largest = |signal| points.find(signal).map_or(0.0, |of| of.iter().fold(0.0f64, |most, v| most.max(v.abs())));
+    let largest = |signal| points.find(signal).map_or(0.0, peak);
     let (fastest, heaviest) = (largest(Signal::Velocity), prepared.load_scale * largest(Signal::Load));
     let share = |choice: &Choice, of: fn(&Stretch) -> f64, all: f64| {
         let most = choice.stretches.iter().fold(0.0f64, |most, stretch| most.max(of(stretch).abs()));

@@ -8,6 +8,7 @@ use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::solution::Solution;
+use crate::stats::summary::mean;
 
 /// Noise of a measurement: a common part for all points of a block, and an independent part for each point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +39,6 @@ impl Noise {
                 push(&mut groups, (*b, *b), *e);
             }
         }
-        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
         let (mut squares, mut free, mut between, mut shares) = (0.0, 0.0, 0.0, 0.0);
         for (_, values) in &groups {
             let middle = mean(values);

@@ -7,10 +7,11 @@ use crate::preprocess::Problem;
 use crate::regression::linear_model::{LinearModel, Relative, Term, columns};
 use crate::regression::solution::Solution;
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
+use crate::stats::student;
+use crate::stats::summary::deviation;
 use crate::thresholds::TRADE_OFF_CORRELATION;
 use jointbench_instrument::Motion;
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::sync::Arc;
 
 /// Half width of a 95 % interval in standard deviations over the filter corners.
@@ -25,7 +26,7 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
     let solution = Solution::of(model)?;
     let replicates = coefficients_without(&solution);
     let blocks = replicates.len() as f64;
-    let t = StudentsT::new(0.0, 1.0, blocks - 1.0).map_or(2.0, |law| law.inverse_cdf(0.975));
+    let t = student::half_width_95(blocks - 1.0);
     let others: Vec<(Vec<f64>, Vec<f64>)> = model
         .problem
         .bandwidths
@@ -103,12 +104,6 @@ fn at_corner<'p>(model: &LinearModel<'p>, problem: &'p Problem) -> LinearModel<'
         |r: &Relative<'p>| Relative { columns: columns(r.effect, r.form.name, &r.shape, problem), ..r.clone() };
     other.relatives = Arc::new(model.relatives.par_iter().map(relative).collect());
     other
-}
-
-fn deviation(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt()
 }
 
 /// Nonlinear parameters of a term.

@@ -4,6 +4,7 @@
 use crate::inference::block_intervals;
 use crate::inference::parameter_state::{Intervals, Slot};
 use crate::inference::{changepoint, drag_remanence, harmonic_order, parameter_state};
+use crate::stats::{jackknife, student};
 use crate::thresholds::TRADE_OFF_CORRELATION;
 
 use crate::effect::ShapeSearch;
@@ -13,7 +14,6 @@ use crate::preprocess::independent_blocks::independent_blocks;
 use crate::regression::linear_model::LinearModel;
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use jointbench_instrument::Motion;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Parameters of the terms with 95 % intervals.
 ///
@@ -36,13 +36,13 @@ pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
     let replicates = grams.jackknife();
     let groups = replicates.len().max(2) as f64;
     // The replicates are steps from the full estimate, because the Gram matrices are built with the residual.
-    let covariance = |a: usize, b: usize| (groups - 1.0) / groups * replicates.iter().map(|r| r[a] * r[b]).sum::<f64>();
+    let covariance = |a: usize, b: usize| jackknife::variance(replicates.iter().map(|r| r[a] * r[b]), groups);
     let variance: Vec<f64> = (0..p).map(|k| covariance(k, k)).collect();
     let active = active(&grams);
     let mut parameters = Vec::new();
     for (k, slot) in slots.iter().enumerate() {
         let freedom = (effective_blocks(&grams, &active, &spd, k) - 1.0).max(1.0);
-        let t = StudentsT::new(0.0, 1.0, freedom).map_or(2.0, |t| t.inverse_cdf(0.975));
+        let t = student::half_width_95(freedom);
         let reach = if spd.is_dependent(k) { f64::INFINITY } else { t * variance[k].sqrt() };
         let ci95 = match slot.shape {
             Some(shape) => [

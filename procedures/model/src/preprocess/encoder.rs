@@ -5,6 +5,7 @@ use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::segments;
 use crate::preprocess::{Prepared, filter, sample_s, sweeps};
 use crate::signal::{Signal, Signals, is_pose};
+use crate::stats::summary::peak;
 use crate::view::Constants;
 use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
@@ -33,7 +34,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         },
         <[f64]>::to_vec,
     );
-    let fastest = velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let fastest = peak(&velocity);
     let mut signals = Signals::new(run.len());
     signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
     signals.set(Signal::Direction, segments::direction(&velocity, 1e-3 * fastest));

@@ -1,5 +1,6 @@
 //! Joints with one side clamped, which twist but do not turn.
 
+use crate::stats::summary::mean;
 use jointbench_instrument::{Kind, RunTable};
 
 /// The turns of the link, if one side of the joint is clamped. A free joint moves farther than it twists, on both
@@ -23,7 +24,6 @@ pub fn is_held(run: &RunTable) -> bool {
     let column = |name: &str| run.column(name).unwrap_or_default();
     let (motor, link, torque) = (column("motor_position_rad"), column("link_position_rad"), column("link_torque_nm"));
     let twist: Vec<f64> = motor.iter().zip(link).map(|(m, q)| m / gear - q).collect();
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (middle, centre) = (mean(&twist), mean(torque));
     let product =
         |f: fn(f64, f64) -> f64| twist.iter().zip(torque).map(|(q, t)| f(q - middle, t - centre)).sum::<f64>();

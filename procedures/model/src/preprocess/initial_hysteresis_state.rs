@@ -2,8 +2,9 @@
 
 use crate::hysteresis_operators;
 use crate::linear::basis::{Basis, dot};
-use crate::preprocess::{Problem, median};
+use crate::preprocess::Problem;
 use crate::signal::Signal;
+use crate::stats::summary::{median, range};
 use crate::view::Start;
 
 /// Stop operators that represent any hysteresis, evenly spaced up to half of the range; larger ones never slip.
@@ -19,7 +20,7 @@ const ROWS: usize = 2000;
 pub fn find(problem: &mut Problem, signal: Signal) -> bool {
     let Some(values) = problem.view.find(signal) else { return false };
     let values = values.to_vec();
-    let ends = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let ends = range(&values);
     let (peak, reach) = (ends.0.abs().max(ends.1.abs()), (ends.1 - ends.0) / 2.0);
     if !hysteresis_operators::turns(&values, 0.2 * reach) {
         return false;

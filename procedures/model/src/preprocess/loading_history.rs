@@ -3,6 +3,7 @@
 use crate::hysteresis_operators;
 use crate::preprocess::Problem;
 use crate::signal::Signal;
+use crate::stats::summary::range;
 
 /// Stop operators that represent any hysteresis, evenly spaced up to half of the range; larger ones never slip.
 const CONTACTS: usize = 8;
@@ -15,7 +16,7 @@ pub fn part(problem: &mut Problem) {
     let view = &problem.view;
     let current = view.get(Signal::Current);
     let samples = view.samples.find(Signal::Current).unwrap_or_default();
-    let ends = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), i| (l.min(*i), h.max(*i)));
+    let ends = range(samples);
     let allowed = SAME * ends.0.abs().max(ends.1.abs());
     for contact in 1..=CONTACTS {
         let reach = (ends.1 - ends.0) / 2.0 * contact as f64 / CONTACTS as f64;

@@ -31,6 +31,7 @@ use crate::preprocess::memo::Memo;
 use crate::report::fit::{Bristles, GivenConstant, Preparation};
 use crate::signal::Signal;
 pub use crate::signal::may_cause;
+use crate::stats::summary::{median, range};
 use crate::view::View;
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Kind, Motion, RunTable};
@@ -264,7 +265,7 @@ pub(crate) fn prepare_with(
 
 /// Whether only rounding changes the values: a channel that was not connected.
 fn is_constant(values: &[f64]) -> bool {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = range(values);
     high - low <= 1e-9 * high.abs().max(low.abs())
 }
 
@@ -304,13 +305,4 @@ const TELLING: usize = 65_536;
 /// The median time step between samples.
 fn sample_s(time_s: &[f64]) -> f64 {
     median(time_s.windows(2).step_by(time_s.len().div_ceil(TELLING)).map(|w| w[1] - w[0]))
-}
-
-pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }

@@ -3,7 +3,7 @@
 
 use crate::linear::basis::dot;
 use crate::preprocess::design::segments;
-use crate::preprocess::median;
+use crate::stats::summary::median;
 use std::ops::Range;
 
 /// The speed at the edge of a chunk is the slope of the position over about this time [s].

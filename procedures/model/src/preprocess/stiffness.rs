@@ -7,6 +7,7 @@ use crate::preprocess::design::segments;
 use crate::preprocess::held_side::held_turns;
 use crate::preprocess::{Prepared, filter, sample_s, sweeps};
 use crate::signal::{Signal, Signals};
+use crate::stats::summary::{mean, peak, range};
 use crate::view::Constants;
 use crate::words::figure;
 use crate::{ModelError, Options};
@@ -74,7 +75,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     Ok(prepared)
 }
 
-/// Standard deviation of the twist from the rounding of both encoders [rad].
+/// Standard deviation of the twist due to the resolution of both encoders [rad].
 fn rounding(motor: &[f64], link: &[f64], torque: &[f64], gear: f64) -> f64 {
     encoder_step(motor, torque).hypot(gear * encoder_step(link, torque)) / gear / 12f64.sqrt()
 }
@@ -85,7 +86,6 @@ fn encoder_step(angle: &[f64], torque: &[f64]) -> f64 {
     /// Resultant length of readings on multiples with a noise of a fifth of a count, and of arbitrary angles.
     const ON: f64 = 0.5;
     const ANYWHERE: f64 = 0.25;
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (middle, centre) = (mean(angle), mean(torque));
     let product =
         |f: &dyn Fn(f64, f64) -> f64| angle.iter().zip(torque).map(|(a, t)| f(a - middle, t - centre)).sum::<f64>();
@@ -98,11 +98,8 @@ fn encoder_step(angle: &[f64], torque: &[f64]) -> f64 {
             .fold((0.0, 0.0), |s, v| (s.0 + v.0, s.1 + v.1));
         sin.hypot(cos) / values.len() as f64
     };
-    let range = |values: &[f64]| {
-        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-        high - low
-    };
-    let travel = range(&moved);
+    let (low, high) = range(&moved);
+    let travel = high - low;
     let mut steps =
         (8..=24).map(|bits| std::f64::consts::TAU / f64::from(1u32 << bits)).filter(|step| 2.0 * step < travel);
     let is_counted = |step: &f64| on_multiples(angle, *step) > ON && on_multiples(&moved, *step) < ANYWHERE;
@@ -123,7 +120,7 @@ fn motion(signals: &mut Signals, run: &RunTable, cutoff_hz: f64, step_s: f64) ->
         },
         <[f64]>::to_vec,
     );
-    let fastest = velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let fastest = peak(&velocity);
     signals.set(Signal::Direction, segments::direction(&velocity, 0.01 * fastest));
     signals.set(Signal::Link, link.to_vec());
     signals.set(Signal::Position, column("motor_position_rad").to_vec());
@@ -134,7 +131,6 @@ fn motion(signals: &mut Signals, run: &RunTable, cutoff_hz: f64, step_s: f64) ->
 /// Subtracts a separate zero of each repeat if the zeros differ by more than the variation within the repeats.
 /// Returns their RMS difference.
 fn own_zeros(twist: &mut [f64], repeat: &[i64]) -> Option<f64> {
-    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
     let all = mean(twist);
     let mut sums: BTreeMap<i64, (f64, f64)> = BTreeMap::new();
     for (t, r) in twist.iter().zip(repeat) {

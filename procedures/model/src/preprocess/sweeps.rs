@@ -8,6 +8,7 @@ use crate::preprocess::design::replicates::Same;
 use crate::preprocess::{Prepared, Problem, current_dwells, initial_hysteresis_state, loading_history};
 use crate::report::fit::Preparation;
 use crate::signal::Signal;
+use crate::stats::summary::peak;
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Kind, RunTable};
 use std::ops::Range;
@@ -118,7 +119,7 @@ fn conditions(samples: &Source, legs: &[Range<usize>], inputs: &[Same]) -> Vec<u
     for same in inputs {
         let Some(values) = samples.signals.find(same.signal()) else { continue };
         let values = same.of(values);
-        let peak = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        let peak = peak(&values);
         let early = |leg: &Range<usize>| leg.start + leg.len() / 4..leg.start + leg.len() / 2;
         let late = |leg: &Range<usize>| leg.end - leg.len() / 4..leg.end;
         for part in [early as fn(&Range<usize>) -> Range<usize>, late] {

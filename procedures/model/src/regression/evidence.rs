@@ -6,9 +6,10 @@ use crate::linear::added_columns::{Added, Gain};
 use crate::linear::blocked_ridge::{BlockedRidge, Outside};
 use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::allows;
+use crate::stats::{student, summary};
 use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 /// A candidate with a smaller tolerance (1 − R² on the model) is collinear with the model.
 pub const LEAST_VISIBLE: f64 = 1e-5;
@@ -144,19 +145,15 @@ fn of_effect<'l, 'p>(ridge: &BlockedRidge, trials: &[Trial<'l, 'p>], forms: usiz
 
 /// A mean in units of its standard error.
 pub fn errors(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let square: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
-    mean / (square / (n - 1.0) / n).sqrt().max(f64::MIN_POSITIVE)
+    summary::mean(values) / summary::standard_error(values).max(f64::MIN_POSITIVE)
 }
 
 /// p-value of a Wald statistic with this number of coefficients, estimated from this number of blocks: Student's t
 /// for one coefficient, Hotelling's T² for several.
 pub fn chance(wald: f64, coefficients: usize, blocks: usize) -> f64 {
     let (k, g) = (coefficients as f64, blocks as f64);
-    let none = |law: Result<f64, _>| law.unwrap_or(1.0);
     match coefficients {
-        1 => none(StudentsT::new(0.0, 1.0, g - 1.0).map(|law| 2.0 * law.sf(wald.max(0.0).sqrt()))),
+        1 => student::p_value(g - 1.0, wald.max(0.0).sqrt()).unwrap_or(1.0),
         _ => {
             let law = FisherSnedecor::new(k, (g - k).max(1.0));
             law.map_or(1.0, |law| law.sf(wald.max(0.0) * (g - k) / ((g - 1.0) * k)))

@@ -6,7 +6,8 @@ use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
 use crate::regression::linear_model::LinearModel;
 use crate::stats::permutation_test::Score;
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use crate::stats::{jackknife, student};
+use statrs::distribution::{ContinuousCDF, Normal};
 use std::ops::Range;
 
 /// A long run flips the signs of groups of neighbouring blocks together.
@@ -115,7 +116,7 @@ impl PartialRegression {
         let rest = self.basis.rest(column);
         let sums = products(&rest, &self.residual, &self.groups);
         let squares = products(&rest, &rest, &self.groups);
-        let chance = jackknife(&sums, &squares)?;
+        let chance = jackknife_p_value(&sums, &squares)?;
         Some(Normal::standard().inverse_cdf(1.0 - chance.max(1e-15))).filter(|z| z.is_finite())
     }
 
@@ -148,15 +149,13 @@ impl Orthogonalized {
 
 /// p-value of a coefficient by a jackknife over groups: `sums` are the products of its column with the residual,
 /// `squares` those with itself.
-pub fn jackknife(sums: &[f64], squares: &[f64]) -> Option<f64> {
+pub fn jackknife_p_value(sums: &[f64], squares: &[f64]) -> Option<f64> {
     let (sum, square) = (sums.iter().sum::<f64>(), squares.iter().sum::<f64>());
     let coefficient = sum / square;
     let without = |(s, h): (&f64, &f64)| ((sum - s) / (square - h) - coefficient).powi(2);
-    let n = sums.len() as f64;
-    let error = ((n - 1.0) / n * sums.iter().zip(squares).map(without).sum::<f64>()).sqrt();
+    let error = jackknife::variance(sums.iter().zip(squares).map(without), sums.len() as f64).sqrt();
     let deciding = square * square / dot(squares, squares);
-    let t = StudentsT::new(0.0, 1.0, deciding - 1.0).ok()?;
-    Some(2.0 * t.sf((coefficient / error).abs()))
+    student::p_value(deciding - 1.0, (coefficient / error).abs())
 }
 
 pub fn products<C: Into<f64> + Copy>(a: &[C], b: &[f64], groups: &[Range<usize>]) -> Vec<f64> {

@@ -9,6 +9,7 @@ use crate::preprocess::form_error::{ErrorColumn, FormError, Lives};
 use crate::regression::evidence::LEAST_VISIBLE;
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
 use crate::regression::weights::weights;
+use crate::stats::jackknife;
 use jointbench_instrument::Kind;
 use std::sync::Arc;
 
@@ -135,11 +136,7 @@ impl Solution {
     /// Standard errors of the coefficients of the effects, by a jackknife over blocks.
     pub fn standard_errors(&self) -> Vec<f64> {
         let replicates: Vec<Vec<f64>> = self.ridge.replicates().collect();
-        let groups = replicates.len() as f64;
-        let of = |k: usize| {
-            let mean = replicates.iter().map(|r| r[k]).sum::<f64>() / groups;
-            ((groups - 1.0) / groups * replicates.iter().map(|r| (r[k] - mean).powi(2)).sum::<f64>()).sqrt()
-        };
+        let of = |k: usize| jackknife::variance_about_mean(replicates.iter().map(|r| r[k])).sqrt();
         (0..self.coefficients.len()).map(of).collect()
     }
 

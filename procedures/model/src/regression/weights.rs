@@ -4,7 +4,7 @@
 
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::form_error::FormError;
-use crate::preprocess::friction::bristles::quantile;
+use crate::stats::summary::quantile;
 
 /// Bounds of the weights; the median weight is 1.
 const LEAST: f64 = 0.2;

@@ -110,7 +110,7 @@ impl<'p> Events<'p> {
     /// Robust scatter of the means of sections of one length. `None` if there are too few.
     fn scale(&self, length: usize) -> Option<f64> {
         let sizes: Vec<f64> = self.means(length).map(|(_, mean)| mean.abs()).collect();
-        let scale = crate::preprocess::median(sizes.iter().copied()) / MEDIAN;
+        let scale = crate::stats::summary::median(sizes.iter().copied()) / MEDIAN;
         (STRETCHES * length < sizes.len() && scale > 0.0).then_some(scale)
     }
 

@@ -2,8 +2,8 @@
 //! can depend on it.
 
 use crate::preprocess::Problem;
-use crate::preprocess::friction::bristles::quantile;
 use crate::signal::Signal;
+use crate::stats::summary::quantile;
 use std::f64::consts::TAU;
 
 const ANGLES: usize = 36;

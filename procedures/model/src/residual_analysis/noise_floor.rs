@@ -4,10 +4,10 @@ use crate::preprocess::independent_blocks::independent_blocks;
 use crate::preprocess::{Prepared, Problem};
 use crate::report::diagnosis::NoiseFloor;
 use crate::residual_analysis::events::Event;
+use crate::stats::jackknife::half_width_95;
 use crate::thresholds::FLOOR_INTERVAL_RATIO;
 use crate::words::{figure, spoken};
 use jointbench_instrument::Kind;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Fewer pairs than these do not estimate a scatter.
 const FEWEST: usize = 8;
@@ -98,15 +98,8 @@ impl Pairs {
 /// 95 % interval of the common share, by a jackknife over blocks.
 fn share_interval(all: &Pairs, of_block: &[Pairs]) -> [f64; 2] {
     let whole = all.share();
-    let reach = reach(of_block.iter().map(|block| all.without(block).share() - whole));
+    let reach = half_width_95(of_block.iter().map(|block| all.without(block).share() - whole));
     [(whole - reach).max(0.0), (whole.max(0.0) + reach).min(1.0)]
-}
-
-/// Half width of a 95 % interval, from the changes of a figure without each block.
-fn reach(steps: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let groups = steps.len().max(2) as f64;
-    let spread = (groups - 1.0) / groups * steps.map(|step| step * step).sum::<f64>();
-    StudentsT::new(0.0, 1.0, groups - 1.0).map_or(2.0, |t| t.inverse_cdf(0.975)) * spread.sqrt()
 }
 
 /// Why there is no noise floor.
@@ -146,7 +139,8 @@ fn interval(all: &Pairs, of_block: &[Pairs]) -> Option<[f64; 2]> {
         let rest = all.without(block);
         (rest.noise.max(0.0) / rest.count.max(1.0)).max(1e-12 * whole)
     };
-    let reach = reach(of_block.iter().map(|block| (without(block) / whole).ln())).max(1.96 * (2.0 / all.count).sqrt());
+    let reach =
+        half_width_95(of_block.iter().map(|block| (without(block) / whole).ln())).max(1.96 * (2.0 / all.count).sqrt());
     let ratio = if whole > 0.0 { (0.5 * reach).min(50.0).exp() } else { 1.0 };
     (ratio <= FLOOR_INTERVAL_RATIO).then(|| [whole.sqrt() / ratio, whole.sqrt() * ratio])
 }

@@ -4,16 +4,16 @@ use crate::Options;
 use crate::effect::Regime;
 use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::form_error::Lives;
-use crate::preprocess::friction::bristles::quantile;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::visible;
 use crate::regression::solution::{DELAY, Solution, effect_coefficient, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::refused::least_share;
+use crate::stats::student;
+use crate::stats::summary::quantile;
 use crate::thresholds::{DELAY_ROWS, DETECTION_POWER};
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Detection limit of each effect that is not in the model: the smallest size that is found with 80 % power, as the
 /// median over the forms of the effect.
@@ -27,7 +27,7 @@ pub fn detection_limits<'p>(
     let open: Vec<&Regressor<'p>> = library.candidates.iter().filter(|c| is_out(c.id())).collect();
     let blocks = solution.ridge.blocks.len() as f64;
     let chance = options.alpha / (2.0 * open.len().max(1) as f64);
-    let critical = StudentsT::new(0.0, 1.0, blocks - 1.0).map_or(3.0, |law| law.inverse_cdf(1.0 - chance));
+    let critical = student::quantile(blocks - 1.0, 1.0 - chance).unwrap_or(3.0);
     let without_jerk = without(&end.main, solution, Lives::Jerk);
     let without_bristle = without(&end.main, solution, Lives::Bristle);
     let size = |form: &&Regressor<'p>| {

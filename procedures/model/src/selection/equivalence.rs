@@ -4,13 +4,13 @@ use crate::Options;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::alone;
+use crate::stats::summary::deviation;
 
 /// Two models tie if the difference of their validation errors is within its own scatter over the folds.
 pub fn is_tie(a: &[f64], b: &[f64]) -> bool {
     let differences: Vec<f64> = b.iter().zip(a).map(|(b, a)| b - a).collect();
     let n = differences.len() as f64;
-    let mean = differences.iter().sum::<f64>() / n;
-    let spread = (differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt();
+    let spread = deviation(&differences);
     differences.iter().sum::<f64>() <= 2.0 * n.sqrt() * spread + 1e-9 * a.iter().sum::<f64>()
 }
 

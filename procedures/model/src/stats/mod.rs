@@ -1,4 +1,7 @@
 //! Statistics that are independent of models.
 
 pub(crate) mod grouped;
+pub(crate) mod jackknife;
 pub(crate) mod permutation_test;
+pub(crate) mod student;
+pub(crate) mod summary;

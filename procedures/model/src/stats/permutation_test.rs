@@ -6,11 +6,12 @@
 
 use crate::linear::basis::dot;
 use crate::linear::cholesky::Cholesky;
+use crate::stats::student;
 use crate::thresholds::OWN_SCATTER_SHARE;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal};
 use std::borrow::Borrow;
 
 /// One signed sum for each block, whitened so that their squared total is the studentised score.
@@ -52,8 +53,8 @@ impl Score {
     /// its jackknife.
     pub fn needed(&self, z: f64, deciding: f64) -> f64 {
         if self.parts.len() == 1 {
-            let t = StudentsT::new(0.0, 1.0, deciding - 1.0);
-            return t.map_or(f64::INFINITY, |t| -t.inverse_cdf(0.5 * Normal::standard().sf(z)));
+            let t = student::quantile(deciding - 1.0, 0.5 * Normal::standard().sf(z));
+            return t.map_or(f64::INFINITY, |t| -t);
         }
         let chi2 = chi2_scale(z, self.parts.len());
         (chi2 / (1.0 - chi2 / deciding).max(OWN_SCATTER_SHARE)).sqrt()

@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::hysteresis_operators;
 use crate::signal::Signal;
+use crate::stats::summary::range;
 use crate::symbolic::{Column, FittedForm, Rule, Symbolic, memory};
 use crate::view::View;
 use jointbench_instrument::Kind;
@@ -58,7 +59,7 @@ impl Effect for Hysteresis {
         // A stop with a reach of more than half the range never slips on the way back. It is then confounded with a
         // straight line. The positions of the bands are stored with the fit, because another run has another range.
         let current = view.samples.find(Signal::Current).unwrap_or_default();
-        let ends = current.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), i| (l.min(*i), h.max(*i)));
+        let ends = range(current);
         let most = (ends.1 - ends.0) / 2.0;
         let reach = Shape { name: "i_max", min: most, max: most, search: ShapeSearch::Whole };
         let several = |(name, bands): (&'static str, usize)| Form {

@@ -1,6 +1,7 @@
 //! Plausibility of brake data: currents and torques beyond the range of all brakes have a wrong unit.
 
 use crate::linear::basis::dot;
+use crate::stats::summary::peak;
 use jointbench_instrument::{Kind, RunTable};
 
 /// Largest current relative to the rated current, and the share of the rated current below which the torque is small.
@@ -26,7 +27,7 @@ const VARIES: f64 = 0.1;
 /// A current or torque beyond the plausible range, in a sentence.
 pub fn beyond(run: &RunTable) -> Option<String> {
     let current = run.column("brake_current_a")?;
-    let largest = current.iter().fold(0.0f64, |most, i| most.max(i.abs()));
+    let largest = peak(current);
     let rated_a = run.meta().rated_current_a;
     let most_a = rated_a.map_or(MOST_A, |rated_a| TIMES * rated_a);
     if largest > most_a {
@@ -65,7 +66,7 @@ fn held(current: &[f64], torque: &[f64]) -> Option<f64> {
         let mean = values.iter().map(|v| v.abs()).sum::<f64>() / values.len() as f64;
         values.iter().map(|v| v.abs() - mean).collect()
     };
-    let largest = current.iter().fold(0.0f64, |most, i| most.max(i.abs()));
+    let largest = peak(current);
     let (current, torque) = (about_mean(current), about_mean(torque));
     let (ii, it, tt) = (dot(&current, &current), dot(&current, &torque), dot(&torque, &torque));
     let varies = ii > (VARIES * largest).powi(2) * current.len() as f64;

@@ -1,5 +1,6 @@
 //! Sensor faults: a constant value during motion, saturation, and single outliers.
 
+use crate::stats::summary::range;
 use crate::words::figure;
 use jointbench_instrument::units::unit_of;
 use jointbench_instrument::{Kind, RunTable};
@@ -61,7 +62,7 @@ fn stretches_of_one_value(values: &[f64]) -> Vec<Range<usize>> {
 }
 
 fn clipped(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>]) -> Option<String> {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = range(values);
     let at = |end: f64| same.iter().filter(|range| values[range.start] == end).map(|range| range.len()).sum::<usize>();
     let (end, count) = [(high, at(high)), (low, at(low))].into_iter().max_by_key(|(_, count)| *count)?;
     (count as f64 >= CLIPPED_SHARE * values.len() as f64).then(|| {

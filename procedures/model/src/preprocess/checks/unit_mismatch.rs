@@ -3,6 +3,7 @@
 
 use crate::preprocess::checks::blocks::{BLOCK_S, Block, blocks};
 use crate::preprocess::held_side::is_held;
+use crate::stats::summary::{mean, range};
 use jointbench_instrument::{Kind, Motion, RunTable};
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -171,7 +172,7 @@ fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
 
 /// An angle that never changes while the other one moves.
 fn rests(one: &str, a: &[f64], other: &str, b: &[f64], ratio: f64) -> Option<String> {
-    let (low, high) = b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = range(b);
     let moved = (high - low) / ratio;
     (moved > WAY && a.iter().all(|v| *v == a[0])).then(|| {
         format!("{one} never changes, while {other} says that it moved by {moved:.3} rad: it was not connected")
@@ -226,7 +227,6 @@ fn noise(run: &RunTable, blocks: &[Block]) -> Option<String> {
         Kind::Encoder | Kind::Stiffness => return None,
     };
     let current = run.column(column)?;
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let variance = |values: &[f64]| {
         let middle = mean(values);
         values.iter().map(|i| (i - middle).powi(2)).sum::<f64>() / values.len() as f64

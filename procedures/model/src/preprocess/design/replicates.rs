@@ -4,6 +4,7 @@
 use crate::preprocess::Problem;
 use crate::preprocess::design::blocks;
 use crate::signal::Signal;
+use crate::stats::summary::range;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::TAU;
 
@@ -63,7 +64,7 @@ impl Input {
         let values = problem.reduce.apply(same.of(problem.view.find(signal)?));
         let (mean_square, variance) = moments(&values);
         let is_angle = signal == Signal::Link && !problem.view.constants.slides;
-        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        let (low, high) = range(&values);
         let turns = is_angle && high - low > TAU;
         let variance = if turns { variance.min(TAU * TAU / 12.0) } else { variance };
         // Changes from row to row within a stretch: noise and the motion between the rows.

@@ -9,6 +9,7 @@ use crate::linear::basis::{Basis, dot};
 use crate::linear::non_negative::non_negative;
 use crate::preprocess::TELLING;
 use crate::report::fit::Bristles;
+use crate::stats::summary::{quantile, range};
 use crate::view::Start;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -27,13 +28,6 @@ const LEAST_OF_LONGEST: f64 = 1e-4;
 const TURN_STEPS: f64 = 6.0;
 const TURN_SHARE: f64 = 1e-3;
 
-/// Quantile of the values.
-pub fn quantile(values: impl IntoIterator<Item = f64>, share: f64) -> f64 {
-    let mut values: Vec<f64> = values.into_iter().collect();
-    let at = (share * values.len().saturating_sub(1) as f64).round() as usize;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(at, f64::total_cmp).1 }
-}
-
 /// The step of the encoder: nearly the smallest difference between neighbouring samples of a moving joint.
 pub fn encoder_step(position: &[f64]) -> f64 {
     let every = position.len().div_ceil(TELLING);
@@ -43,7 +37,7 @@ pub fn encoder_step(position: &[f64]) -> f64 {
 
 /// Smallest motion that differs from encoder noise.
 fn depth(position: &[f64], step: f64) -> f64 {
-    let (low, high) = position.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+    let (low, high) = range(position);
     (TURN_STEPS * step).max(TURN_SHARE * (high - low))
 }
 
@@ -106,7 +100,7 @@ pub fn reaches(position: &[f64], turns: &[usize], step: f64, slides: bool) -> Ve
     if turns.is_empty() {
         return Vec::new();
     }
-    let (low, high) = position.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+    let (low, high) = range(position);
     let range = if slides { high - low } else { TURN.min(high - low) };
     let shortest = (STEPS * step).max(LEAST_OF_RANGE * range);
     let longest = (LONGEST * range).max(8.0 * shortest);

@@ -5,6 +5,7 @@ use crate::preprocess::friction::steady_state;
 use crate::preprocess::{Prepared, unknown_columns};
 use crate::report::fit::Preparation;
 use crate::signal::{Signal, Signals};
+use crate::stats::summary::peak;
 use crate::view::Constants;
 use crate::{ModelError, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
@@ -19,7 +20,7 @@ const AT_REST: f64 = 1e-3;
 pub fn prepare(run: &RunTable) -> Result<Prepared, ModelError> {
     let samples = read(run)?;
     let speed = samples.signals.find(Signal::Velocity).unwrap_or_default();
-    let fastest = speed.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+    let fastest = peak(speed);
     let moving: Vec<usize> = (0..run.len()).filter(|row| speed[*row].abs() > AT_REST * fastest).collect();
     let at_rest = run.len() - moving.len();
     if moving.len() < FEWEST {

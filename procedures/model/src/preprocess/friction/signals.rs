@@ -3,10 +3,11 @@
 use crate::ModelError;
 use crate::preprocess::design::segments;
 use crate::preprocess::filter::{LowPass, by_recording, derivative};
-use crate::preprocess::friction::bristles::{self, quantile};
+use crate::preprocess::friction::bristles;
 use crate::preprocess::friction::work_rate::{Even, even};
 use crate::preprocess::sample_s;
 use crate::signal::{Signal, Signals};
+use crate::stats::summary::quantile;
 use jointbench_instrument::RunTable;
 use rayon::prelude::*;
 

@@ -7,9 +7,10 @@
 use crate::preprocess::chunks::{Layout, Source, problem};
 use crate::preprocess::design::{blocks, segments};
 use crate::preprocess::friction::unmeasured_gravity;
-use crate::preprocess::{Prepared, Problem, median};
+use crate::preprocess::{Prepared, Problem};
 use crate::report::fit::Preparation;
 use crate::signal::Signal;
+use crate::stats::summary::{mean, median, peak};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
 use rayon::prelude::*;
@@ -39,7 +40,7 @@ pub fn find(samples: &Source, gear_ratio: f64, options: &Options) -> Vec<Range<u
     let n = samples.chunk(options.chunk_s.unwrap_or(CHUNK_S));
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let load = samples.signals.find(Signal::Load);
-    let heaviest = load.map_or(0.0, |l| l.iter().fold(0.0f64, |m, v| m.max(v.abs())));
+    let heaviest = load.map_or(0.0, peak);
     let link_s = n as f64 * samples.step_s / gear_ratio.abs();
     samples.legs().into_par_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, (n, link_s))).collect()
 }
@@ -82,7 +83,6 @@ fn settled(
     let kept = longest.start.max(second_half.start).min(longest.end)..longest.end;
     let changes = |of: &[f64]| {
         let (first, second) = of[kept.clone()].split_at(kept.len() / 2);
-        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
         (mean(second) - mean(first)).abs()
     };
     let by_chance = 3.0 * scatter * (4.0 / kept.len() as f64).sqrt();
@@ -183,13 +183,12 @@ pub fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&
     let speeds: Vec<f64> = plateaus.iter().map(|p| middle(velocity, p)).collect();
     let lengths: Vec<f64> = plateaus.iter().map(|p| p.len() as f64).collect();
     let middles = |signal: &[f64]| -> Vec<f64> { plateaus.iter().map(|p| middle(signal, p)).collect() };
-    let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let measured = samples.signals.find(Signal::Load);
     let loads = command.or(measured).map_or_else(|| vec![0.0; plateaus.len()], middles);
     // Without a load, the load signal is noise and small compared with the torque.
     let peak = match command {
-        Some(_) => largest(&loads),
-        None => largest(&loads).max(largest(&middles(&samples.target))),
+        Some(_) => peak(&loads),
+        None => peak(&loads).max(peak(&middles(&samples.target))),
     };
     let speed = blocks::clusters(&speeds, |v| 0.03 * v.abs());
     let load = blocks::clusters(&loads, |l| 0.03 * l.abs() + 0.01 * peak);

@@ -2,6 +2,7 @@
 
 use crate::preprocess::{Prepared, Problem};
 use crate::signal::Signal;
+use crate::stats::summary::range;
 use jointbench_instrument::Kind;
 use std::f64::consts::TAU;
 
@@ -159,14 +160,14 @@ impl BinnedAxis {
 
     fn says_the_same(&self, other: &Self) -> bool {
         let pairs = || self.values.iter().zip(&other.values);
-        let range = self.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        let range = range(&self.values);
         self.unit == other.unit && pairs().all(|(a, b)| (a - b).abs() <= 0.01 * (range.1 - range.0))
     }
 }
 
 /// Angles of more than one turn, folded into one turn.
 fn turned(values: Vec<f64>) -> Vec<f64> {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = range(&values);
     if high - low > TAU { values.into_iter().map(|a| a.rem_euclid(TAU)).collect() } else { values }
 }
 
@@ -198,7 +199,7 @@ fn since_reversal(problem: &Problem) -> Vec<f64> {
 
 /// Bins of equal width over the range, without empty ones.
 fn even(values: &[f64], count: usize) -> Vec<usize> {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = range(values);
     if high <= low {
         return vec![0; values.len()];
     }

@@ -3,7 +3,7 @@
 use crate::linear::basis::dot;
 use crate::preprocess::Problem;
 use crate::residual_analysis::maps::binned_axis::BinnedAxis;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use crate::stats::student;
 
 /// Rows sorted into the cells of one axis, or of two.
 #[derive(Debug, Clone)]
@@ -60,8 +60,7 @@ impl Map {
 impl Cell {
     /// Half width of a band that holds for `many` cells together (Bonferroni), for any correlation between the cells.
     pub fn half_width(&self, alpha: f64, many: usize) -> Option<f64> {
-        let t = StudentsT::new(0.0, 1.0, (self.blocks - 1) as f64).ok()?;
-        Some(self.error? * t.inverse_cdf(1.0 - alpha / (2.0 * many.max(1) as f64)))
+        Some(self.error? * student::quantile((self.blocks - 1) as f64, 1.0 - alpha / (2.0 * many.max(1) as f64))?)
     }
 }
 

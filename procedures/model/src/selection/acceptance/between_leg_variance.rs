@@ -11,7 +11,7 @@ use crate::preprocess::Problem;
 use crate::preprocess::design::segments::stretches;
 use crate::preprocess::independent_blocks::legs;
 use crate::regression::linear_model::{LinearModel, Term};
-use crate::regression::partial_regression::{PartialRegression, jackknife, products};
+use crate::regression::partial_regression::{PartialRegression, jackknife_p_value, products};
 use crate::regression::significance::chance;
 use crate::stats::grouped::{means, within};
 use crate::thresholds::{BETWEEN_LEGS, STEP_OVER_READINGS};
@@ -91,7 +91,7 @@ fn shows_between(
         taken.iter_mut().zip(column).for_each(|(t, v)| *t += coefficient * v);
     }
     let (sums, squares) = (products(&taken, &ground.residual, legs), products(&taken, &taken, legs));
-    jackknife(&sums, &squares).is_some_and(|chance| chance <= options.alpha)
+    jackknife_p_value(&sums, &squares).is_some_and(|chance| chance <= options.alpha)
 }
 
 /// For too few legs to estimate their scatter: a step is rejected unless it exceeds the scatter of the readings.
