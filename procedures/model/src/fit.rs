@@ -101,7 +101,7 @@ fn fitted_terms(assembly: &TwoStageModel) -> (Vec<TermReport>, Vec<Parameter>, V
     (terms, parameters, trade_offs)
 }
 
-/// What a reader of the fit has to know, in sentences.
+/// Notes on a fit for its reader, in sentences.
 fn notes(assembly: &TwoStageModel, nuisance: Option<&Nuisance>, undetermined: Option<String>) -> Vec<String> {
     let (prepared, main) = (assembly.prepared, &assembly.main);
     let mut notes: Vec<String> = prepared.clashes.all().chain(&prepared.doubts).cloned().collect();

@@ -75,7 +75,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     Ok(prepared)
 }
 
-/// Standard deviation of the twist from the rounding of both encoders [rad].
+/// Standard deviation of the twist due to the resolution of both encoders [rad].
 fn rounding(motor: &[f64], link: &[f64], torque: &[f64], gear: f64) -> f64 {
     encoder_step(motor, torque).hypot(gear * encoder_step(link, torque)) / gear / 12f64.sqrt()
 }
