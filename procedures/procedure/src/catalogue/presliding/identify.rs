@@ -2,7 +2,7 @@
 
 use super::loops::{Swings, dahl, swings};
 use crate::findings::{Unusable, curve, quantity, scatter, solve, t95};
-use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::Values;
 use jointbench_instrument::RunTable;
 use jointbench_model::words;
@@ -79,15 +79,7 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
         quantity(["reach", "τ_c/σ₀", "Presliding displacement", "rad"], dahl.reach_rad(), reach),
         quantity(["bias", "τ₀", "Torque offset", "Nm"], dahl.bias_nm, bias),
     ];
-    for (i, (stiffness, slips_nm)) in maxwell(dahl).into_iter().enumerate() {
-        let (n, title) = (i + 1, format!("Maxwell slip, element {}", i + 1));
-        let named = |what: &str, symbol: &str, text: &str, unit: &str, value| {
-            let words = [&format!("element_{n}_{what}"), &format!("{symbol}_{n}"), &format!("{title}: {text}"), unit];
-            quantity(words.map(|word: &str| word), value, None)
-        };
-        quantities.push(named("stiffness", "k", "stiffness", "Nm/rad", stiffness));
-        quantities.push(named("slip", "w", "slip torque", "Nm", slips_nm));
-    }
+    quantities.extend(elements(dahl));
     Ok(Identification {
         verdict: if decided { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
@@ -107,6 +99,21 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
         figures: vec![loops(&held, dahl), first_loading(dahl)],
         ..Identification::default()
     })
+}
+
+/// Stiffness and slip torque of each Maxwell-slip element.
+fn elements(dahl: Dahl) -> Vec<Quantity> {
+    let mut quantities = Vec::new();
+    for (i, (stiffness, slips_nm)) in maxwell(dahl).into_iter().enumerate() {
+        let (n, title) = (i + 1, format!("Maxwell slip, element {}", i + 1));
+        let named = |what: &str, symbol: &str, text: &str, unit: &str, value| {
+            let words = [&format!("element_{n}_{what}"), &format!("{symbol}_{n}"), &format!("{title}: {text}"), unit];
+            quantity(words.map(|word: &str| word), value, None)
+        };
+        quantities.push(named("stiffness", "k", "stiffness", "Nm/rad", stiffness));
+        quantities.push(named("slip", "w", "slip torque", "Nm", slips_nm));
+    }
+    quantities
 }
 
 fn others<'s>(held: &[&'s Swings], left_out: usize) -> Vec<&'s Swings> {
