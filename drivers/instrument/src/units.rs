@@ -11,6 +11,7 @@ macro_rules! unit {
         pub struct $name(pub f64);
 
         impl $name {
+            /// The symbol of the unit.
             pub const SYMBOL: &'static str = $symbol;
         }
 

@@ -4,6 +4,9 @@
 //! pure data that can be previewed. [`engine::run`] runs a plan on a bench, on one thread with one loop, and hands
 //! rows and events to a [`Recorder`]. Every exit of a run, including a panic, leads to the safe state.
 
+#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used))]
+
 pub mod catalogue;
 mod columns;
 pub mod conduct;

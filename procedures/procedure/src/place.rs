@@ -19,7 +19,9 @@ pub enum Place {
 /// then by bisection of the last one. Every try is approached from the consistent side.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Edge {
+    /// Pose with consistent periods, from which the search starts.
     pub from: Pose,
+    /// Farthest pose of the search.
     pub to: Pose,
     /// Strides from end to end.
     pub strides: u32,
