@@ -255,7 +255,7 @@ pub trait PowerSwitch: Send {
 
 /// Reports whether the sensor of a magnetic encoder is aligned well enough with its ring to count the periods.
 pub trait EncoderStatus: Instrument {
-    /// `true`: every period of the ring was counted since the last reset of the status.
+    /// The status output of the encoder. `true`: its sensor detects the periods of the ring consistently.
     fn periods_are_consistent(&mut self) -> Result<bool, Fault>;
 }
 

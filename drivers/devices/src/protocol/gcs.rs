@@ -8,6 +8,7 @@ use jointbench_instrument::FaultKind;
 use jointbench_instrument::roles::Identity;
 
 const REPLY_LIMIT: usize = 2048;
+/// Names of the axes: shifts X, Y, Z, then rotations U, V, W about them.
 pub const AXES: [char; 6] = ['X', 'Y', 'Z', 'U', 'V', 'W'];
 
 /// A reply is complete at a line feed without a space before it.
@@ -54,6 +55,7 @@ macro_rules! query {
     };
 }
 
+/// Maker, model, serial number and firmware (`*IDN?`).
 #[derive(Debug, Clone, Copy)]
 pub struct Identify;
 

@@ -203,6 +203,7 @@ impl Joint {
         }
     }
 
+    /// The constants that a bench description of this joint and load states.
     pub fn constants(self, load: Load) -> JointConstants {
         let sheet = self.data_sheet();
         let (turns, brakes) = match load {

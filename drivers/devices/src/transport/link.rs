@@ -26,6 +26,7 @@ enum Trust {
     Lost,
 }
 
+/// An exclusively opened port to one instrument: requests with deadlines, and the trust in its replies.
 pub struct Link {
     instrument: String,
     settings: PortSettings,
@@ -78,18 +79,22 @@ impl Link {
         Ok(())
     }
 
+    /// Name of the instrument in faults.
     pub fn instrument(&self) -> &str {
         &self.instrument
     }
 
+    /// The port in text form.
     pub fn address(&self) -> &str {
         &self.address
     }
 
+    /// Longest time for a reply.
     pub fn deadline(&self) -> Duration {
         self.deadline
     }
 
+    /// Replies belong to requests; otherwise the link must be drained and the instrument identified.
     pub fn is_trusted(&self) -> bool {
         self.trust == Trust::Trusted
     }
@@ -161,6 +166,7 @@ impl Link {
         self.discard(deadline, answered).map_err(|kind| self.broken(kind))
     }
 
+    /// A fault of this instrument at this port.
     pub fn fault(&self, kind: FaultKind) -> Fault {
         kind.at(&self.instrument, &self.address)
     }

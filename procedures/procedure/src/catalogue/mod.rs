@@ -35,7 +35,7 @@ use serde_json::{Map, Value};
 /// Steps that were planned during their run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Learnt {
-    /// They replace the steps of the same numbers in the plan.
+    /// The dependent steps ([`crate::plan::Lesson::to`]), planned anew.
     pub steps: Vec<Step>,
     /// The values that were used, in a sentence for the journal.
     pub said: String,

@@ -1,5 +1,6 @@
 //! Reasons for which a sensor refuses a request (LorenzTelegram 1.0.0, `Error`).
 
+/// The error of a NACK or of a status byte, in words.
 pub fn nack_text(code: u8) -> String {
     let text = match code {
         1 => "generic error",

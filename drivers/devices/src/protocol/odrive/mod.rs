@@ -17,4 +17,5 @@ pub use requests::{
 
 /// Axis states (`axis0.current_state`).
 pub const IDLE: f64 = 1.0;
+/// The drive follows its set-points.
 pub const CLOSED_LOOP: f64 = 8.0;

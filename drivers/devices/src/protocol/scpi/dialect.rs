@@ -3,6 +3,7 @@
 
 use jointbench_instrument::roles::Identity;
 
+/// The two families of supplies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dialect {
     /// Rigol DP800 (programming guide PGH03109-1110).
@@ -30,6 +31,7 @@ impl Dialect {
         }
     }
 
+    /// Command and query of the voltage limit.
     pub fn voltage(self) -> [&'static str; 2] {
         match self {
             Dialect::Dp800 => [":SOUR1:VOLT", ":SOUR1:VOLT?"],
