@@ -80,7 +80,7 @@ const SUFFIXES: [(&str, &str); 19] = [
 ];
 
 /// The same unit on a linear axis (`"motion": "linear"` in the meta file): rad → m, Nm → N, kg·m² → kg.
-pub fn linear_unit(unit: &str) -> String {
+pub(crate) fn linear_unit(unit: &str) -> String {
     unit.replace("kg·m²", "kg").replace("Nm", "N").replace("rad", "m")
 }
 

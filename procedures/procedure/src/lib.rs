@@ -15,7 +15,7 @@ mod encoder_columns;
 pub mod engine;
 pub mod event;
 mod findings;
-pub mod guard;
+mod guard;
 pub mod identification;
 mod menu;
 pub mod parameter;

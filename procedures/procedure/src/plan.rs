@@ -172,7 +172,7 @@ impl Step {
     }
 
     /// Whether its duration is an upper bound: it ends with the breakaway of the joint, or when the edge is found.
-    pub fn may_end_early(&self) -> bool {
+    pub(crate) fn may_end_early(&self) -> bool {
         matches!(self.drive, Drive::Current { .. }) || matches!(self.place, Place::Edge(_))
     }
 
@@ -266,12 +266,12 @@ impl Plan {
     }
 
     /// Whether any step commands motor current.
-    pub fn commands_current(&self) -> bool {
+    pub(crate) fn commands_current(&self) -> bool {
         self.steps.iter().any(|step| step.drive != Drive::Velocity)
     }
 
     /// Highest brake current that a step commands [A].
-    pub fn top_brake_current_a(&self) -> f64 {
+    pub(crate) fn top_brake_current_a(&self) -> f64 {
         self.steps.iter().map(|step| step.brake.largest()).fold(0.0, f64::max)
     }
 

@@ -95,7 +95,7 @@ impl Link {
     }
 
     /// Replies belong to requests; otherwise the link must be drained and the instrument identified.
-    pub fn is_trusted(&self) -> bool {
+    pub(crate) fn is_trusted(&self) -> bool {
         self.trust == Trust::Trusted
     }
 
@@ -106,7 +106,7 @@ impl Link {
     }
 
     /// The next reply may belong to another request: drain and identify before the next request.
-    pub fn distrust(&mut self) {
+    pub(crate) fn distrust(&mut self) {
         if self.trust == Trust::Trusted {
             self.trust = Trust::Stale;
         }
@@ -114,7 +114,7 @@ impl Link {
 
     /// Appends the received bytes to `bytes`, for instruments that send without a request. Waits at most `patience` for
     /// the first byte; returns the number of bytes.
-    pub fn overhear(&mut self, bytes: &mut Vec<u8>, patience: Duration) -> Result<usize, Fault> {
+    pub(crate) fn overhear(&mut self, bytes: &mut Vec<u8>, patience: Duration) -> Result<usize, Fault> {
         let before = bytes.len();
         bytes.append(&mut self.received);
         let mut until = Instant::now() + patience;

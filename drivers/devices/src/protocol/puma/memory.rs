@@ -5,13 +5,13 @@ pub const PROPORTIONAL_GAIN: u8 = 0x03;
 /// `velgan`: gain of the velocity.
 pub const VELOCITY_GAIN: u8 = 0x04;
 /// `outscl`: scale factor of the control output.
-pub const OUTPUT_SCALE: u8 = 0x05;
+pub(crate) const OUTPUT_SCALE: u8 = 0x05;
 /// Clock ticks between set-points.
-pub const INTERVAL: u8 = 0x06;
+pub(crate) const INTERVAL: u8 = 0x06;
 /// `postol`: tolerance band of the position, two bytes.
-pub const POSITION_TOLERANCE: u8 = 0x52;
+pub(crate) const POSITION_TOLERANCE: u8 = 0x52;
 /// `inttol`: tolerance band of the integral action, two bytes.
-pub const INTEGRAL_TOLERANCE: u8 = 0x54;
+pub(crate) const INTEGRAL_TOLERANCE: u8 = 0x54;
 /// Address of the velocity gain in the manual of the Puma 500 and 600 series; unused in the disassembled program.
 pub const VELOCITY_GAIN_OF_MANUAL: u8 = 0x5C;
 /// The last address of the memory.

@@ -40,7 +40,7 @@ impl Dialect {
     }
 
     /// Programming resolution of the channel.
-    pub fn current_step_a(self) -> f64 {
+    pub(crate) fn current_step_a(self) -> f64 {
         match self {
             Dialect::Dp800 => 1e-4,
             Dialect::Hmp => 2e-4,
@@ -59,7 +59,7 @@ impl Dialect {
     }
 
     /// The output is on if all of them report on.
-    pub fn output_queries(self) -> &'static [&'static str] {
+    pub(crate) fn output_queries(self) -> &'static [&'static str] {
         match self {
             Dialect::Dp800 => &[":OUTP? CH1"],
             Dialect::Hmp => &["INST:NSEL 1\nOUTP:SEL?", "OUTP:GEN?"],
@@ -75,7 +75,7 @@ impl Dialect {
     }
 
     /// Bits of a tripped over-voltage and over-current protection (fuse).
-    pub fn trips(self) -> [u32; 2] {
+    pub(crate) fn trips(self) -> [u32; 2] {
         match self {
             Dialect::Dp800 => [1 << 2, 1 << 3],
             Dialect::Hmp => [1 << 9, 1 << 10],

@@ -21,7 +21,7 @@ pub enum Terminator {
 
 impl Terminator {
     /// The line end for this kind of connection.
-    pub fn for_address(address: &Address) -> Self {
+    pub(crate) fn for_address(address: &Address) -> Self {
         match address {
             Address::Serial(_) | Address::Usb(_) | Address::Inside(_) => Terminator::CrLf,
             Address::Tcp(_) => Terminator::Lf,
