@@ -81,7 +81,7 @@ pub enum TorqueSensorSettings {
 }
 
 impl TorqueSensorSettings {
-    /// Nominal torque of the range in use [Nm].
+    /// Nominal torque of the range in use (Nm).
     pub fn nominal_nm(&self) -> f64 {
         match self {
             TorqueSensorSettings::Lorenz(settings) => settings.nominal_nm,

@@ -21,7 +21,7 @@ pub fn between(from_s: f64, until_s: f64) -> (f64, f64) {
 pub struct Timed<T> {
     /// The reading.
     pub value: T,
-    /// Time of the reading on the bench clock [s].
+    /// Time of the reading on the bench clock (s).
     pub at_s: f64,
     /// Largest error of [`Timed::at_s`], in either direction.
     pub uncertainty_s: f64,

@@ -23,7 +23,7 @@ pub enum FaultKind {
     Silent {
         /// The request, in readable form.
         request: String,
-        /// Time that the reply may take [ms].
+        /// Time that the reply may take (ms).
         deadline_ms: u64,
     },
     /// A reply came, but it breaks the protocol or fails its checksum.

@@ -9,13 +9,13 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// Motor torque k_m·i_q of a moving joint [Nm].
+    /// Motor torque k_m·i_q of a moving joint (Nm).
     Friction,
-    /// Wrapped difference of two encoders [rad].
+    /// Wrapped difference of two encoders (rad).
     Encoder,
-    /// Torsion between motor and link [rad].
+    /// Torsion between motor and link (rad).
     Stiffness,
-    /// Torque of a hysteresis brake over its current [Nm].
+    /// Torque of a hysteresis brake over its current (Nm).
     Brake,
 }
 
@@ -138,7 +138,7 @@ pub struct Meta {
     /// Pole pairs of the ring of a magnetic encoder.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pole_pairs: Option<u32>,
-    /// Rated current of the brake [A].
+    /// Rated current of the brake (A).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rated_current_a: Option<f64>,
     /// Poles of the brake's rotor.

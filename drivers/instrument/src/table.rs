@@ -87,9 +87,9 @@ pub enum TableFault {
     TimeNotRising {
         /// The later row, counted from 0.
         row: usize,
-        /// Time of the earlier row [s].
+        /// Time of the earlier row (s).
         before: f64,
-        /// Time of the later row [s].
+        /// Time of the later row (s).
         after: f64,
     },
     /// A segment or repeat number is not whole.

@@ -167,7 +167,7 @@ pub struct Figure {
 pub enum Form {
     /// x to the right, y upwards.
     Cartesian,
-    /// x is the angle [rad], y the radius.
+    /// x is the angle (rad), y the radius.
     Polar,
 }
 

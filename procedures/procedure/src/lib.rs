@@ -1,6 +1,6 @@
 //! Procedures plan, the engine acts, and the guard checks every command.
 //!
-//! A [`Procedure`](catalogue::Procedure) converts checked parameters to a [`Plan`]: steps with set-points over time,
+//! A [`Procedure`] converts checked parameters to a [`Plan`]: steps with set-points over time,
 //! pure data that can be previewed. [`engine::run`] runs a plan on a bench, on one thread with one loop, and hands
 //! rows and events to a [`Recorder`]. Every exit of a run, including a panic, leads to the safe state.
 

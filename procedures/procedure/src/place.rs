@@ -103,7 +103,7 @@ mod tests {
         dwell_s: 0.1,
     };
 
-    /// Number of tries and the last consistent position [m].
+    /// Number of tries and the last consistent position (m).
     fn search(consistent: impl Fn(f64) -> bool) -> (u32, f64, Option<u32>) {
         let mut search = EdgeSearch::new(WAY);
         let (mut tries, mut at) = (1, 0);

@@ -103,7 +103,7 @@ pub enum Drive {
     Current {
         /// End of the velocity section, from the start of the step.
         from_s: f64,
-        /// Motor current [A] over the time of the step.
+        /// Motor current (A) over the time of the step.
         current_a: Profile,
         /// Condition that ends the section early.
         until: Until,
@@ -113,7 +113,7 @@ pub enum Drive {
 /// Source of a feedforward current.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Feed {
-    /// Over the time of the step [A].
+    /// Over the time of the step (A).
     Planned(Profile),
     /// A share of the measured friction: motor torque less link torque, low-pass filtered. It has the sign of the
     /// velocity set-point and is linear in it below `ramp_rad_s` (motor).
@@ -151,7 +151,7 @@ pub struct Step {
     pub before: Before,
     /// Motor-side velocity [rad/s] over the time of the step. Starts and ends at rest.
     pub velocity: Profile,
-    /// Brake current [A] over the time of the step.
+    /// Brake current (A) over the time of the step.
     pub brake: Profile,
     /// Pose of the stage during the step.
     pub place: Place,
@@ -176,7 +176,7 @@ impl Step {
         matches!(self.drive, Drive::Current { .. }) || matches!(self.place, Place::Edge(_))
     }
 
-    /// The largest commanded motor current [A].
+    /// The largest commanded motor current (A).
     pub fn top_motor_current_a(&self) -> f64 {
         match &self.drive {
             Drive::Fed(Feed::Planned(current_a)) | Drive::Current { current_a, .. } => current_a.largest(),
@@ -237,7 +237,7 @@ pub struct Plan {
     pub torque_period_s: Option<f64>,
     /// `None`: every step is known before the first one.
     pub lesson: Option<Lesson>,
-    /// Start position relative to that of the whole plan (motor) [rad]: a continuation begins where the previous run
+    /// Start position relative to that of the whole plan (motor) (rad): a continuation begins where the previous run
     /// ended.
     pub begins_rad: f64,
 }
@@ -260,7 +260,7 @@ impl Plan {
         self.steps.iter().map(|step| step.velocity.largest()).fold(0.0, f64::max)
     }
 
-    /// Highest absolute motor current that a step commands [A]; 0 if none does.
+    /// Highest absolute motor current that a step commands (A); 0 if none does.
     pub fn top_motor_current_a(&self) -> f64 {
         self.steps.iter().map(Step::top_motor_current_a).fold(0.0, f64::max)
     }
@@ -270,12 +270,12 @@ impl Plan {
         self.steps.iter().any(|step| step.drive != Drive::Velocity)
     }
 
-    /// Highest brake current that a step commands [A].
+    /// Highest brake current that a step commands (A).
     pub(crate) fn top_brake_current_a(&self) -> f64 {
         self.steps.iter().map(|step| step.brake.largest()).fold(0.0, f64::max)
     }
 
-    /// Travel of the motor relative to its start: lowest and highest position [rad].
+    /// Travel of the motor relative to its start: lowest and highest position (rad).
     pub fn travel_rad(&self) -> (f64, f64) {
         let (mut at, mut lowest, mut highest) = (0.0, 0.0_f64, 0.0_f64);
         for step in &self.steps {

@@ -54,7 +54,7 @@ pub struct Extreme {
 /// The set-points as piecewise linear functions, exact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Setpoints {
-    /// Times of the knots, the same for both courses [s].
+    /// Times of the knots, the same for both courses (s).
     pub time_s: Vec<f64>,
     /// Motor-side velocity at each knot.
     pub motor_velocity_rad_s: Vec<f64>,
@@ -267,7 +267,7 @@ impl Plan {
     }
 }
 
-/// An upper bound of the braking torque at a current [Nm].
+/// An upper bound of the braking torque at a current (Nm).
 ///
 /// The torque curve of a hysteresis brake is up to 4.4 % above the straight line to its rating, at 0.9 of the rated
 /// current. Its descending branch is up to 8 % higher (bench-physics, section 2). The factor 1.15 covers both.

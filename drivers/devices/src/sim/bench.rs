@@ -98,7 +98,7 @@ impl MockSettings {
         }
     }
 
-    /// The smallest range of the torque sensor that suits the load, and its nominal torque [Nm].
+    /// The smallest range of the torque sensor that suits the load, and its nominal torque (Nm).
     fn torque_range(&self) -> Option<(Range, f64)> {
         match self.load {
             Load::BrakeA => Some((Range::Fine, 20.0)),

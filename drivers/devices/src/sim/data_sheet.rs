@@ -68,7 +68,7 @@ pub(super) struct DataSheet {
     pub max_motor_current_a: f64,
 }
 
-/// Motor torque of the Puma per volt at its converter: its published Coulomb friction [Nm] over that of figure 3.2 [V].
+/// Motor torque of the Puma per volt at its converter: its published Coulomb friction (Nm) over that of figure 3.2 (V).
 const PUMA_NM_PER_V: f64 = 0.231;
 
 /// Magtrol HB-1750M, data sheet EN 04/2025.

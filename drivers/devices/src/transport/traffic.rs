@@ -29,7 +29,7 @@ pub enum Event {
 /// A recorded conversation. Consecutive pieces in one direction may have been split differently on the wire.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Traffic {
-    /// Each event with the time since the link was opened [s].
+    /// Each event with the time since the link was opened (s).
     pub events: Vec<(f64, Event)>,
 }
 

@@ -28,7 +28,7 @@ const SCHEMA: &[Parameter] = &[
     sample_rate(250.0),
 ];
 
-/// Rest without torque between the approach and the ramp [s].
+/// Rest without torque between the approach and the ramp (s).
 const REST_S: f64 = 0.4;
 /// Highest motor speed after the breakaway, at which the velocity loop takes over.
 const RUNAWAY_RAD_S: f64 = 10.0;

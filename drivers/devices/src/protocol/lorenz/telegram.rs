@@ -64,7 +64,7 @@ impl Telegram {
         }
     }
 
-    /// Decodes a whole telegram as measured by [`scan`].
+    /// Decodes a whole telegram of the length that `scan` finds.
     pub fn decode(packet: &[u8]) -> Result<Self, FaultKind> {
         let garbled = |why: &str| FaultKind::Garbled { what: format!("{}: {why}", shown(packet)) };
         let Unstuffed::Whole(body, _) = unstuff(packet) else { return Err(garbled("expected a whole telegram")) };

@@ -115,7 +115,7 @@ impl Request for Set {
 pub struct SetVelocity {
     /// Velocity set-point [turns/s].
     pub turns_s: f64,
-    /// Feed-forward torque [Nm].
+    /// Feed-forward torque (Nm).
     pub torque_nm: f64,
 }
 
@@ -148,7 +148,7 @@ impl Request for SetVelocity {
 /// the speed.
 #[derive(Debug, Clone, Copy)]
 pub struct SetTorque {
-    /// Torque set-point [Nm].
+    /// Torque set-point (Nm).
     pub torque_nm: f64,
 }
 

@@ -37,7 +37,7 @@ const AXIAL_M: f64 = 0.65e-3;
 const ROTATION_RAD: f64 = 1.0 * TAU / 360.0;
 const TILT_RAD: f64 = 1.5 * TAU / 360.0;
 
-/// Pose of the sensor of S2 on the stage: x radial, y vertical, z axial [m], then rotations about them [rad].
+/// Pose of the sensor of S2 on the stage: x radial, y vertical, z axial (m), then rotations about them (rad).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Pose {
     pub shift_m: [f64; 3],

@@ -131,7 +131,7 @@ impl Procedure for EncoderLinearity {
     }
 }
 
-/// Maximum error [rad] that each stage of the compensation leaves in the validation data.
+/// Maximum error (rad) that each stage of the compensation leaves in the validation data.
 fn peaks_rad(unseen: &[Sweep], stages: [Left; 4]) -> [f64; 4] {
     let classes: Vec<Class> = unseen.iter().map(Class::of).collect();
     stages.map(|left| classes.iter().map(|class| class.peak(left)).fold(0.0, f64::max))

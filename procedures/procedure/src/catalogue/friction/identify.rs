@@ -101,7 +101,7 @@ pub(crate) fn free(run: &RunTable) -> Vec<Leg> {
 struct Fits {
     points: Vec<Plateau>,
     whole: FreeFriction,
-    /// Coulomb friction [Nm] with a quadratic drag, if the run does not distinguish this drag from the Stribeck effect.
+    /// Coulomb friction (Nm) with a quadratic drag, if the run does not distinguish this drag from the Stribeck effect.
     with_drag_nm: Option<f64>,
     forward: FreeFriction,
     backward: FreeFriction,

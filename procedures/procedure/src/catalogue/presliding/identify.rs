@@ -15,7 +15,7 @@ const POLYGON_END: f64 = 0.98;
 /// Largest relative half width of the interval of an identified parameter.
 const WIDEST: f64 = 0.25;
 
-/// Compliance [rad/Nm], Coulomb torque [Nm] and a constant bias torque [Nm].
+/// Compliance [rad/Nm], Coulomb torque (Nm) and a constant bias torque (Nm).
 #[derive(Debug, Clone, Copy)]
 struct Dahl {
     compliance: f64,
@@ -194,7 +194,7 @@ fn errors(swings: &Swings, at: Dahl) -> (Vec<f64>, f64) {
 }
 
 /// Parallel elements whose initial loading curve is a polygon on the Dahl curve: stiffness [Nm/rad] and slip torque
-/// [Nm] of each.
+/// (Nm) of each.
 fn maxwell(at: Dahl) -> Vec<(f64, f64)> {
     let loading = |way_rad: f64| first(at, way_rad);
     let end_rad = -at.reach_rad() * (1.0 - POLYGON_END).ln();
