@@ -17,18 +17,28 @@ use std::sync::Arc;
 /// Connection settings of each instrument. A missing instrument is an empty slot.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct InstrumentSettings {
+    /// Drive of the joint under test.
     pub joint: JointSettings,
+    /// Torque between joint and load.
     pub torque_sensor: Option<TorqueSensorSettings>,
+    /// Supply of the brake's coil.
     pub brake: Option<ScpiSettings>,
+    /// Counter of encoder S1.
     pub reference_encoder: Option<QsbSettings>,
+    /// Counter of encoder S2, the encoder under test.
     pub test_encoder: Option<QsbSettings>,
+    /// Stage that holds the sensor of encoder S2.
     pub stage: Option<GcsSettings>,
+    /// Temperatures of the joint and its surroundings.
     pub thermometer: Option<AdamSettings>,
 }
 
+/// The drive of a joint.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum JointSettings {
+    /// ODrive with firmware 0.5.
     Odrive(OdriveSettings),
+    /// One axis of a Puma servo.
     Puma(PumaSettings),
 }
 
@@ -61,14 +71,17 @@ impl JointSettings {
     }
 }
 
+/// The torque sensor of a bench.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum TorqueSensorSettings {
+    /// Telegrams of a Lorenz sensor.
     Lorenz(LorenzSettings),
     /// On the analogue output of the sensor.
     Multimeter(DmmSettings),
 }
 
 impl TorqueSensorSettings {
+    /// Nominal torque of the range in use (Nm).
     pub fn nominal_nm(&self) -> f64 {
         match self {
             TorqueSensorSettings::Lorenz(settings) => settings.nominal_nm,
@@ -87,21 +100,33 @@ impl TorqueSensorSettings {
 /// The result of identifying one instrument.
 #[derive(Debug, Clone)]
 pub struct Asked {
+    /// Role on the bench: `joint`, `torque_sensor`.
     pub role: &'static str,
+    /// Name in the bench description.
     pub name: String,
+    /// Driver of the instrument, as in the bench description.
     pub driver: &'static str,
+    /// Port at which it was asked.
     pub port: String,
+    /// Its identity, or why it did not answer as expected.
     pub identity: Result<Identity, Fault>,
 }
 
 /// The instruments that answered, each in its slot.
 pub struct Instruments {
+    /// Drive of the joint under test.
     pub joint: Option<Box<dyn JointController>>,
+    /// Torque between joint and load.
     pub torque_sensor: Option<Box<dyn TorqueSensor>>,
+    /// Supply of the brake's coil.
     pub brake: Option<Box<dyn CurrentSource>>,
+    /// Counter of encoder S1.
     pub reference_encoder: Option<Box<dyn PositionCounter>>,
+    /// Counter of encoder S2, the encoder under test.
     pub test_encoder: Option<Box<dyn PositionCounter>>,
+    /// Stage that holds the sensor of encoder S2.
     pub stage: Option<Box<dyn AlignmentStage>>,
+    /// Temperatures of the joint and its surroundings.
     pub thermometer: Option<Box<dyn Thermometer>>,
     /// All described instruments, including those that do not answer.
     pub asked: Vec<Asked>,

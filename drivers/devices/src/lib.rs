@@ -11,6 +11,7 @@
 //!
 //! The traffic of any link can be recorded ([`PortSettings::record`]) and replayed as an instrument ([`sim::Replay`]).
 
+#![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod driver;

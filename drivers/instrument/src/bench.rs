@@ -16,10 +16,12 @@ pub struct JointConstants {
     pub torque_constant_nm_per_a: f64,
     /// N: motor turns for each link turn.
     pub gear_ratio: f64,
+    /// Moment of inertia of the motor's rotor, motor side.
     pub rotor_inertia_kg_m2: f64,
     /// Coil resistance and rating of the brake determine the supply's compliance voltage. A bench without a brake has 0
     /// here and in its ratings.
     pub brake_compliance_v: f64,
+    /// Rated current of the brake's coil.
     pub brake_rated_current_a: f64,
     /// Torque of the brake at rated current, link side.
     pub brake_rated_torque_nm: f64,
@@ -30,13 +32,21 @@ pub struct JointConstants {
 
 /// The instruments of a bench. A missing instrument is an empty slot, never a dummy.
 pub struct Bench {
+    /// Name in the bench description; every run records it.
     pub name: String,
+    /// The instruments are those of the mock bench.
     pub simulated: bool,
+    /// The time of every reading and command.
     pub clock: Arc<dyn Clock>,
+    /// Values that no command and no sample may exceed.
     pub limits: Limits,
+    /// Constants of the joint under test and its brake.
     pub constants: JointConstants,
+    /// Drive of the joint, which also reads its encoders.
     pub joint: Box<dyn JointController>,
+    /// Torque between joint and load, link side.
     pub torque_sensor: Option<Box<dyn TorqueSensor>>,
+    /// Supply of the brake's coil.
     pub brake: Option<Box<dyn CurrentSource>>,
     /// S1 of an encoder bench, on the motor shaft.
     pub reference_encoder: Option<Box<dyn PositionCounter>>,
@@ -44,6 +54,7 @@ pub struct Bench {
     pub test_encoder: Option<Box<dyn PositionCounter>>,
     /// Holds the sensor of the encoder under test.
     pub stage: Option<Box<dyn AlignmentStage>>,
+    /// Temperatures of the joint and its surroundings.
     pub thermometer: Option<Box<dyn Thermometer>>,
     /// Switches instruments off and on. `None`: a person has to do it.
     pub power: Option<Box<dyn PowerSwitch>>,

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 /// The time of the bench, in seconds since the bench was opened.
 pub trait Clock: Send + Sync {
+    /// Seconds since the bench was opened; never falls.
     fn now_s(&self) -> f64;
 
     /// Returns when the clock shows `t_s` or later, immediately if that time is past.
@@ -18,7 +19,9 @@ pub fn between(from_s: f64, until_s: f64) -> (f64, f64) {
 /// A reading with its time on the bench clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timed<T> {
+    /// The reading.
     pub value: T,
+    /// Time of the reading on the bench clock (s).
     pub at_s: f64,
     /// Largest error of [`Timed::at_s`], in either direction.
     pub uncertainty_s: f64,
@@ -38,6 +41,7 @@ pub struct SystemClock {
 }
 
 impl SystemClock {
+    /// A clock that shows 0 now.
     pub fn start() -> Self {
         Self { opened: Instant::now() }
     }

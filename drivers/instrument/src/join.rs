@@ -16,26 +16,59 @@ const SAME_RATE: f64 = 0.05;
 /// Why recordings cannot be joined. `number` counts them from 1.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum JoinFault {
+    /// The kinds of run differ.
     #[error(
         "run number {number} of the list is of kind {kind}, the first of kind {first}: combine only runs of the same \
          kind"
     )]
-    OtherKind { number: usize, kind: Kind, first: Kind },
+    OtherKind {
+        /// Number of the recording in the list, from 1.
+        number: usize,
+        /// Its kind.
+        kind: Kind,
+        /// Kind of the first recording.
+        first: Kind,
+    },
+    /// A fact of the joint differs.
     #[error(
         "run number {number} of the list belongs to a different joint ({fact} = {value}, first run {first}): combine \
          only runs of the same joint"
     )]
-    OtherJoint { number: usize, fact: &'static str, value: String, first: String },
+    OtherJoint {
+        /// Number of the recording in the list, from 1.
+        number: usize,
+        /// Name of the fact in the meta file.
+        fact: &'static str,
+        /// Its value in this recording.
+        value: String,
+        /// Its value in the first recording.
+        first: String,
+    },
+    /// The sample rates differ by more than 5 %.
     #[error(
         "run number {number} of the list has a sample rate of {rate_hz:.0} Hz, the first {first_hz:.0} Hz: repeat it \
          with --set sample_rate_hz={first_hz:.0}, or resample the file"
     )]
-    OtherRate { number: usize, rate_hz: f64, first_hz: f64 },
+    OtherRate {
+        /// Number of the recording in the list, from 1.
+        number: usize,
+        /// Its sample rate.
+        rate_hz: f64,
+        /// Sample rate of the first recording.
+        first_hz: f64,
+    },
+    /// Two recordings contain the same samples.
     #[error(
         "runs number {first} and {number} of the list contain the same samples: omit one of them, because a copy is \
          not a repeat"
     )]
-    Copy { number: usize, first: usize },
+    Copy {
+        /// Number of the later one in the list, from 1.
+        number: usize,
+        /// Number of the earlier one.
+        first: usize,
+    },
+    /// The joined table breaks a rule of run tables.
     #[error(transparent)]
     Table(#[from] TableFault),
 }

@@ -3,6 +3,7 @@
 //! Units, samples, run tables, instrument roles, limits, faults and clocks. No I/O, no threads, no async: every other
 //! crate depends on this one. It depends only on serde, serde_json and thiserror.
 
+#![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod bench;

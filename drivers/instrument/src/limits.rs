@@ -13,7 +13,9 @@ pub struct Limits {
     pub motor_current_a: f64,
     /// |link torque|.
     pub link_torque_nm: f64,
+    /// Highest temperature of the joint.
     pub temperature_c: f64,
+    /// |brake current|.
     pub brake_current_a: f64,
     /// Power that the brake converts to heat: |link torque · link velocity|.
     pub brake_power_w: f64,
@@ -23,15 +25,22 @@ pub struct Limits {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Limited {
+    /// Angular velocity of the motor shaft.
     MotorVelocity,
+    /// Torque-producing current of the motor.
     MotorCurrent,
+    /// Torque between joint and load.
     LinkTorque,
+    /// Temperature of the joint.
     Temperature,
+    /// Current of the brake's coil.
     BrakeCurrent,
+    /// Power that the brake converts to heat.
     BrakePower,
 }
 
 impl Limited {
+    /// Every limited quantity, in the order of [`Limits`].
     pub const ALL: [Limited; 6] = [
         Limited::MotorVelocity,
         Limited::MotorCurrent,
@@ -41,6 +50,7 @@ impl Limited {
         Limited::BrakePower,
     ];
 
+    /// Unit of its limit, in SI symbols.
     pub fn unit(self) -> &'static str {
         match self {
             Limited::MotorVelocity => "rad/s",
@@ -51,6 +61,7 @@ impl Limited {
         }
     }
 
+    /// Its name in messages: "motor velocity".
     pub fn name(self) -> &'static str {
         match self {
             Limited::MotorVelocity => "motor velocity",
@@ -66,8 +77,11 @@ impl Limited {
 /// A limit that a command or a sample exceeds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Breach {
+    /// The quantity that exceeds its limit.
     pub quantity: Limited,
+    /// Its value, with sign, in the unit of the quantity.
     pub value: f64,
+    /// The limit of its absolute value.
     pub limit: f64,
 }
 
@@ -82,6 +96,7 @@ impl fmt::Display for Breach {
 impl std::error::Error for Breach {}
 
 impl Limits {
+    /// The limit of a quantity, in its unit.
     pub fn of(&self, quantity: Limited) -> f64 {
         match quantity {
             Limited::MotorVelocity => self.motor_velocity_rad_s,

@@ -9,19 +9,21 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// Motor torque k_m·i_q of a moving joint [Nm].
+    /// Motor torque k_m·i_q of a moving joint (Nm).
     Friction,
-    /// Wrapped difference of two encoders [rad].
+    /// Wrapped difference of two encoders (rad).
     Encoder,
-    /// Torsion between motor and link [rad].
+    /// Torsion between motor and link (rad).
     Stiffness,
-    /// Torque of a hysteresis brake over its current [Nm].
+    /// Torque of a hysteresis brake over its current (Nm).
     Brake,
 }
 
 impl Kind {
+    /// Every kind, in the order of the documentation.
     pub const ALL: [Kind; 4] = [Kind::Friction, Kind::Encoder, Kind::Stiffness, Kind::Brake];
 
+    /// Its name in files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Kind::Friction => "friction",
@@ -79,12 +81,15 @@ impl fmt::Display for Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Motion {
+    /// Rotation: positions in rad, torques in Nm.
     #[default]
     Rotary,
+    /// Translation: positions in m, forces in N.
     Linear,
 }
 
 impl Motion {
+    /// The unit in which a value of `unit` (rotary) is shown on this axis.
     pub fn label(self, unit: &str) -> String {
         match self {
             Motion::Rotary => unit.to_owned(),
@@ -97,8 +102,10 @@ impl Motion {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Meta {
+    /// Kind of run; a run table needs it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kind: Option<Kind>,
+    /// Whether the axis rotates or slides.
     #[serde(skip_serializing_if = "is_rotary")]
     pub motion: Motion,
     /// Effects of the model to start from (ids).
@@ -107,6 +114,7 @@ pub struct Meta {
     /// Each row is the mean of one steady operating point, in any order. Time and angle only number the rows.
     #[serde(skip_serializing_if = "is_false")]
     pub operating_points: bool,
+    /// Samples per second. It may differ from the time column by less than a factor of ten.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_rate_hz: Option<f64>,
     /// k_m: motor torque per ampere of i_q.
@@ -115,20 +123,28 @@ pub struct Meta {
     /// N: motor turns for each link turn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gear_ratio: Option<f64>,
+    /// Moment of inertia of the motor's rotor, motor side.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotor_inertia_kg_m2: Option<f64>,
+    /// Stiffness of the joint's bearing, in series with that of the joint (`stiffness` runs).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bearing_stiffness_nm_per_rad: Option<f64>,
+    /// Resolution of the reference encoder: 2^bits counts per turn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference_bits: Option<u32>,
+    /// Resolution of the encoder under test: 2^bits counts per turn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub test_bits: Option<u32>,
+    /// Pole pairs of the ring of a magnetic encoder.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pole_pairs: Option<u32>,
+    /// Rated current of the brake (A).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rated_current_a: Option<f64>,
+    /// Poles of the brake's rotor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub poles: Option<u32>,
+    /// Unknown facts, kept as they are.
     #[serde(flatten)]
     pub other: serde_json::Map<String, serde_json::Value>,
 }

@@ -12,16 +12,23 @@ use std::sync::Arc;
 /// The instrument that answers on a port.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
+    /// Manufacturer, as the instrument reports it.
     pub maker: String,
+    /// Type designation.
     pub model: String,
+    /// Serial number, as the instrument reports it.
     pub serial: String,
+    /// Version of its firmware.
     pub firmware: String,
 }
 
+/// What every instrument of a bench can do.
 pub trait Instrument: Send {
     /// The name in the bench description (`joint`, `brake_a`).
     fn name(&self) -> &str;
+    /// The port at which it answers, as in the bench description.
     fn port(&self) -> &str;
+    /// Asks the instrument for its identity. An instrument other than the expected one is a fault.
     fn identify(&mut self) -> Result<Identity, Fault>;
     /// Drains the link and identifies the instrument again. Sends no command.
     fn recover(&mut self) -> Result<Identity, Fault> {
@@ -42,8 +49,11 @@ pub struct JointReading {
     pub at_s: f64,
     /// Largest time difference between `at_s` and a part of the reading.
     pub uncertainty_s: f64,
+    /// Angle of the motor shaft, counted over turns.
     pub motor_position: Radians,
+    /// Angular velocity of the motor shaft.
     pub motor_velocity: RadPerSec,
+    /// Torque-producing motor current i_q.
     pub motor_current: Amperes,
     /// `Some` if a link encoder is wired to the controller.
     pub link_position: Option<Radians>,
@@ -52,10 +62,13 @@ pub struct JointReading {
 /// The state that a drive reports.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DriveHealth {
+    /// The drive is armed: it follows its set-points.
     pub armed: bool,
+    /// Active errors of the drive; empty if there are none.
     pub errors: Vec<String>,
     /// `Some` if the drive measures it.
     pub bus_voltage: Option<Volts>,
+    /// `Some` if the drive measures the temperature of the joint or its motor.
     pub temperature: Option<Celsius>,
 }
 
@@ -71,7 +84,9 @@ pub trait JointController: Instrument {
     fn set_velocity_fed(&mut self, velocity: RadPerSec, current: Amperes) -> Result<(), Fault>;
     /// Motor current set-point without a velocity loop: load and friction determine the motion of the joint.
     fn set_motor_current(&mut self, current: Amperes) -> Result<(), Fault>;
+    /// One reading of all values of the joint.
     fn read(&mut self) -> Result<JointReading, Fault>;
+    /// The state of the drive, from the drive.
     fn health(&mut self) -> Result<DriveHealth, Fault>;
     /// Switches the drive torque off. Returns when the command is sent; [`JointController::health`] shows whether it
     /// took effect.
@@ -94,21 +109,28 @@ pub trait JointController: Instrument {
 
 /// Reads the memory of a drive's processor. Sends no command.
 pub trait ServoMemory: Instrument {
+    /// One byte at an address of the processor's memory.
     fn read_byte(&mut self, address: u8) -> Result<u8, Fault>;
 }
 
 /// The resolution of the readings of a joint controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointResolution {
+    /// One count of the motor encoder.
     pub motor_position: Option<Radians>,
+    /// Smallest step of the reported velocity.
     pub motor_velocity: Option<RadPerSec>,
+    /// Smallest step of the reported current.
     pub motor_current: Option<Amperes>,
+    /// One count of the link encoder, at the link.
     pub link_position: Option<Radians>,
+    /// Smallest step of the reported temperature.
     pub temperature: Option<Celsius>,
 }
 
 /// Measures the torque between the joint and its load.
 pub trait TorqueSensor: Instrument {
+    /// The torque in the range in use, positive in the sensor's positive direction.
     fn read(&mut self) -> Result<NewtonMetres, Fault>;
     /// Whether the sensor has a second range in addition to the range in use.
     fn has_two_ranges(&self) -> bool {
@@ -120,6 +142,7 @@ pub trait TorqueSensor: Instrument {
     }
     /// Full scale of the range in use. A reading beyond it is a fault, never a number.
     fn range(&self) -> NewtonMetres;
+    /// One count of the converter; `None` if the sensor reports none.
     fn resolution(&self) -> Option<NewtonMetres>;
     /// The same sensor as a stream, if it can send without requests.
     fn as_stream(&mut self) -> Option<&mut dyn TorqueStream> {
@@ -150,6 +173,7 @@ pub trait TorqueStream: Instrument {
     /// [`crate::FaultKind::StreamGap`], then the samples after it. Any other fault ends the stream. May wait up to one
     /// period to measure the age of the newest sample.
     fn collect(&mut self) -> Result<Vec<TorqueSample>, Fault>;
+    /// Ends the stream; single readings are possible again.
     fn stop_stream(&mut self) -> Result<(), Fault>;
 }
 
@@ -157,16 +181,24 @@ pub trait TorqueStream: Instrument {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regulation {
+    /// The output holds the set current.
     ConstantCurrent,
+    /// The output has reached the compliance voltage, so that the current is below its set value.
     ConstantVoltage,
+    /// Neither is held.
     Unregulated,
+    /// The output is off.
     Off,
 }
 
+/// One reading of a supply.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SupplyReading {
+    /// Current through the coil.
     pub current: Amperes,
+    /// Voltage at the output.
     pub voltage: Volts,
+    /// How the supply regulates its output.
     pub regulation: Regulation,
 }
 
@@ -174,12 +206,15 @@ pub struct SupplyReading {
 pub trait CurrentSource: Instrument {
     /// Output off, current zero, compliance voltage set and read back, then output on.
     fn prepare(&mut self, compliance: Volts) -> Result<(), Fault>;
+    /// Sets the current of the output, at least 0.
     fn set_current(&mut self, current: Amperes) -> Result<(), Fault>;
+    /// Current, voltage and regulation, from the supply.
     fn read(&mut self) -> Result<SupplyReading, Fault>;
     /// Output off. The coil current decays with its own time constant.
     fn output_off(&mut self) -> Result<(), Fault>;
     /// Switches off a supply that no longer answers. Returns when the command is sent, without waiting for a reply.
     fn command_off(&mut self) -> Result<(), Fault>;
+    /// Smallest step of the current; `None` if the supply states none.
     fn resolution(&self) -> Option<Amperes>;
 }
 
@@ -190,6 +225,7 @@ pub struct CounterReading {
     pub at_s: f64,
     /// Largest error of `at_s`, in either direction.
     pub uncertainty_s: f64,
+    /// Angle from the counter's zero.
     pub position: Radians,
     /// The counter's own time stamp, in its own unit.
     pub stamp: u32,
@@ -202,7 +238,9 @@ pub trait PositionCounter: Instrument {
     /// Searches the index of the encoder while the shaft rotates. The first call starts the search. One call returns
     /// `true` when the index was passed. From then on the position is 0 at the index; earlier readings have no meaning.
     fn seek_index(&mut self) -> Result<bool, Fault>;
+    /// The position with its time.
     fn read(&mut self) -> Result<CounterReading, Fault>;
+    /// Angle of one count.
     fn resolution(&self) -> Radians;
     /// `None`: the encoder's own status is not wired to this counter.
     fn status(&mut self) -> Option<&mut dyn EncoderStatus>;
@@ -217,6 +255,7 @@ pub trait PowerSwitch: Send {
 
 /// Reports whether the sensor of a magnetic encoder is aligned well enough with its ring to count the periods.
 pub trait EncoderStatus: Instrument {
+    /// The status output of the encoder. `true`: its sensor detects the periods of the ring consistently.
     fn periods_are_consistent(&mut self) -> Result<bool, Fault>;
 }
 
@@ -224,13 +263,16 @@ pub trait EncoderStatus: Instrument {
 pub trait Thermometer: Instrument {
     /// One temperature per channel in use, in the order of the bench description.
     fn read(&mut self) -> Result<Vec<Celsius>, Fault>;
+    /// Smallest step of a reading.
     fn resolution(&self) -> Celsius;
 }
 
 /// Position of a six-axis stage: shifts along x, y, z, then rotations about them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pose {
+    /// Shift along x, y and z.
     pub shift_m: [f64; 3],
+    /// Rotation about x, y and z.
     pub rotation_rad: [f64; 3],
 }
 
@@ -239,9 +281,11 @@ pub trait AlignmentStage: Instrument {
     /// Starts the search for the zeros of the axes, which takes seconds. A stage that is not referenced accepts no
     /// pose.
     fn reference(&mut self) -> Result<(), Fault>;
+    /// The zeros of all axes are known.
     fn is_referenced(&mut self) -> Result<bool, Fault>;
     /// Starts the motion. A pose out of reach is refused, and nothing moves.
     fn move_to(&mut self, pose: Pose) -> Result<(), Fault>;
+    /// The measured pose.
     fn pose(&mut self) -> Result<Pose, Fault>;
     /// On target and settled.
     fn is_settled(&mut self) -> Result<bool, Fault>;

@@ -9,7 +9,9 @@ use crate::{Channel, Trace};
 /// Delay of one instrument's reading relative to another's, and the largest error of that delay in either direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Skew {
+    /// Delay; negative if the reading came earlier.
     pub s: f64,
+    /// Largest error of the delay, in either direction.
     pub uncertainty_s: f64,
 }
 

@@ -16,40 +16,96 @@ pub struct RunTable {
 /// Why a table is refused. Rows count from 0 after the header; the file readers convert them to line numbers.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TableFault {
+    /// The facts do not state the kind.
     #[error(
         "unknown kind of run: expected \"kind\": friction, encoder, stiffness or brake in the facts (meta.json in the \
          folder of the table, or --meta FILE)"
     )]
     UnknownKind,
+    /// A required column is absent.
     #[error(
         "column {column} is missing: a table of kind {kind} needs {}, and the file has {}; take it from another column with \
          --map {column}=NAME",
         .kind.required_columns().join(", "), .found.join(", ")
     )]
-    MissingColumn { kind: Kind, column: &'static str, found: Vec<String> },
+    MissingColumn {
+        /// Kind of the table.
+        kind: Kind,
+        /// Name of the absent column.
+        column: &'static str,
+        /// Names of the columns of the table.
+        found: Vec<String>,
+    },
+    /// A column has the quantity of a known column in another unit.
     #[error(
         "column {found}: the unit is not the expected one, expected {expected}; convert it with --map {expected}={found} \
          --unit {expected}={}",
         unit_words(.found, .expected)
     )]
-    WrongUnit { found: String, expected: String },
+    WrongUnit {
+        /// Name of the column.
+        found: String,
+        /// Known name with its unit.
+        expected: String,
+    },
+    /// The value of a fact is physically impossible.
     #[error("{fact} = {value} in the facts: expected {expected}")]
-    ImpossibleFact { fact: &'static str, value: f64, expected: &'static str },
+    ImpossibleFact {
+        /// Name of the fact.
+        fact: &'static str,
+        /// Its value.
+        value: f64,
+        /// The possible values, in words.
+        expected: &'static str,
+    },
+    /// Stated and measured sample rate differ by a factor of ten or more.
     #[error(
         "the facts say {stated_hz} samples in a second, column time_s says {found_hz:.3}: expected seconds; convert the time \
          with --scale time_s=FACTOR, or correct sample_rate_hz"
     )]
-    TimeAgainstRate { stated_hz: f64, found_hz: f64 },
+    TimeAgainstRate {
+        /// Sample rate in the facts.
+        stated_hz: f64,
+        /// Sample rate from the median time step.
+        found_hz: f64,
+    },
+    /// Two columns have this name.
     #[error("column {0} occurs twice")]
     DuplicateColumn(String),
+    /// A value is infinite or not a number.
     #[error("column {column}: expected a finite number, found {value}")]
-    NotFinite { column: String, row: usize, value: f64 },
+    NotFinite {
+        /// Name of the column.
+        column: String,
+        /// Row, counted from 0.
+        row: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Time does not increase from one row to the next.
     #[error("column time_s: expected a time after {before} s, found {after} s")]
-    TimeNotRising { row: usize, before: f64, after: f64 },
+    TimeNotRising {
+        /// The later row, counted from 0.
+        row: usize,
+        /// Time of the earlier row (s).
+        before: f64,
+        /// Time of the later row (s).
+        after: f64,
+    },
+    /// A segment or repeat number is not whole.
     #[error("column {column}: expected a whole number, found {value}")]
-    NotWhole { column: String, row: usize, value: f64 },
+    NotWhole {
+        /// Name of the column.
+        column: String,
+        /// Row, counted from 0.
+        row: usize,
+        /// The value.
+        value: f64,
+    },
+    /// This column is in only one part of a measurement that continues another.
     #[error("column {0} is not in both parts of the measurement")]
     Different(String),
+    /// The table has no rows.
     #[error("the table has no rows: expected at least one sample")]
     Empty,
 }
@@ -112,30 +168,37 @@ impl RunTable {
         Ok(Self { kind, meta, trace })
     }
 
+    /// The kind of run.
     pub fn kind(&self) -> Kind {
         self.kind
     }
 
+    /// The facts about the set-up.
     pub fn meta(&self) -> &Meta {
         &self.meta
     }
 
+    /// The samples.
     pub fn trace(&self) -> &Trace {
         &self.trace
     }
 
+    /// Number of rows, at least 1.
     pub fn len(&self) -> usize {
         self.trace.len()
     }
 
+    /// `false`: a run table has at least one row.
     pub fn is_empty(&self) -> bool {
         self.trace.is_empty()
     }
 
+    /// The values of a column, one for each row. `None`: no such column.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.trace.column(name)
     }
 
+    /// Facts and samples, without a copy.
     pub fn into_parts(self) -> (Meta, Trace) {
         (self.meta, self.trace)
     }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 /// One measured or commanded quantity. The unit is the suffix of the name (`link_torque_nm`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
+    /// Unique in its trace; ends with the unit.
     pub name: String,
     /// The resolution of the instrument in the channel's unit: one count of an encoder or converter. The store keeps
     /// such a channel as whole counts. `None`: the source has no resolution of its own.
@@ -14,14 +15,17 @@ pub struct Channel {
 }
 
 impl Channel {
+    /// A channel without a resolution.
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), resolution: None }
     }
 
+    /// A channel of whole multiples of `resolution`, which is in the channel's unit.
     pub fn counted(name: impl Into<String>, resolution: f64) -> Self {
         Self { name: name.into(), resolution: Some(resolution) }
     }
 
+    /// The unit, from the suffix of the name. `None`: a number without unit.
     pub fn unit(&self) -> Option<&'static str> {
         unit_of(&self.name)
     }
@@ -35,6 +39,7 @@ pub struct Trace {
 }
 
 impl Trace {
+    /// A trace without rows.
     pub fn new(channels: Vec<Channel>) -> Self {
         let columns = channels.iter().map(|_| Vec::new()).collect();
         Self { channels, columns }
@@ -58,26 +63,32 @@ impl Trace {
         }
     }
 
+    /// Number of rows.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
     }
 
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
+    /// The channels, in the order of the columns.
     pub fn channels(&self) -> &[Channel] {
         &self.channels
     }
 
+    /// The columns in the order of the channels, all of the same length.
     pub fn columns(&self) -> &[Vec<f64>] {
         &self.columns
     }
 
+    /// Position of the channel with this name.
     pub fn index_of(&self, name: &str) -> Option<usize> {
         self.channels.iter().position(|c| c.name == name)
     }
 
+    /// The values of the channel with this name.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.index_of(name).map(|i| self.columns[i].as_slice())
     }

@@ -11,6 +11,7 @@ macro_rules! unit {
         pub struct $name(pub f64);
 
         impl $name {
+            /// The symbol of the unit.
             pub const SYMBOL: &'static str = $symbol;
         }
 
@@ -79,7 +80,7 @@ const SUFFIXES: [(&str, &str); 19] = [
 ];
 
 /// The same unit on a linear axis (`"motion": "linear"` in the meta file): rad → m, Nm → N, kg·m² → kg.
-pub fn linear_unit(unit: &str) -> String {
+pub(crate) fn linear_unit(unit: &str) -> String {
     unit.replace("kg·m²", "kg").replace("Nm", "N").replace("rad", "m")
 }
 

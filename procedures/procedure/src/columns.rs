@@ -103,62 +103,22 @@ impl Columns {
         health: &DriveHealth,
         felt: usize,
     ) -> Self {
-        let steps = bench.joint.resolution();
         let is_brake = plan.kind == Kind::Brake;
-        let commands_current = plan.commands_current();
-        let mut channels = vec![
-            channel("time_s", Some(TIME_STEP_S)),
-            channel("motor_position_rad", steps.motor_position.map(|step| step.0)),
-            channel("motor_velocity_rad_s", steps.motor_velocity.map(|step| step.0)),
-            channel("motor_current_a", steps.motor_current.map(|step| step.0)),
-        ];
-        if reading.link_position.is_some() {
-            let name = if is_brake { "position_rad" } else { "link_position_rad" };
-            channels.push(channel(name, steps.link_position.map(|step| step.0)));
-        }
-        if let Some(sensor) = &bench.torque_sensor {
-            let name = if is_brake { "brake_torque_nm" } else { "link_torque_nm" };
-            // A mean of counts has no count resolution.
-            channels.push(channel(name, sensor.resolution().map(|step| step.0).filter(|_| !streams)));
-            channels.push(channel(TORQUE_SKEW, Some(TIME_STEP_S)));
-            if plan.both_ranges && sensor.has_two_ranges() {
-                channels.push(channel(OTHER_RANGE, None));
-            }
-        }
-        let felt_step_c = bench.thermometer.as_ref().map(|thermometer| thermometer.resolution().0);
         let standing_in = usize::from(health.temperature.is_none() && felt > 0);
-        if health.temperature.is_some() || felt > 0 {
-            let own_step_c = steps.temperature.map(|step| step.0);
-            channels.push(channel("temperature_c", if standing_in == 0 { own_step_c } else { felt_step_c }));
-        }
-        channels.extend((standing_in..felt).map(|at| channel(&format!("thermometer_{}_c", at + 1), felt_step_c)));
-        channels.extend((felt > 0).then(|| channel(WARMTH_SKEW, Some(TIME_STEP_S))));
         let brake_nm_per_a = if is_brake { 1.0 } else { nominal_brake_nm_per_a(&bench.constants) };
-        if let Some(source) = &bench.brake {
-            let step_a = source.resolution().map(|step| step.0);
-            channels.push(channel("brake_current_a", step_a));
-            if is_brake {
-                channels.push(channel(BRAKE_SKEW, Some(TIME_STEP_S)));
-            }
-            let name = if is_brake { "brake_current_command_a" } else { "brake_torque_command_nm" };
-            channels.push(channel(name, step_a.map(|step| step * brake_nm_per_a)));
-        }
+        let velocity_name = velocity_name(plan.kind);
+        let mut channels = joint_channels(bench, reading, is_brake);
+        channels.extend(torque_channels(plan, bench, streams));
+        channels.extend(temperature_channels(bench, health, felt, standing_in));
+        channels.extend(brake_channels(bench, is_brake, brake_nm_per_a));
         channels.push(channel("velocity_setpoint_rad_s", Some(VELOCITY_STEP_RAD_S)));
-        if commands_current {
-            channels.push(channel(MOTOR_CURRENT_SETPOINT, None));
-        }
-        let velocity_name = match plan.kind {
-            Kind::Brake => Some("velocity_rad_s"),
-            Kind::Stiffness => Some("link_velocity_rad_s"),
-            Kind::Encoder => Some("velocity_rad_s"),
-            Kind::Friction => None,
-        };
+        let commands_current = plan.commands_current();
+        channels.extend(commands_current.then(|| channel(MOTOR_CURRENT_SETPOINT, None)));
         channels.extend(velocity_name.map(|name| channel(name, None)));
         if plan.kind == Kind::Encoder {
             channels.extend(encoder_columns::channels(bench, placed));
         }
-        channels.push(channel("segment", Some(1.0)));
-        channels.push(channel("repeat", Some(1.0)));
+        channels.extend(["segment", "repeat"].map(|name| channel(name, Some(1.0))));
         Self {
             row: Vec::with_capacity(channels.len()),
             channels,
@@ -209,6 +169,65 @@ impl Columns {
         }
         row.extend([f64::from(segment), f64::from(repeat)]);
         row
+    }
+}
+
+fn joint_channels(bench: &Bench, reading: &JointReading, is_brake: bool) -> Vec<Channel> {
+    let steps = bench.joint.resolution();
+    let mut channels = vec![
+        channel("time_s", Some(TIME_STEP_S)),
+        channel("motor_position_rad", steps.motor_position.map(|step| step.0)),
+        channel("motor_velocity_rad_s", steps.motor_velocity.map(|step| step.0)),
+        channel("motor_current_a", steps.motor_current.map(|step| step.0)),
+    ];
+    if reading.link_position.is_some() {
+        let name = if is_brake { "position_rad" } else { "link_position_rad" };
+        channels.push(channel(name, steps.link_position.map(|step| step.0)));
+    }
+    channels
+}
+
+fn torque_channels(plan: &Plan, bench: &Bench, streams: bool) -> Vec<Channel> {
+    let Some(sensor) = &bench.torque_sensor else { return Vec::new() };
+    let name = if plan.kind == Kind::Brake { "brake_torque_nm" } else { "link_torque_nm" };
+    // A mean of counts has no count resolution.
+    let step_nm = sensor.resolution().map(|step| step.0).filter(|_| !streams);
+    let mut channels = vec![channel(name, step_nm), channel(TORQUE_SKEW, Some(TIME_STEP_S))];
+    if plan.both_ranges && sensor.has_two_ranges() {
+        channels.push(channel(OTHER_RANGE, None));
+    }
+    channels
+}
+
+/// `standing_in`: thermometer channels that replace the joint's temperature.
+fn temperature_channels(bench: &Bench, health: &DriveHealth, felt: usize, standing_in: usize) -> Vec<Channel> {
+    let mut channels = Vec::new();
+    let felt_step_c = bench.thermometer.as_ref().map(|thermometer| thermometer.resolution().0);
+    if health.temperature.is_some() || felt > 0 {
+        let own_step_c = bench.joint.resolution().temperature.map(|step| step.0);
+        channels.push(channel("temperature_c", if standing_in == 0 { own_step_c } else { felt_step_c }));
+    }
+    channels.extend((standing_in..felt).map(|at| channel(&format!("thermometer_{}_c", at + 1), felt_step_c)));
+    channels.extend((felt > 0).then(|| channel(WARMTH_SKEW, Some(TIME_STEP_S))));
+    channels
+}
+
+fn brake_channels(bench: &Bench, is_brake: bool, nm_per_a: f64) -> Vec<Channel> {
+    let Some(source) = &bench.brake else { return Vec::new() };
+    let step_a = source.resolution().map(|step| step.0);
+    let mut channels = vec![channel("brake_current_a", step_a)];
+    channels.extend(is_brake.then(|| channel(BRAKE_SKEW, Some(TIME_STEP_S))));
+    let name = if is_brake { "brake_current_command_a" } else { "brake_torque_command_nm" };
+    channels.push(channel(name, step_a.map(|step| step * nm_per_a)));
+    channels
+}
+
+/// The shaft whose velocity is recorded in addition to that of the motor.
+fn velocity_name(kind: Kind) -> Option<&'static str> {
+    match kind {
+        Kind::Brake | Kind::Encoder => Some("velocity_rad_s"),
+        Kind::Stiffness => Some("link_velocity_rad_s"),
+        Kind::Friction => None,
     }
 }
 

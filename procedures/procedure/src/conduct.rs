@@ -14,20 +14,37 @@ use std::sync::mpsc::channel;
 /// Result of a run.
 #[derive(Debug)]
 pub struct Conducted {
+    /// Samples of the run with its facts.
     pub table: RunTable,
     /// `None` if the procedure only records samples.
     pub identification: Option<Identification>,
+    /// Duration of the run on the bench clock.
     pub duration_s: f64,
 }
 
+/// Why a run in memory has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum ConductFault {
+    /// The procedure cannot be planned for this bench.
     #[error(transparent)]
     Plan(#[from] PlanFault),
+    /// The dry run found a condition that is not met.
     #[error("{procedure} did not start: {why}")]
-    NotAllowed { procedure: &'static str, why: String },
+    NotAllowed {
+        /// Id of the procedure.
+        procedure: &'static str,
+        /// The condition, with advice.
+        why: String,
+    },
+    /// The run did not complete, or was not secured.
     #[error("{procedure} ended {}: {}", .end.state, .end.reason.as_deref().unwrap_or("no reason given"))]
-    Ended { procedure: &'static str, end: Box<RunEnd> },
+    Ended {
+        /// Id of the procedure.
+        procedure: &'static str,
+        /// State, safe state and reason.
+        end: Box<RunEnd>,
+    },
+    /// The recorded samples are no run table.
     #[error("table of the run: {0}")]
     Table(#[from] TableFault),
 }

@@ -12,7 +12,7 @@ pub(crate) struct Encoders {
     pub consistent: Option<bool>,
 }
 
-/// Names of the pose's columns: shifts [m], then rotations about the same axes [rad].
+/// Names of the pose's columns: shifts (m), then rotations about the same axes (rad).
 pub(crate) const POSE: [&str; 6] =
     ["stage_radial_m", "stage_vertical_m", "stage_axial_m", "stage_tilt_rad", "stage_nod_rad", "stage_rotation_rad"];
 

@@ -43,7 +43,9 @@ pub enum Control {
 /// A control, with the person who requested it if known.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Demand {
+    /// The requested action.
     pub control: Control,
+    /// Name of the token, or of another source. `None`: not known.
     pub by: Option<String>,
 }
 
@@ -58,58 +60,87 @@ impl From<Control> for Demand {
 pub struct Event {
     /// Time since the start of the run, on the bench's clock; the same zero as `time_s` of the rows.
     pub at_s: f64,
+    /// What happened.
     #[serde(flatten)]
     pub kind: EventKind,
 }
 
+/// What a journal records.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum EventKind {
     /// `reason`: why the run was not completed.
     State {
+        /// State that the run has entered.
         state: RunState,
+        /// Present if the run does not complete.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         reason: Option<String>,
     },
+    /// An instrument answered with its identity before the run.
     Identified {
+        /// Name in the bench description.
         instrument: String,
+        /// The port at which it answers.
         port: String,
+        /// Maker, model, serial number and firmware.
         identity: Identity,
     },
     /// `step` counts from 0. A step that is repeated after a pause gets a new `segment`.
     StepStarted {
+        /// Index in the plan, from 0.
         step: usize,
+        /// Number in the column `segment`.
         segment: u32,
+        /// Number of the repetition of the profile.
         repeat: u32,
+        /// The label of the step in the plan.
         label: String,
     },
     /// `late_ticks`: set-points that were sent more than one period after their time.
     StepFinished {
+        /// Index in the plan, from 0.
         step: usize,
+        /// Number in the column `segment`.
         segment: u32,
+        /// Rows of this step.
         rows: u64,
+        /// Set-points that were late.
         late_ticks: u64,
     },
+    /// A control reached the run.
     Control {
+        /// The requested action.
         control: Control,
+        /// Who requested it, if known.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         by: Option<String>,
     },
+    /// An instrument failed to answer as expected.
     Fault {
+        /// Instrument, port and kind of fault.
         fault: Fault,
+        /// The second attempt succeeded and the run continues.
         recovered: bool,
     },
+    /// A command or sample exceeded a limit, which ends the run.
     Breach {
+        /// Quantity, value and limit.
         breach: Breach,
     },
+    /// A remark of the engine or of a person.
     Note {
+        /// The remark.
         text: String,
     },
     /// A violated precondition of the result, which an identified result shows as a warning.
     Warning {
+        /// What is violated, and the consequence.
         text: String,
     },
+    /// The bench was secured.
     Safe {
+        /// What was verified.
         safe: Safe,
     },
 }

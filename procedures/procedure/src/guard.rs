@@ -21,18 +21,31 @@ const STANDSTILL_DECREASE: f64 = 0.2;
 /// Why the guard ends a run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Refusal {
+    /// A command or a sample exceeds a limit of the bench.
     #[error(transparent)]
     Breach(#[from] Breach),
+    /// The brake current would fall too far while the shaft stands still.
     #[error(
         "brake current from {from_a:.3} A to {to_a:.3} A at standstill would magnetise the rotor (cogging): turn the \
          shaft first"
     )]
-    BrakeAtStandstill { from_a: f64, to_a: f64 },
+    BrakeAtStandstill {
+        /// Present brake current.
+        from_a: f64,
+        /// Commanded brake current.
+        to_a: f64,
+    },
+    /// The link is, or would be, outside its permitted range.
     #[error(
         "link position {position_rad:.3} rad is beyond the range of ±{range_rad:.3} rad: move the joint back manually \
          or with the tool of the drive"
     )]
-    BeyondRange { position_rad: f64, range_rad: f64 },
+    BeyondRange {
+        /// Position of the link.
+        position_rad: f64,
+        /// Permitted rotation to either side of the encoder's zero.
+        range_rad: f64,
+    },
 }
 
 /// Checked quantities of one tick. Unmeasured quantities are `None`.
@@ -40,11 +53,17 @@ pub enum Refusal {
 pub struct Sample {
     /// On the bench's clock.
     pub at_s: f64,
+    /// Angular velocity of the motor.
     pub motor_velocity_rad_s: f64,
+    /// Torque-producing motor current.
     pub motor_current_a: f64,
+    /// Link position from its encoder, otherwise from that of the motor.
     pub link_position_rad: f64,
+    /// Torque between joint and load.
     pub link_torque_nm: Option<f64>,
+    /// Temperature of the joint.
     pub temperature_c: Option<f64>,
+    /// Measured current of the brake.
     pub brake_current_a: Option<f64>,
 }
 
@@ -61,6 +80,7 @@ pub struct Guard {
 }
 
 impl Guard {
+    /// A guard with these limits. The constants relate motor and link and bound the travel of the link.
     pub fn new(limits: Limits, constants: JointConstants) -> Self {
         let power = Power { samples: VecDeque::new(), energy_j: 0.0, last_s: None };
         Self { limits, constants, power, link_speed_rad_s: 0.0, brake_a: 0.0, magnetised_a: 0.0 }

@@ -10,6 +10,7 @@ use serde_json::{Map, Value};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
+    /// The quantities are determined, with their intervals.
     Identified,
     /// The run is not sufficient; [`Identification::advice`] states what to measure.
     Inconclusive,
@@ -18,15 +19,19 @@ pub enum Verdict {
     Failed,
 }
 
+/// Result of a run: verdict, quantities and figures.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Identification {
+    /// Whether the run has reached its purpose.
     pub verdict: Verdict,
     /// One plain sentence, or a line for each part of a campaign. `RUN` in its commands is a placeholder for the
     /// number of the run, which [`Self::of_run`] inserts.
     pub summary: String,
     /// What to measure or correct next, with commands in the same form.
     pub advice: Option<String>,
+    /// The figures of the result with their intervals, in the order of tables.
     pub quantities: Vec<Quantity>,
+    /// The plots of the result.
     pub figures: Vec<Figure>,
     /// Whether it passes the limits of a data sheet.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,8 +46,11 @@ pub struct Identification {
 pub struct Part {
     /// The procedure; names of its quantities and figures begin with it and a dot.
     pub id: String,
+    /// Title of its procedure.
     pub title: String,
+    /// Verdict on this part alone.
     pub verdict: Verdict,
+    /// The result of this part in one sentence.
     pub summary: String,
 }
 
@@ -111,7 +119,9 @@ fn signed(text: &str) -> String {
 /// A run whose parameters were determined by this one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FollowUp {
+    /// Id of the procedure.
     pub procedure: &'static str,
+    /// Its parameters; the others keep their defaults.
     pub parameters: Map<String, Value>,
     /// Its purpose, in a few words.
     pub why: &'static str,
@@ -128,6 +138,7 @@ pub struct Quantity {
     pub title: String,
     /// SI symbol; empty for a share or a count.
     pub unit: String,
+    /// Estimate, in the unit of the quantity.
     pub value: f64,
     /// 95 % interval, if the run determines one.
     pub ci95: Option<[f64; 2]>,
@@ -138,23 +149,32 @@ pub struct Quantity {
 pub struct Figure {
     /// Stable and unique in its identification.
     pub name: String,
+    /// Heading of the plot.
     pub title: String,
+    /// Coordinates in which it is drawn.
     pub form: Form,
+    /// Horizontal axis, or the angle.
     pub x: Axis,
+    /// Vertical axis, or the radius.
     pub y: Axis,
+    /// The data, in drawing order.
     pub series: Vec<Series>,
 }
 
+/// Coordinates of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
+    /// x to the right, y upwards.
     Cartesian,
-    /// x is the angle [rad], y the radius.
+    /// x is the angle (rad), y the radius.
     Polar,
 }
 
+/// An axis of a figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Axis {
+    /// The quantity, in words.
     pub label: String,
     /// SI symbol; empty for a share or a count.
     pub unit: String,
@@ -164,28 +184,39 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// An axis of a quantity in the given unit.
     pub fn of(label: &str, unit: &str) -> Self {
         Self { label: label.to_owned(), unit: unit.to_owned(), names: Vec::new() }
     }
 
+    /// An axis that counts items with these names.
     pub fn names(label: &str, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self { label: label.to_owned(), unit: String::new(), names: names.into_iter().map(Into::into).collect() }
     }
 }
 
+/// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mark {
+    /// Separate points.
     Points,
+    /// A line from point to point.
     Line,
+    /// A bar for each point.
     Bars,
 }
 
+/// One data set of a figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Series {
+    /// Its name in the legend.
     pub label: String,
+    /// How it is drawn.
     pub mark: Mark,
+    /// Values on the x axis, in its unit.
     pub x: Vec<f64>,
+    /// Values on the y axis, in its unit; as many as x.
     pub y: Vec<f64>,
     /// Lower and upper end of the 95 % band at each point; empty without a band.
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -1,8 +1,11 @@
 //! Procedures plan, the engine acts, and the guard checks every command.
 //!
-//! A [`Procedure`](catalogue::Procedure) converts checked parameters to a [`Plan`]: steps with set-points over time,
+//! A [`Procedure`] converts checked parameters to a [`Plan`]: steps with set-points over time,
 //! pure data that can be previewed. [`engine::run`] runs a plan on a bench, on one thread with one loop, and hands
 //! rows and events to a [`Recorder`]. Every exit of a run, including a panic, leads to the safe state.
+
+#![warn(missing_docs)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod catalogue;
 mod columns;
@@ -12,7 +15,7 @@ mod encoder_columns;
 pub mod engine;
 pub mod event;
 mod findings;
-pub mod guard;
+mod guard;
 pub mod identification;
 mod menu;
 pub mod parameter;

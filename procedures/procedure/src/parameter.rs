@@ -7,21 +7,30 @@ use std::collections::BTreeMap;
 /// One parameter of a procedure, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Parameter {
+    /// Key in requests, files and `--set`; ends with the unit where one applies.
     pub name: &'static str,
+    /// Label of the form.
     pub title: &'static str,
     /// SI symbol; empty for a share or a count.
     pub unit: &'static str,
+    /// Value if none is given.
     pub default: f64,
+    /// Lowest allowed value.
     pub min: f64,
+    /// Highest allowed value.
     pub max: f64,
+    /// Whether the value must be whole.
     #[serde(rename = "type")]
     pub kind: ParameterKind,
 }
 
+/// Type of a parameter's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ParameterKind {
+    /// Any number in the range.
     Number,
+    /// A whole number in the range.
     Integer,
 }
 
@@ -62,10 +71,26 @@ impl Parameter {
 /// Why a parameter is rejected.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ParameterFault {
+    /// The value has the wrong type, or is out of its range.
     #[error("parameter {name} = {given}: expected {kind} from {range}")]
-    OutOfRange { name: &'static str, given: String, kind: &'static str, range: String },
+    OutOfRange {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Given value, as JSON.
+        given: String,
+        /// Expected type, in words.
+        kind: &'static str,
+        /// Lowest and highest value with the unit.
+        range: String,
+    },
+    /// The procedure has no such parameter.
     #[error("unknown parameter {name}: expected one of {}", .known.join(", "))]
-    Unknown { name: String, known: Vec<&'static str> },
+    Unknown {
+        /// Given name.
+        name: String,
+        /// Names of the parameters of the procedure.
+        known: Vec<&'static str>,
+    },
 }
 
 /// Checked values: every parameter of the schema is present and within its range.

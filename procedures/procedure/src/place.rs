@@ -19,7 +19,9 @@ pub enum Place {
 /// then by bisection of the last one. Every try is approached from the consistent side.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Edge {
+    /// Pose with consistent periods, from which the search starts.
     pub from: Pose,
+    /// Farthest pose of the search.
     pub to: Pose,
     /// Strides from end to end.
     pub strides: u32,
@@ -101,7 +103,7 @@ mod tests {
         dwell_s: 0.1,
     };
 
-    /// Number of tries and the last consistent position [m].
+    /// Number of tries and the last consistent position (m).
     fn search(consistent: impl Fn(f64) -> bool) -> (u32, f64, Option<u32>) {
         let mut search = EdgeSearch::new(WAY);
         let (mut tries, mut at) = (1, 0);

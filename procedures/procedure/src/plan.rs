@@ -16,16 +16,23 @@ use std::sync::Arc;
 /// Facts about a bench that a procedure may use before anything moves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchFacts {
+    /// Name in the bench description.
     pub name: String,
+    /// The bench is the mock bench.
     pub simulated: bool,
+    /// Limits that the plan has to respect.
     pub limits: Limits,
+    /// Constants of the joint and its brake.
     pub constants: JointConstants,
+    /// A torque sensor is connected.
     pub has_torque_sensor: bool,
     /// The torque sensor reports every sample in two ranges.
     pub has_two_ranges: bool,
+    /// A brake with its supply is connected.
     pub has_brake: bool,
     /// Reference and test encoder: counts in a turn. `None` if one of them is missing.
     pub encoder_counts: Option<[f64; 2]>,
+    /// An alignment stage holds the sensor of the encoder under test.
     pub has_stage: bool,
     /// Motor current for each volt, if the joint's servo measures it as the voltage at a shunt.
     pub amperes_per_volt: Option<f64>,
@@ -37,6 +44,7 @@ pub struct BenchFacts {
 }
 
 impl BenchFacts {
+    /// The facts of an open bench; without a brake model.
     pub fn of(bench: &Bench) -> Self {
         Self {
             name: bench.name.clone(),
@@ -66,6 +74,7 @@ fn counts(encoder: &Option<Box<dyn PositionCounter>>) -> Option<f64> {
 pub enum Phase {
     /// Skipped as soon as the joint is steady ([`Plan::steady`]).
     WarmUp,
+    /// Its rows belong to the result.
     Measure,
 }
 
@@ -91,17 +100,31 @@ pub enum Drive {
     /// The velocity, with a feedforward of motor current.
     Fed(Feed),
     /// The velocity up to `from_s`, then motor current alone until its profile ends or `until` is reached.
-    Current { from_s: f64, current_a: Profile, until: Until },
+    Current {
+        /// End of the velocity section, from the start of the step.
+        from_s: f64,
+        /// Motor current (A) over the time of the step.
+        current_a: Profile,
+        /// Condition that ends the section early.
+        until: Until,
+    },
 }
 
 /// Source of a feedforward current.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Feed {
-    /// Over the time of the step [A].
+    /// Over the time of the step (A).
     Planned(Profile),
     /// A share of the measured friction: motor torque less link torque, low-pass filtered. It has the sign of the
     /// velocity set-point and is linear in it below `ramp_rad_s` (motor).
-    Observed { share: f64, corner_hz: f64, ramp_rad_s: f64 },
+    Observed {
+        /// Share of the measured friction that is fed forward.
+        share: f64,
+        /// Corner frequency of the low-pass.
+        corner_hz: f64,
+        /// Motor-side speed below which the current is linear in the velocity set-point.
+        ramp_rad_s: f64,
+    },
 }
 
 /// End of a section with current alone: the velocity loop takes over after a breakaway.
@@ -116,22 +139,28 @@ pub struct Until {
 /// One step: a checkpoint at its end, and a repetition from its beginning after a pause.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
+    /// Name for people, unique where steps differ.
     pub label: String,
+    /// The part of the plan to which it belongs.
     pub phase: Phase,
     /// Number of the step in the run table, unique in a plan.
     pub segment: u32,
     /// Number of the repetition of the whole profile.
     pub repeat: u32,
+    /// State of brake and encoder that it requires.
     pub before: Before,
     /// Motor-side velocity [rad/s] over the time of the step. Starts and ends at rest.
     pub velocity: Profile,
-    /// Brake current [A] over the time of the step.
+    /// Brake current (A) over the time of the step.
     pub brake: Profile,
+    /// Pose of the stage during the step.
     pub place: Place,
+    /// Command of the drive.
     pub drive: Drive,
 }
 
 impl Step {
+    /// Duration without pauses: of the longest of its profiles.
     pub fn duration_s(&self) -> f64 {
         let drive_s = match &self.drive {
             Drive::Velocity => 0.0,
@@ -143,11 +172,11 @@ impl Step {
     }
 
     /// Whether its duration is an upper bound: it ends with the breakaway of the joint, or when the edge is found.
-    pub fn may_end_early(&self) -> bool {
+    pub(crate) fn may_end_early(&self) -> bool {
         matches!(self.drive, Drive::Current { .. }) || matches!(self.place, Place::Edge(_))
     }
 
-    /// The largest commanded motor current [A].
+    /// The largest commanded motor current (A).
     pub fn top_motor_current_a(&self) -> f64 {
         match &self.drive {
             Drive::Fed(Feed::Planned(current_a)) | Drive::Current { current_a, .. } => current_a.largest(),
@@ -190,6 +219,7 @@ pub struct Plan {
     pub procedure: ProcedureId,
     /// The parameters, including defaults.
     pub parameters: Map<String, Value>,
+    /// Kind of its run table.
     pub kind: Kind,
     /// Facts for the run table, including the baseline model.
     pub meta: Meta,
@@ -197,6 +227,7 @@ pub struct Plan {
     pub rate_hz: f64,
     /// Motor-side acceleration of the ramps that the engine adds (pause, resume, securing) [rad/s²].
     pub acceleration_rad_s2: f64,
+    /// The steps in their order.
     pub steps: Vec<Step>,
     /// Ends the warm-up early. `None`: every step is run.
     pub steady: Option<Steady>,
@@ -206,7 +237,7 @@ pub struct Plan {
     pub torque_period_s: Option<f64>,
     /// `None`: every step is known before the first one.
     pub lesson: Option<Lesson>,
-    /// Start position relative to that of the whole plan (motor) [rad]: a continuation begins where the previous run
+    /// Start position relative to that of the whole plan (motor) (rad): a continuation begins where the previous run
     /// ended.
     pub begins_rad: f64,
 }
@@ -229,20 +260,22 @@ impl Plan {
         self.steps.iter().map(|step| step.velocity.largest()).fold(0.0, f64::max)
     }
 
+    /// Highest absolute motor current that a step commands (A); 0 if none does.
     pub fn top_motor_current_a(&self) -> f64 {
         self.steps.iter().map(Step::top_motor_current_a).fold(0.0, f64::max)
     }
 
     /// Whether any step commands motor current.
-    pub fn commands_current(&self) -> bool {
+    pub(crate) fn commands_current(&self) -> bool {
         self.steps.iter().any(|step| step.drive != Drive::Velocity)
     }
 
-    pub fn top_brake_current_a(&self) -> f64 {
+    /// Highest brake current that a step commands (A).
+    pub(crate) fn top_brake_current_a(&self) -> f64 {
         self.steps.iter().map(|step| step.brake.largest()).fold(0.0, f64::max)
     }
 
-    /// Travel of the motor relative to its start: lowest and highest position [rad].
+    /// Travel of the motor relative to its start: lowest and highest position (rad).
     pub fn travel_rad(&self) -> (f64, f64) {
         let (mut at, mut lowest, mut highest) = (0.0, 0.0_f64, 0.0_f64);
         for step in &self.steps {
@@ -260,12 +293,27 @@ impl Plan {
 /// Why a procedure cannot be planned for a bench.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlanFault {
+    /// A parameter is unknown or out of its range.
     #[error(transparent)]
     Parameter(#[from] crate::parameter::ParameterFault),
+    /// The bench lacks an instrument that the procedure needs.
     #[error("bench {bench} has no {role}: {cure}")]
-    MissingInstrument { bench: String, role: &'static str, cure: &'static str },
+    MissingInstrument {
+        /// Name of the bench.
+        bench: String,
+        /// Role of the instrument, such as `torque sensor`.
+        role: &'static str,
+        /// What to do.
+        cure: &'static str,
+    },
+    /// Parameters or facts of the bench exclude each other.
     #[error("{what}: {cure}")]
-    Contradiction { what: String, cure: &'static str },
+    Contradiction {
+        /// The contradiction, with values.
+        what: String,
+        /// What to do.
+        cure: &'static str,
+    },
 }
 
 #[cfg(test)]

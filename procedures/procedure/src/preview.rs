@@ -10,9 +10,13 @@ use serde::Serialize;
 pub struct Preview {
     /// Longest duration, without pauses.
     pub duration_s: f64,
+    /// Every step, in its order.
     pub steps: Vec<StepPreview>,
+    /// Largest value of each quantity, with its limit.
     pub extremes: Vec<Extreme>,
+    /// The commanded courses.
     pub setpoints: Setpoints,
+    /// All conditions of the start, met or not.
     pub checks: Vec<Check>,
 }
 
@@ -23,28 +27,38 @@ impl Preview {
     }
 }
 
+/// One step of a previewed plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StepPreview {
+    /// The label of the step in the plan.
     pub label: String,
+    /// Duration without pauses.
     pub duration_s: f64,
 }
 
 /// The largest value that a plan commands, or is estimated to cause.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Extreme {
+    /// The quantity, in words.
     pub quantity: &'static str,
+    /// Its unit, as SI symbol.
     pub unit: &'static str,
+    /// Largest absolute value over the plan.
     pub value: f64,
     /// `None`: the bench has no such limit.
     pub limit: Option<f64>,
+    /// Within its limit.
     pub ok: bool,
 }
 
 /// The set-points as piecewise linear functions, exact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Setpoints {
+    /// Times of the knots, the same for both courses (s).
     pub time_s: Vec<f64>,
+    /// Motor-side velocity at each knot.
     pub motor_velocity_rad_s: Vec<f64>,
+    /// Brake current at each knot.
     pub brake_current_a: Vec<f64>,
 }
 
@@ -66,8 +80,11 @@ impl Extreme {
 /// One condition of the start.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
+    /// The condition, in words.
     pub name: &'static str,
+    /// The condition is met.
     pub ok: bool,
+    /// What was compared, with values.
     pub detail: String,
     /// Advice if the condition is not met.
     pub cure: Option<String>,
@@ -90,6 +107,7 @@ const FOR_FRICTION: f64 = 0.1;
 const BEFORE_FRICTION: &str = "motor current, friction not included";
 
 impl Plan {
+    /// Judges the plan against limits and instruments of a bench. Nothing moves.
     pub fn preview(&self, facts: &BenchFacts) -> Preview {
         Preview {
             duration_s: self.duration_s(),
@@ -249,7 +267,7 @@ impl Plan {
     }
 }
 
-/// An upper bound of the braking torque at a current [Nm].
+/// An upper bound of the braking torque at a current (Nm).
 ///
 /// The torque curve of a hysteresis brake is up to 4.4 % above the straight line to its rating, at 0.9 of the rated
 /// current. Its descending branch is up to 8 % higher (bench-physics, section 2). The factor 1.15 covers both.

@@ -9,6 +9,7 @@ pub struct Profile {
 }
 
 impl Profile {
+    /// One value for ever, of duration 0.
     pub fn constant(value: f64) -> Self {
         Self { knots: vec![(0.0, value)] }
     }
@@ -48,6 +49,7 @@ impl Profile {
         Self { knots: self.knots.into_iter().map(|(t_s, value)| (t_s, -value)).collect() }
     }
 
+    /// Value at a time; constant before the first and after the last knot.
     pub fn at(&self, t_s: f64) -> f64 {
         let after = self.knots.partition_point(|(knot_s, _)| *knot_s <= t_s);
         match (after.checked_sub(1).map(|i| self.knots[i]), self.knots.get(after)) {
@@ -57,10 +59,12 @@ impl Profile {
         }
     }
 
+    /// Time of the last knot.
     pub fn duration_s(&self) -> f64 {
         self.knots[self.knots.len() - 1].0
     }
 
+    /// Value after the last knot.
     pub fn end(&self) -> f64 {
         self.knots[self.knots.len() - 1].1
     }
@@ -70,6 +74,7 @@ impl Profile {
         &self.knots
     }
 
+    /// Largest absolute value.
     pub fn largest(&self) -> f64 {
         self.knots.iter().map(|(_, value)| value.abs()).fold(0.0, f64::max)
     }

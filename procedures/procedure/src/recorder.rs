@@ -5,11 +5,14 @@ use crate::state::RunState;
 use jointbench_instrument::Trace;
 use serde::{Deserialize, Serialize};
 
+/// Number of a run in the store.
 pub type RunId = i64;
 
 /// Rows, events and state that belong together.
 pub struct Commit<'a> {
+    /// The run to which the data belongs.
     pub run: RunId,
+    /// State of the run after this commit.
     pub state: RunState,
     /// In chronological order.
     pub events: &'a [Event],
@@ -19,10 +22,13 @@ pub struct Commit<'a> {
 
 /// Best effort: live data may be lost.
 pub struct Live<'a> {
+    /// The run to which the data belongs.
     pub run: RunId,
+    /// Present state of the run.
     pub state: RunState,
     /// The rows since the last call. Rows of a pause are shown here and not kept.
     pub rows: &'a Trace,
+    /// Finished steps and estimated time.
     pub progress: &'a Progress,
 }
 
@@ -36,6 +42,7 @@ pub trait Recorder {
     /// earlier commits. A fault ends the run and states what is not stored.
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault>;
 
+    /// Shows rows and progress. Called often; must not wait.
     fn live(&mut self, live: Live<'_>);
 }
 
@@ -49,6 +56,7 @@ pub struct RecorderFault(pub String);
 pub struct Progress {
     /// Finished steps.
     pub step: usize,
+    /// Number of steps of the plan.
     pub steps: usize,
     /// The present step.
     pub label: String,

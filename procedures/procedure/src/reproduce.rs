@@ -14,7 +14,9 @@ use std::f64::consts::TAU;
 /// The subject of the documents that is on the bench.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Subject {
+    /// Joint A of the thesis, with brake A.
     JointA,
+    /// Joint B of the thesis, with brake A.
     JointB,
     /// Joint A with the gear and brake B behind brake A.
     GearAndBrakeB,
@@ -22,6 +24,7 @@ pub enum Subject {
     Encoder,
     /// The same with the filter of the encoder under test enabled, when its delay without the filter is known.
     FilteredEncoder {
+        /// Delay of the same encoder without the filter.
         delay_without_s: f64,
     },
     /// Joint 2 of the arm of document 000.
@@ -35,19 +38,24 @@ pub enum Demand {
     Within(f64),
     /// The same, as a share of the value.
     WithinShare(f64),
+    /// The value is at least this, in the unit of the quantity.
     AtLeast(f64),
+    /// The value is at most this, in the unit of the quantity.
     AtMost(f64),
 }
 
 /// One figure of a table: the value of the document, of the run, and of the bench.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
+    /// Number of the table or figure in the document.
     pub table: &'static str,
+    /// The quantity of this run.
     pub found: Quantity,
     /// `None`: the document has no value.
     pub document: Option<f64>,
     /// `None`: unknown, or the bench has no such figure.
     pub given: Option<f64>,
+    /// `None`: the figure is shown but not judged.
     pub demand: Option<Demand>,
 }
 
@@ -89,10 +97,15 @@ pub fn wider_for(of: u64) -> f64 {
 /// One procedure of the campaign.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chapter {
+    /// Id of the procedure.
     pub procedure: &'static str,
+    /// Its title.
     pub title: &'static str,
+    /// The parameters that differ from the defaults.
     pub parameters: Map<String, Value>,
+    /// Result of its run.
     pub identification: Identification,
+    /// Its figures next to those of the document.
     pub comparisons: Vec<Comparison>,
     /// On the bench's clock.
     pub duration_s: f64,

@@ -10,18 +10,29 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
+/// State of a run. The last five are final.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunState {
+    /// Created, and nothing is commanded yet.
     Queued,
+    /// Instruments are identified and the drive is armed.
     Arming,
+    /// The steps are performed.
     Running,
+    /// At rest; the interrupted step is repeated after `resume`.
     Paused,
+    /// The bench is brought to the safe state.
     Securing,
+    /// Ended after the last step.
     Completed,
+    /// Ended in order, on request.
     Stopped,
+    /// Ended at once, on request.
     Aborted,
+    /// Ended by a limit, a fault or an error.
     Failed,
+    /// Ended because a process died.
     Interrupted,
 }
 
@@ -42,9 +53,11 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// Every outcome, in the order of the states.
     pub const ALL: [Outcome; 5] =
         [Outcome::Completed, Outcome::Stopped, Outcome::Aborted, Outcome::Failed, Outcome::Interrupted];
 
+    /// The final state of a run with this outcome.
     pub fn state(self) -> RunState {
         match self {
             Outcome::Completed => RunState::Completed,
@@ -60,22 +73,32 @@ impl Outcome {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Transition {
+    /// From `queued`: identify the instruments and arm the drive.
     Arm,
+    /// From `arming`: begin the first step.
     Start,
+    /// From `running`: ramp to rest.
     Pause,
+    /// From `paused`: repeat the interrupted step.
     Resume,
+    /// From every state before: bring the bench to the safe state.
     Secure,
+    /// From `securing`: reach the final state of the outcome.
     End(Outcome),
 }
 
+/// A transition that does not exist in this state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("a run that is {from} cannot {transition}")]
 pub struct IllegalMove {
+    /// State of the run.
     pub from: RunState,
+    /// The transition that was tried.
     pub transition: Transition,
 }
 
 impl RunState {
+    /// Every state, in the order of a run.
     pub const ALL: [RunState; 10] = [
         RunState::Queued,
         RunState::Arming,
@@ -104,6 +127,7 @@ impl RunState {
         }
     }
 
+    /// No transition leads out of this state.
     pub fn is_final(self) -> bool {
         matches!(
             self,
@@ -111,6 +135,7 @@ impl RunState {
         )
     }
 
+    /// Its name in the store and in REST.
     pub fn name(self) -> &'static str {
         match self {
             RunState::Queued => "queued",

@@ -106,7 +106,7 @@ impl SteadyWatch {
         Some(Drift::between(first, last))
     }
 
-    /// The same at the end of each cycle from the third on, with the mean time of that cycle [s].
+    /// The same at the end of each cycle from the third on, with the mean time of that cycle (s).
     pub fn drifts(&self) -> impl Iterator<Item = (f64, Drift)> + '_ {
         self.cycles.windows(3).map(|three| (three[2].of(three[2].time_s), Drift::between(three[0], three[2])))
     }

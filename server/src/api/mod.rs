@@ -99,24 +99,40 @@ const ANSWERS_AT_ONCE: usize = 8;
 /// A table of many megabytes takes twenty times its size while it is read.
 const TABLES_AT_ONCE: usize = 2;
 
+/// Everything under `/api/v1`.
 fn operations() -> OpenApiRouter<Lab> {
-    // Each gate is of its own kind: whoever waits for residuals holds no samples up.
-    let gated = |at_once, routes: OpenApiRouter<Lab>| {
-        routes.layer(middleware::from_fn_with_state(weight::Gate::of(at_once), weight::one_by_one))
-    };
+    let rest = samples()
+        .merge(measurements())
+        .merge(models())
+        .merge(daemon())
+        .layer(middleware::from_fn_with_state(weight::Scales::default(), weight::weigh));
+    let rest = sized(rest, size::BODY_LIMIT_BYTES);
+    OpenApiRouter::with_openapi(Description::openapi()).nest("/api/v1", rest.merge(tables()).merge(uploads()))
+}
+
+fn uploads() -> OpenApiRouter<Lab> {
     let turns = Arc::new(Semaphore::new(size::UPLOADS));
-    let uploads = sized(
-        OpenApiRouter::new().routes(routes!(transfer::import)).routes(routes!(transfer::preview)),
-        size::UPLOAD_LIMIT_BYTES,
-    )
-    .layer(middleware::from_fn(move |request, next| size::queue(turns.clone(), request, next)));
-    let tables = gated(TABLES_AT_ONCE, OpenApiRouter::new().routes(routes!(tables::write)));
-    let tables = sized(tables, size::TABLE_LIMIT_BYTES);
-    let rest = OpenApiRouter::new()
+    let routes = OpenApiRouter::new().routes(routes!(transfer::import)).routes(routes!(transfer::preview));
+    sized(routes, size::UPLOAD_LIMIT_BYTES)
+        .layer(middleware::from_fn(move |request, next| size::queue(turns.clone(), request, next)))
+}
+
+fn tables() -> OpenApiRouter<Lab> {
+    sized(gated(TABLES_AT_ONCE, OpenApiRouter::new().routes(routes!(tables::write))), size::TABLE_LIMIT_BYTES)
+}
+
+/// Large answers. Each gate is of its own kind: whoever waits for residuals holds no samples up.
+fn samples() -> OpenApiRouter<Lab> {
+    OpenApiRouter::new()
         .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(runs::samples))))
         .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(derived::samples))))
         .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(models::residuals))))
         .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(runs::events))))
+}
+
+/// Benches, procedures, runs and their results.
+fn measurements() -> OpenApiRouter<Lab> {
+    OpenApiRouter::new()
         .routes(routes!(bench::list))
         .routes(routes!(bench::get))
         .routes(routes!(bench::stop))
@@ -150,6 +166,11 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(identifications::report))
         .routes(routes!(transfer::export))
         .routes(routes!(transfer::export_meta))
+}
+
+/// Effects, model versions, diagnoses and autopilots.
+fn models() -> OpenApiRouter<Lab> {
+    OpenApiRouter::new()
         .routes(routes!(models::effects, own_effects::define))
         .routes(routes!(own_effects::check))
         .routes(routes!(own_effects::delete))
@@ -170,15 +191,21 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(autopilots::list, autopilots::start))
         .routes(routes!(autopilots::get))
         .routes(routes!(autopilots::stop))
+}
+
+fn daemon() -> OpenApiRouter<Lab> {
+    OpenApiRouter::new()
         .routes(routes!(live::stream))
         .routes(routes!(log::log))
         .routes(routes!(tokens::list, tokens::make))
         .routes(routes!(tokens::revoke))
         .routes(routes!(health::health))
         .routes(routes!(health::specification))
-        .layer(middleware::from_fn_with_state(weight::Scales::default(), weight::weigh));
-    let rest = sized(rest, size::BODY_LIMIT_BYTES);
-    OpenApiRouter::with_openapi(Description::openapi()).nest("/api/v1", rest.merge(tables).merge(uploads))
+}
+
+/// Routes of which at most so many requests are answered at the same time.
+fn gated(at_once: usize, routes: OpenApiRouter<Lab>) -> OpenApiRouter<Lab> {
+    routes.layer(middleware::from_fn_with_state(weight::Gate::of(at_once), weight::one_by_one))
 }
 
 /// Routes whose bodies have at most so many bytes.

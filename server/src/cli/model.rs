@@ -1,6 +1,6 @@
 //! `jointbench model`: exported models in files, and their import into the store.
 
-use super::arguments::{Model, ModelCommand};
+use super::arguments::{Model, ModelCommand, StorePlace};
 use super::exit::{Done, Exit};
 use super::files::{self, write};
 use super::offline::{json_out, read};
@@ -25,35 +25,7 @@ pub fn model(arguments: &Model) -> Done {
                 }
             }
         }
-        ModelCommand::Import { model, run, json, store } => {
-            let runtime = runtime()?;
-            let fit = open(model)?;
-            let file = reread(&ModelFile::new(fit.clone()))?;
-            let import = view::ModelImport { run: *run, model: file };
-            let refused = |exit: Exit| Exit { said: format!("{}: {}", model.display(), exit.said), ..exit };
-            let (imported, page) = match transfer::open(&runtime, store, false)? {
-                Way::Folder(lab) => {
-                    (runtime.block_on(lab.import_model(import, LOCAL)).map_err(|fault| refused(fault.into()))?, None)
-                }
-                Way::Daemon(client) => {
-                    let imported: view::ImportedModel = client.post("/models/import", &import).map_err(refused)?;
-                    let page = client.page(&format!("/workbench/{run}?model={}", imported.model.id));
-                    (imported, Some(page))
-                }
-            };
-            if *json {
-                return json_out(&imported);
-            }
-            let version = &imported.model;
-            let figure = |rms: f64| words::figure(rms, &fit.unit);
-            println!("model {} of run {run}: {}", version.id, version.effects.join(" + "));
-            println!("error {} on this run, {} on the fitted run", figure(version.rms), figure(fit.validation_rms));
-            imported.notes.iter().for_each(|note| println!("note      {note}"));
-            if let Some(page) = page {
-                println!("{page}");
-            }
-            Ok(())
-        }
+        ModelCommand::Import { model, run, json, store } => import(model, *run, *json, store),
         ModelCommand::Evaluate { model, run, meta, columns, json } => {
             let (fit, table) = (open(model)?, read(run, meta.as_deref(), columns)?);
             let evaluation = jointbench_model::evaluate(&fit, &table).map_err(|fault| Exit::of(&[run], fault))?;
@@ -74,6 +46,37 @@ pub fn model(arguments: &Model) -> Done {
             Ok(())
         }
     }
+}
+
+/// Makes a model file a version of a run.
+fn import(model: &Path, run: i64, json: bool, store: &StorePlace) -> Done {
+    let runtime = runtime()?;
+    let fit = open(model)?;
+    let file = reread(&ModelFile::new(fit.clone()))?;
+    let import = view::ModelImport { run, model: file };
+    let refused = |exit: Exit| Exit { said: format!("{}: {}", model.display(), exit.said), ..exit };
+    let (imported, page) = match transfer::open(&runtime, store, false)? {
+        Way::Folder(lab) => {
+            (runtime.block_on(lab.import_model(import, LOCAL)).map_err(|fault| refused(fault.into()))?, None)
+        }
+        Way::Daemon(client) => {
+            let imported: view::ImportedModel = client.post("/models/import", &import).map_err(refused)?;
+            let page = client.page(&format!("/workbench/{run}?model={}", imported.model.id));
+            (imported, Some(page))
+        }
+    };
+    if json {
+        return json_out(&imported);
+    }
+    let version = &imported.model;
+    let figure = |rms: f64| words::figure(rms, &fit.unit);
+    println!("model {} of run {run}: {}", version.id, version.effects.join(" + "));
+    println!("error {} on this run, {} on the fitted run", figure(version.rms), figure(fit.validation_rms));
+    imported.notes.iter().for_each(|note| println!("note      {note}"));
+    if let Some(page) = page {
+        println!("{page}");
+    }
+    Ok(())
 }
 
 /// Writes a fit in the format of `fit --out`.

@@ -28,14 +28,7 @@ const COLUMNS: &str =
 pub fn reproduce(arguments: &Reproduce) -> Done {
     // Check the path now: the measurements take minutes.
     if let Some(page) = &arguments.out {
-        let folder = page.with_extension("");
-        if folder == *page {
-            return Err(Exit::bad_input(format!(
-                "{}: the page must end in .md; its figures are written to a folder with the same name",
-                page.display()
-            )));
-        }
-        fs::create_dir_all(&folder).map_err(|fault| unwritable(&folder, &fault))?;
+        create_folder(page)?;
     }
     let mut page = preamble(arguments.seed);
     let mut chapters: Vec<(&str, Chapter)> = Vec::new();
@@ -51,41 +44,83 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
             chapters.push((title, chapter));
         }
     }
-    let comparisons: Vec<(String, &Comparison)> = chapters
-        .iter()
-        .flat_map(|(title, chapter)| {
-            chapter.comparisons.iter().map(move |one| (format!("{title}: {}", one.found.name), one))
-        })
-        .collect();
-    let where_not = |holds: &dyn Fn(&Comparison) -> Option<bool>| -> Vec<&str> {
-        comparisons.iter().filter(|(_, one)| holds(one) == Some(false)).map(|(name, _)| name.as_str()).collect()
-    };
-    let compared = comparisons.iter().filter(|(_, one)| one.is_inside().is_some()).count() as u64;
-    let (missed, beyond) = (where_not(&Comparison::is_inside), where_not(&|one| one.is_inside_with(compared)));
-    let broken = where_not(&Comparison::is_as_asked);
-    let besides = |names: &[&str]| if names.is_empty() { String::new() } else { format!(", not {}", names.join(", ")) };
-    let said = format!(
-        "{} of {compared} intervals contain the true value{}; one in twenty may miss by chance. For simultaneous 95 % \
-         coverage the intervals must be {:.2} times as wide; then {} contain it{}.",
-        compared - missed.len() as u64,
-        besides(&missed),
-        wider_for(compared),
-        if beyond.is_empty() { "all".to_owned() } else { (compared - beyond.len() as u64).to_string() },
-        besides(&beyond),
-    );
+    let outcome = Outcome::of(&chapters);
+    let said = outcome.said();
     println!("{said}");
     page += &format!("\n## Summary\n\n{said}\n");
     if let Some(path) = &arguments.out {
         fs::write(path, page).map_err(|fault| unwritable(path, &fault))?;
         println!("{}", path.display());
     }
-    if !broken.is_empty() {
-        return Err(Exit::failed(format!("requirement not met: {}", broken.join(", "))));
+    outcome.exit()
+}
+
+/// The folder for the figures of a page.
+fn create_folder(page: &Path) -> Done {
+    let folder = page.with_extension("");
+    if folder == *page {
+        return Err(Exit::bad_input(format!(
+            "{}: the page must end in .md; its figures are written to a folder with the same name",
+            page.display()
+        )));
     }
-    if beyond.is_empty() {
-        return Ok(());
+    fs::create_dir_all(&folder).map_err(|fault| unwritable(&folder, &fault))
+}
+
+/// Intervals compared with the true values, and the names of those that do not agree.
+struct Outcome {
+    compared: u64,
+    /// True value outside the 95 % interval.
+    missed: Vec<String>,
+    /// True value outside the interval for simultaneous coverage.
+    beyond: Vec<String>,
+    /// Requirement not met.
+    broken: Vec<String>,
+}
+
+impl Outcome {
+    fn of(chapters: &[(&str, Chapter)]) -> Self {
+        let comparisons: Vec<(&str, &Comparison)> = chapters
+            .iter()
+            .flat_map(|(title, chapter)| chapter.comparisons.iter().map(move |one| (*title, one)))
+            .collect();
+        let where_not = |holds: &dyn Fn(&Comparison) -> Option<bool>| -> Vec<String> {
+            let failed = comparisons.iter().filter(|(_, one)| holds(one) == Some(false));
+            failed.map(|(title, one)| format!("{title}: {}", one.found.name)).collect()
+        };
+        let compared = comparisons.iter().filter(|(_, one)| one.is_inside().is_some()).count() as u64;
+        Self {
+            compared,
+            missed: where_not(&Comparison::is_inside),
+            beyond: where_not(&|one| one.is_inside_with(compared)),
+            broken: where_not(&Comparison::is_as_asked),
+        }
     }
-    Err(Exit::failed(format!("deviation from the true value beyond chance: {}", beyond.join(", "))))
+
+    fn said(&self) -> String {
+        let Self { compared, missed, beyond, .. } = self;
+        let besides =
+            |names: &[String]| if names.is_empty() { String::new() } else { format!(", not {}", names.join(", ")) };
+        format!(
+            "{} of {compared} intervals contain the true value{}; one in twenty may miss by chance. For simultaneous 95 % \
+             coverage the intervals must be {:.2} times as wide; then {} contain it{}.",
+            compared - missed.len() as u64,
+            besides(missed),
+            wider_for(*compared),
+            if beyond.is_empty() { "all".to_owned() } else { (compared - beyond.len() as u64).to_string() },
+            besides(beyond),
+        )
+    }
+
+    fn exit(&self) -> Done {
+        if !self.broken.is_empty() {
+            return Err(Exit::failed(format!("requirement not met: {}", self.broken.join(", "))));
+        }
+        if self.beyond.is_empty() {
+            return Ok(());
+        }
+        Err(Exit::failed(format!("deviation from the true value beyond chance: {}", self.beyond.join(", "))))
+    }
 }
 
 /// Introduction of the page.

@@ -28,6 +28,35 @@ struct Fitted {
     diagnosis: Option<Value>,
 }
 
+impl Fitted {
+    fn version(
+        self,
+        run: i64,
+        more_runs: &[i64],
+        excluded: Value,
+        parent: Option<i64>,
+        tried: bool,
+        by: &str,
+    ) -> NewModel {
+        NewModel {
+            run,
+            more_runs: more_runs.to_vec(),
+            excluded,
+            parent,
+            kind: self.kind,
+            effects: self.effects,
+            residual: self.residual,
+            rms: self.rms,
+            validation_rms: self.validation_rms,
+            noise_floor_rms: self.noise_floor_rms,
+            options: self.options,
+            tried,
+            fit: self.fit,
+            by: by.to_owned(),
+        }
+    }
+}
+
 impl Lab {
     /// Fits effects to runs of one joint together and stores the fit, with its diagnosis, as a version of the first
     /// run. The default exclusions are those of the parent.
@@ -43,25 +72,8 @@ impl Lab {
         let Some((&run, more_runs)) = runs.split_first() else {
             return Err(LabError::Invalid("give the run to fit the model to".into()));
         };
-        let mut excluded = exclude;
-        if let Some(parent) = parent {
-            let before = self.inner.store.model(parent).await?;
-            if before.run != run {
-                return Err(LabError::Invalid(format!("model version {parent} belongs to another run than {run}")));
-            }
-            excluded = Some(excluded.map_or_else(|| reread(&before.excluded), Ok)?);
-        }
-        let excluded = excluded.unwrap_or_default();
-        excluding::check(&excluded)?;
-        let mut kind = None;
-        for run in runs {
-            let record = self.inner.store.run(*run).await?;
-            if !record.state.is_final() {
-                return Err(LabError::Conflict(format!("run {run} is still in progress: fit a model after its end")));
-            }
-            kind.get_or_insert(record.kind);
-        }
-        let spec = self.spec(find_kind(&kind.unwrap_or_default())?, effects).await?;
+        let excluded = self.exclusions(run, parent, exclude).await?;
+        let spec = self.spec(self.kind_of_ended(runs).await?, effects).await?;
         let _turn = match parent {
             None => Some(self.inner.turns.of(Turn::First(run)).await),
             Some(_) => None,
@@ -75,26 +87,12 @@ impl Lab {
         let job = Job::Fit { runs: runs.to_vec(), effects: effects.to_vec(), excluded: excluded.clone(), offer };
         let answer = self.worked_out(job).await?;
         let end = answer.iter().position(|byte| *byte == b'\n').unwrap_or(answer.len());
-        let (fitted, residuals) = (parsed::<Fitted>(&answer[..end])?, answer.get(end + 1..).unwrap_or_default());
-        let new = NewModel {
-            run,
-            more_runs: more_runs.to_vec(),
-            excluded: reread(&excluded)?,
-            parent,
-            kind: fitted.kind,
-            effects: fitted.effects,
-            residual: fitted.residual,
-            rms: fitted.rms,
-            validation_rms: fitted.validation_rms,
-            noise_floor_rms: fitted.noise_floor_rms,
-            options: fitted.options,
-            tried,
-            fit: fitted.fit,
-            by: by.to_owned(),
-        };
+        let (mut fitted, residuals) = (parsed::<Fitted>(&answer[..end])?, answer.get(end + 1..).unwrap_or_default());
+        let (diagnosis, excluded) = (fitted.diagnosis.take(), reread(&excluded)?);
+        let new = fitted.version(run, more_runs, excluded, parent, tried, by);
         // A version is valid without residuals; a request for them returns the reason.
         let residuals = Some((RESIDUALS, residuals)).filter(|(_, packed)| !packed.is_empty());
-        let record = self.inner.store.save_fitted(&new, residuals, fitted.diagnosis.as_ref()).await?;
+        let record = self.inner.store.save_fitted(&new, residuals, diagnosis.as_ref()).await?;
         tracing::info!(
             run.id = run,
             model.id = record.id,
@@ -104,6 +102,34 @@ impl Lab {
         );
         self.hub().tell(LiveMessage::Model { run, model: record.id });
         convert::model(record)
+    }
+
+    /// What a new version leaves out: the given exclusions, otherwise those of its parent.
+    async fn exclusions(&self, run: i64, parent: Option<i64>, given: Option<Vec<Exclusion>>) -> Answer<Vec<Exclusion>> {
+        let mut excluded = given;
+        if let Some(parent) = parent {
+            let before = self.inner.store.model(parent).await?;
+            if before.run != run {
+                return Err(LabError::Invalid(format!("model version {parent} belongs to another run than {run}")));
+            }
+            excluded = Some(excluded.map_or_else(|| reread(&before.excluded), Ok)?);
+        }
+        let excluded = excluded.unwrap_or_default();
+        excluding::check(&excluded)?;
+        Ok(excluded)
+    }
+
+    /// Kind of the first run, if all of them have ended.
+    async fn kind_of_ended(&self, runs: &[i64]) -> Answer<Kind> {
+        let mut kind = None;
+        for run in runs {
+            let record = self.inner.store.run(*run).await?;
+            if !record.state.is_final() {
+                return Err(LabError::Conflict(format!("run {run} is still in progress: fit a model after its end")));
+            }
+            kind.get_or_insert(record.kind);
+        }
+        find_kind(&kind.unwrap_or_default())
     }
 
     /// Fits and diagnoses: [`Fitted`] as one line, then the packed residuals.

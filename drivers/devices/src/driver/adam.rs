@@ -16,11 +16,15 @@ const TYPE_CODES: u16 = 200;
 const MODULE_NAME: u16 = 210;
 const ADAM_4015: u16 = 0x4015;
 
+/// Connection of an Advantech ADAM-4015 (Modbus RTU).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AdamSettings {
+    /// Name in the bench description (role or own name).
     pub name: String,
+    /// Port and line speed.
     pub port: PortSettings,
+    /// Longest time for a reply.
     pub deadline_ms: u64,
     /// Address of the module; several modules may share one line.
     pub slave: u8,
@@ -28,6 +32,7 @@ pub struct AdamSettings {
     pub channels: Vec<u8>,
 }
 
+/// Six platinum resistance thermometers behind an ADAM-4015 module.
 pub struct AdamThermometer {
     settings: AdamSettings,
     link: Link,

@@ -15,16 +15,21 @@ const NOMINAL_V: f64 = 10.0;
 /// 6½ digits in the 10 V range.
 const STEP_V: f64 = 1e-5;
 
+/// Connection of a multimeter, and the scale of the sensor's analogue output.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DmmSettings {
+    /// Name in the bench description (role or own name).
     pub name: String,
+    /// Port and line speed.
     pub port: PortSettings,
+    /// Longest time for a reply.
     pub deadline_ms: u64,
     /// Torque at 10 V.
     pub nominal_nm: f64,
 }
 
+/// Torque of a sensor whose analogue output a SCPI multimeter measures.
 pub struct DmmTorqueSensor {
     settings: DmmSettings,
     link: Link,

@@ -13,14 +13,19 @@ const M_PER_MM: f64 = 1e-3;
 /// The error code that every stop sets.
 const STOPPED: u32 = 10;
 
+/// Connection of a PI C-887 hexapod controller.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GcsSettings {
+    /// Name in the bench description (role or own name).
     pub name: String,
+    /// Port and line speed.
     pub port: PortSettings,
+    /// Longest time for a reply.
     pub deadline_ms: u64,
 }
 
+/// A PI hexapod, commanded with GCS 2.0.
 pub struct GcsStage {
     settings: GcsSettings,
     link: Link,

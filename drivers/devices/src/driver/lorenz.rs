@@ -24,17 +24,23 @@ pub enum Range {
     Fine,
 }
 
+/// Connection of a Lorenz sensor, and the range in use.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LorenzSettings {
+    /// Name in the bench description (role or own name).
     pub name: String,
+    /// Port and line speed.
     pub port: PortSettings,
+    /// Longest time for a reply.
     pub deadline_ms: u64,
+    /// Range whose torque is reported; the other one is read with it.
     pub range: Range,
     /// Nominal torque of the channel that [`LorenzSettings::range`] selects.
     pub nominal_nm: f64,
 }
 
+/// A Lorenz torque sensor: single readings and the stream of both ranges.
 pub struct LorenzSensor {
     pub(super) settings: LorenzSettings,
     pub(super) link: Link,

@@ -28,6 +28,7 @@ const VELOCITY_MODE: f64 = 2.0;
 /// Set-points are applied directly, without the ramp of the drive.
 const PASSTHROUGH: f64 = 1.0;
 
+/// Source of the temperature that the drive reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Thermistor {
@@ -37,14 +38,19 @@ pub enum Thermistor {
     PowerStage,
 }
 
+/// Connection of an ODrive, and its wiring.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OdriveSettings {
+    /// Name in the bench description.
     pub name: String,
+    /// Port and line speed.
     pub port: PortSettings,
+    /// Longest time for a reply.
     pub deadline_ms: u64,
     /// The link encoder is wired to the encoder input of axis 1.
     pub link_encoder: bool,
+    /// `None`: the drive measures no temperature.
     pub thermistor: Option<Thermistor>,
 }
 
@@ -55,6 +61,7 @@ enum SetPoint {
     Torque(f64),
 }
 
+/// A joint whose motor an ODrive (firmware 0.5) controls.
 pub struct OdriveJoint {
     settings: OdriveSettings,
     link: Link,

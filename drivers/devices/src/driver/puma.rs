@@ -29,11 +29,15 @@ const GLANCE_S: f64 = 0.02;
 /// The servo switches arm power off after a longer time without a request, so a set-point covers at most this time.
 const LONGEST_GAP_S: f64 = 0.25;
 
+/// Connection of a Puma servo, and the scales of its axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PumaSettings {
+    /// Name in the bench description.
     pub name: String,
+    /// Port and line speed.
     pub port: PortSettings,
+    /// Longest time for a reply.
     pub deadline_ms: u64,
     /// Counts per turn of the motor encoder, four per line.
     pub counts_per_turn: u32,
@@ -41,6 +45,7 @@ pub struct PumaSettings {
     pub amperes_per_volt: f64,
     /// Clock ticks of 0.875 ms between set-points: more than the time between two commands of the bench.
     pub ninter: u8,
+    /// Gains that the driver writes when it arms the servo.
     #[serde(default)]
     pub gains: PumaGains,
 }
@@ -49,8 +54,11 @@ pub struct PumaSettings {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PumaGains {
+    /// Proportional gain.
     pub propgan: Option<u8>,
+    /// Velocity gain.
     pub velgan: Option<u8>,
+    /// Scale factor of the control output.
     pub outscl: Option<u8>,
     /// Encoder counts.
     pub postol: Option<u16>,
@@ -96,6 +104,7 @@ struct Seen {
     velocity_rad_s: f64,
 }
 
+/// A joint that the servo of a Puma axis controls.
 pub struct PumaAxis {
     settings: PumaSettings,
     link: Link,

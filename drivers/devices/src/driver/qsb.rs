@@ -23,14 +23,19 @@ const CLEAR_STATUS: u32 = 3;
 const POWER_WAS_LOST: u32 = 1 << 2;
 const INDEX_WAS_PASSED: u32 = 1 << 4;
 
+/// Connection of a US Digital QSB, and its encoder.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QsbSettings {
+    /// Name in the bench description (role or own name).
     pub name: String,
+    /// Port and line speed.
     pub port: PortSettings,
+    /// Longest time for a reply.
     pub deadline_ms: u64,
     /// After the quadrature factor of four: 16384 for 14 bits.
     pub counts_per_turn: u32,
+    /// The counter counts in the opposite direction.
     #[serde(default)]
     pub reversed: bool,
     /// Digital input that is wired to the encoder's status output. High: the periods are consistent.
@@ -38,6 +43,7 @@ pub struct QsbSettings {
     pub status_input: Option<u8>,
 }
 
+/// An incremental encoder, counted by a QSB.
 pub struct QsbCounter {
     settings: QsbSettings,
     link: Link,

@@ -15,14 +15,19 @@ use std::time::Duration;
 
 const VOLTAGE_STEP_V: f64 = 1e-3;
 
+/// Connection of a supply; the model is taken from its identity.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScpiSettings {
+    /// Name in the bench description (role or own name).
     pub name: String,
+    /// Port and line speed.
     pub port: PortSettings,
+    /// Longest time for a reply.
     pub deadline_ms: u64,
 }
 
+/// Channel 1 of a supply, which feeds the coil of a brake.
 pub struct ScpiSource {
     settings: ScpiSettings,
     link: Link,

@@ -8,7 +8,8 @@ use jointbench_instrument::FaultKind;
 use jointbench_instrument::roles::Identity;
 
 const REPLY_LIMIT: usize = 2048;
-pub const AXES: [char; 6] = ['X', 'Y', 'Z', 'U', 'V', 'W'];
+/// Names of the axes: shifts X, Y, Z, then rotations U, V, W about them.
+pub(crate) const AXES: [char; 6] = ['X', 'Y', 'Z', 'U', 'V', 'W'];
 
 /// A reply is complete at a line feed without a space before it.
 fn scan_reply(received: &[u8]) -> Scan {
@@ -54,6 +55,7 @@ macro_rules! query {
     };
 }
 
+/// Maker, model, serial number and firmware (`*IDN?`).
 #[derive(Debug, Clone, Copy)]
 pub struct Identify;
 
@@ -156,7 +158,7 @@ impl Command for StopAll {
 }
 
 /// The controller's texts for the codes that occur on a bench.
-pub fn error_text(code: u32) -> String {
+pub(crate) fn error_text(code: u32) -> String {
     let text = match code {
         1 => "parameter syntax error",
         2 => "unknown command",

@@ -12,8 +12,11 @@ const EXCEPTION_LENGTH: usize = 5;
 /// Up to 125 consecutive registers.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadRegisters {
+    /// Address of the module on the line.
     pub slave: u8,
+    /// Address of the first register, from 0.
     pub first: u16,
+    /// Number of registers, 1 to 125.
     pub count: u8,
 }
 

@@ -11,36 +11,49 @@ const LINE_LIMIT: usize = 64;
 /// Line feed, carriage return, time stamp, spaces: for [`Register::Format`].
 pub const FORMAT: u32 = 0xF;
 
+/// Registers of a counter, by their number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Register {
+    /// What the channel counts: quadrature with 0.
     Mode = 0x00,
+    /// Levels of the digital inputs.
     DigitalInputs = 0x01,
     /// Quadrature factor, counting mode, index (LS7366R MDR0).
     CounterMode = 0x03,
     /// Bit 8: direction (LS7366R MDR1).
     Direction = 0x04,
+    /// Flags of the counter: power loss, passage of the index.
     Status = 0x06,
+    /// Clears count or status.
     Clear = 0x09,
+    /// The count.
     Encoder = 0x0E,
+    /// Serial number, variant and firmware.
     Version = 0x14,
+    /// Format of replies ([`FORMAT`]).
     Format = 0x15,
+    /// Starts and stops streams.
     Command = 0x16,
 }
 
 /// The value of a register and its time; the stamp counts 1/512 s.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Held {
+    /// Value of the register, 32 bits.
     pub value: u32,
+    /// Time of the reply [1/512 s]; it wraps at 32 bits.
     pub stamp: u32,
 }
 
 /// Identity of a unit, from [`Register::Version`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Version {
+    /// Serial number of the unit.
     pub serial: u32,
     /// D, M or S.
     pub variant: char,
+    /// Version of its firmware.
     pub firmware: u8,
 }
 
@@ -65,6 +78,7 @@ impl Command for Quieten {
     }
 }
 
+/// Reads a register.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadRegister(pub Register);
 

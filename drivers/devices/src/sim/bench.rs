@@ -36,14 +36,20 @@ pub enum Transport {
     Inside,
     /// Pseudo-terminals; loopback TCP on systems without them.
     Terminal,
+    /// Loopback TCP, one port for each instrument.
     Tcp,
 }
 
+/// What a mock bench simulates, and how its instruments are reached.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct MockSettings {
+    /// The joint under test.
     pub joint: Joint,
+    /// The load of the joint; determines torque sensor and brake.
     pub load: Load,
+    /// Supply of the brake's coil.
     pub supply: Supply,
+    /// The same seed gives the same parameters and noise.
     pub seed: u64,
     /// Whether the filter of the encoder under test is on.
     pub filter: bool,
@@ -51,12 +57,14 @@ pub struct MockSettings {
     pub effects: Vec<String>,
     /// Bench seconds per second of wall time. `None`: as fast as possible.
     pub pace: Option<f64>,
+    /// Wires of all instruments.
     pub transport: Transport,
     /// Bytes take the wall time that they take on the instrument's line, except with [`Transport::Inside`]. Otherwise
     /// they take no time.
     pub paced_lines: bool,
     /// Deadline of the drivers that [`MockBench::open_bench`] opens.
     pub deadline_ms: u64,
+    /// Troubles with planned times.
     pub troubles: Vec<PlannedTrouble>,
     /// Instruments in addition to the joint, and to the torque sensor and brake of a bench with a load.
     pub others: Vec<MockInstrument>,
@@ -90,7 +98,7 @@ impl MockSettings {
         }
     }
 
-    /// The smallest range of the torque sensor that suits the load, and its nominal torque [Nm].
+    /// The smallest range of the torque sensor that suits the load, and its nominal torque (Nm).
     fn torque_range(&self) -> Option<(Range, f64)> {
         match self.load {
             Load::BrakeA => Some((Range::Fine, 20.0)),
@@ -109,6 +117,7 @@ impl MockSettings {
         self.joint != Joint::Puma
     }
 
+    /// The bench has this instrument.
     pub fn has(&self, instrument: MockInstrument) -> bool {
         self.instruments().contains(&instrument)
     }
@@ -123,18 +132,28 @@ impl MockSettings {
         all
     }
 
+    /// The same bench with these hidden effects, by the names of [`Joint::hides`].
     pub fn hiding(mut self, effects: &[&str]) -> Self {
         self.effects = effects.iter().map(|effect| (*effect).to_owned()).collect();
         self
     }
 }
 
+/// Why a mock bench does not start.
 #[derive(Debug, thiserror::Error)]
 pub enum MockError {
+    /// This joint cannot hide the effect.
     #[error("effect {effect}: this mock bench can hide {known}", known = joint.hides().join(", "))]
-    UnknownEffect { effect: String, joint: Joint },
+    UnknownEffect {
+        /// Name of the effect.
+        effect: String,
+        /// The joint of the settings.
+        joint: Joint,
+    },
+    /// The pace is 0, negative, or not a number.
     #[error("pace {0} of the mock bench: expected a number above 0")]
     Pace(f64),
+    /// The operating system refuses a terminal, socket or thread.
     #[error("the system provides no port for the mock bench: {0}")]
     Port(#[from] io::Error),
 }
@@ -150,6 +169,7 @@ pub struct MockBench {
 }
 
 impl MockBench {
+    /// Draws the hidden parameters and starts every instrument.
     pub fn start(settings: MockSettings) -> Result<Self, MockError> {
         if let Some(pace) = settings.pace
             && !(pace.is_finite() && pace > 0.0)
@@ -191,6 +211,7 @@ impl MockBench {
         Arc::clone(&self.clock) as Arc<dyn Clock>
     }
 
+    /// The settings with which it was started.
     pub fn settings(&self) -> &MockSettings {
         &self.settings
     }

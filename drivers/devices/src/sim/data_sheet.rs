@@ -68,7 +68,7 @@ pub(super) struct DataSheet {
     pub max_motor_current_a: f64,
 }
 
-/// Motor torque of the Puma per volt at its converter: its published Coulomb friction [Nm] over that of figure 3.2 [V].
+/// Motor torque of the Puma per volt at its converter: its published Coulomb friction (Nm) over that of figure 3.2 (V).
 const PUMA_NM_PER_V: f64 = 0.231;
 
 /// Magtrol HB-1750M, data sheet EN 04/2025.
@@ -86,115 +86,124 @@ pub(super) const LINE_RATIO: f64 = 10.0;
 /// Supplies rated current to a coil at 100 °C (40.4 V) with a margin.
 const COMPLIANCE_V: f64 = 45.0;
 
+const JOINT_A: DataSheet = DataSheet {
+    torque_constant_nm_per_a: 0.0406,
+    ratio: 177.8,
+    max_torque_nm: 70.0,
+    range_rad: Some(5.0 * TAU),
+    coulomb_nm: 0.030,
+    breakaway_nm: 0.039,
+    viscous_nm_s: 1.512e-4,
+    direction_offset_nm: 0.0,
+    viscous_asymmetry: 0.0,
+    upright_nm: 0.0,
+    stribeck_velocity_rad_s: 0.06,
+    stribeck_exponent: 0.8,
+    stiffness_nm_rad: 5722.5,
+    bearing_nm_rad: 155.0e3,
+    lost_rad: 0.5871e-3,
+    soft_rad: 0.0,
+    link_inertia_kg_m2: 0.011,
+    tuned_inertia_kg_m2: 0.017,
+    rotor_inertia_kg_m2: 1.2e-5,
+    max_motor_velocity_rad_s: 350.0,
+    max_motor_current_a: 8.0,
+};
+
+const JOINT_B: DataSheet = DataSheet {
+    torque_constant_nm_per_a: 0.0798,
+    ratio: 50.0,
+    max_torque_nm: 20.0,
+    range_rad: None,
+    coulomb_nm: 0.031,
+    breakaway_nm: 0.057,
+    viscous_nm_s: 7.835e-5,
+    direction_offset_nm: 0.0,
+    viscous_asymmetry: 0.0,
+    upright_nm: 0.0,
+    stribeck_velocity_rad_s: 0.08,
+    stribeck_exponent: 1.9,
+    stiffness_nm_rad: 684.3,
+    bearing_nm_rad: 75.0e3,
+    lost_rad: 0.0,
+    soft_rad: 0.9588e-3,
+    link_inertia_kg_m2: 0.011,
+    tuned_inertia_kg_m2: 0.017,
+    rotor_inertia_kg_m2: 4.4e-5,
+    max_motor_velocity_rad_s: 350.0,
+    max_motor_current_a: 8.0,
+};
+
+/// The thesis only says "BLDC motor": all values are assumed.
+const ENCODER_SHAFT: DataSheet = DataSheet {
+    torque_constant_nm_per_a: 0.08,
+    ratio: 1.0,
+    max_torque_nm: 1.0,
+    range_rad: None,
+    coulomb_nm: 0.010,
+    breakaway_nm: 0.012,
+    viscous_nm_s: 2e-5,
+    direction_offset_nm: 0.0,
+    viscous_asymmetry: 0.0,
+    upright_nm: 0.0,
+    stribeck_velocity_rad_s: 1.0,
+    stribeck_exponent: 1.0,
+    stiffness_nm_rad: 20.0,
+    bearing_nm_rad: f64::INFINITY,
+    lost_rad: 0.0,
+    soft_rad: 0.0,
+    link_inertia_kg_m2: 1e-5,
+    tuned_inertia_kg_m2: 1e-5,
+    rotor_inertia_kg_m2: 4.4e-5,
+    max_motor_velocity_rad_s: 200.0,
+    max_motor_current_a: 5.0,
+};
+
+/// Friction: the lines of figure 3.2 of document 000, joint 2, in volts over link speed in degrees per
+/// second, converted with PUMA_NM_PER_V. Ratio, rotor and weight: Corke and Armstrong-Hélouvry, "A search
+/// for consensus among model parameters reported for the PUMA 560 robot", ICRA 1994. The rest is assumed.
+fn puma() -> DataSheet {
+    let ratio = 107.815;
+    let viscous = |line: f64| line * PUMA_NM_PER_V / (ratio * 1f64.to_radians());
+    let coulomb = |line: f64| line * PUMA_NM_PER_V;
+    let ([forward, backward], [out, back]) =
+        ([coulomb(0.545064), coulomb(0.307835)], [viscous(0.007581), viscous(0.005757)]);
+    DataSheet {
+        torque_constant_nm_per_a: PUMA_NM_PER_V,
+        ratio,
+        max_torque_nm: 97.0,
+        range_rad: Some(1.6),
+        coulomb_nm: 0.5 * (forward + backward),
+        breakaway_nm: 0.115,
+        viscous_nm_s: 0.5 * (out + back),
+        direction_offset_nm: 0.5 * (forward - backward),
+        viscous_asymmetry: (out - back) / (out + back),
+        upright_nm: 37.2,
+        stribeck_velocity_rad_s: 0.008,
+        stribeck_exponent: 2.0,
+        stiffness_nm_rad: 76e3,
+        bearing_nm_rad: f64::INFINITY,
+        lost_rad: 0.0,
+        soft_rad: 0.0,
+        link_inertia_kg_m2: 4.0,
+        tuned_inertia_kg_m2: 4.0,
+        rotor_inertia_kg_m2: 2.0e-4,
+        max_motor_velocity_rad_s: 120.0,
+        max_motor_current_a: 5.0,
+    }
+}
+
 impl Joint {
     pub(super) fn data_sheet(self) -> DataSheet {
         match self {
-            Joint::JointA => DataSheet {
-                torque_constant_nm_per_a: 0.0406,
-                ratio: 177.8,
-                max_torque_nm: 70.0,
-                range_rad: Some(5.0 * TAU),
-                coulomb_nm: 0.030,
-                breakaway_nm: 0.039,
-                viscous_nm_s: 1.512e-4,
-                direction_offset_nm: 0.0,
-                viscous_asymmetry: 0.0,
-                upright_nm: 0.0,
-                stribeck_velocity_rad_s: 0.06,
-                stribeck_exponent: 0.8,
-                stiffness_nm_rad: 5722.5,
-                bearing_nm_rad: 155.0e3,
-                lost_rad: 0.5871e-3,
-                soft_rad: 0.0,
-                link_inertia_kg_m2: 0.011,
-                tuned_inertia_kg_m2: 0.017,
-                rotor_inertia_kg_m2: 1.2e-5,
-                max_motor_velocity_rad_s: 350.0,
-                max_motor_current_a: 8.0,
-            },
-            Joint::JointB => DataSheet {
-                torque_constant_nm_per_a: 0.0798,
-                ratio: 50.0,
-                max_torque_nm: 20.0,
-                range_rad: None,
-                coulomb_nm: 0.031,
-                breakaway_nm: 0.057,
-                viscous_nm_s: 7.835e-5,
-                direction_offset_nm: 0.0,
-                viscous_asymmetry: 0.0,
-                upright_nm: 0.0,
-                stribeck_velocity_rad_s: 0.08,
-                stribeck_exponent: 1.9,
-                stiffness_nm_rad: 684.3,
-                bearing_nm_rad: 75.0e3,
-                lost_rad: 0.0,
-                soft_rad: 0.9588e-3,
-                link_inertia_kg_m2: 0.011,
-                tuned_inertia_kg_m2: 0.017,
-                rotor_inertia_kg_m2: 4.4e-5,
-                max_motor_velocity_rad_s: 350.0,
-                max_motor_current_a: 8.0,
-            },
-            // The thesis only says "BLDC motor": all values are assumed.
-            Joint::EncoderShaft => DataSheet {
-                torque_constant_nm_per_a: 0.08,
-                ratio: 1.0,
-                max_torque_nm: 1.0,
-                range_rad: None,
-                coulomb_nm: 0.010,
-                breakaway_nm: 0.012,
-                viscous_nm_s: 2e-5,
-                direction_offset_nm: 0.0,
-                viscous_asymmetry: 0.0,
-                upright_nm: 0.0,
-                stribeck_velocity_rad_s: 1.0,
-                stribeck_exponent: 1.0,
-                stiffness_nm_rad: 20.0,
-                bearing_nm_rad: f64::INFINITY,
-                lost_rad: 0.0,
-                soft_rad: 0.0,
-                link_inertia_kg_m2: 1e-5,
-                tuned_inertia_kg_m2: 1e-5,
-                rotor_inertia_kg_m2: 4.4e-5,
-                max_motor_velocity_rad_s: 200.0,
-                max_motor_current_a: 5.0,
-            },
-            // Friction: the lines of figure 3.2 of document 000, joint 2, in volts over link speed in degrees per
-            // second, converted with PUMA_NM_PER_V. Ratio, rotor and weight: Corke and Armstrong-Hélouvry, "A search
-            // for consensus among model parameters reported for the PUMA 560 robot", ICRA 1994. The rest is assumed.
-            Joint::Puma => {
-                let ratio = 107.815;
-                let viscous = |line: f64| line * PUMA_NM_PER_V / (ratio * 1f64.to_radians());
-                let coulomb = |line: f64| line * PUMA_NM_PER_V;
-                let ([forward, backward], [out, back]) =
-                    ([coulomb(0.545064), coulomb(0.307835)], [viscous(0.007581), viscous(0.005757)]);
-                DataSheet {
-                    torque_constant_nm_per_a: PUMA_NM_PER_V,
-                    ratio,
-                    max_torque_nm: 97.0,
-                    range_rad: Some(1.6),
-                    coulomb_nm: 0.5 * (forward + backward),
-                    breakaway_nm: 0.115,
-                    viscous_nm_s: 0.5 * (out + back),
-                    direction_offset_nm: 0.5 * (forward - backward),
-                    viscous_asymmetry: (out - back) / (out + back),
-                    upright_nm: 37.2,
-                    stribeck_velocity_rad_s: 0.008,
-                    stribeck_exponent: 2.0,
-                    stiffness_nm_rad: 76e3,
-                    bearing_nm_rad: f64::INFINITY,
-                    lost_rad: 0.0,
-                    soft_rad: 0.0,
-                    link_inertia_kg_m2: 4.0,
-                    tuned_inertia_kg_m2: 4.0,
-                    rotor_inertia_kg_m2: 2.0e-4,
-                    max_motor_velocity_rad_s: 120.0,
-                    max_motor_current_a: 5.0,
-                }
-            }
+            Joint::JointA => JOINT_A,
+            Joint::JointB => JOINT_B,
+            Joint::EncoderShaft => ENCODER_SHAFT,
+            Joint::Puma => puma(),
         }
     }
 
+    /// The constants that a bench description of this joint and load states.
     pub fn constants(self, load: Load) -> JointConstants {
         let sheet = self.data_sheet();
         let (turns, brakes) = match load {

@@ -33,6 +33,7 @@ struct Shared {
 }
 
 impl Replay {
+    /// Starts to answer at a new port. [`Transport::Inside`] is not available and becomes TCP.
     pub fn start(traffic: Traffic, transport: Transport) -> io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let inside = Arc::clone(&shared);
@@ -54,6 +55,7 @@ impl Replay {
         Ok(Self { address, shared, thread: Some(thread) })
     }
 
+    /// The port at which it answers.
     pub fn address(&self) -> &Address {
         &self.address
     }

@@ -9,8 +9,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MockInstrument {
+    /// Drive of the joint.
     Joint,
+    /// Torque sensor between joint and load.
     TorqueSensor,
+    /// Supply of the brake's coil.
     Brake,
     /// Encoder S1 of the encoder bench, on the motor shaft.
     CounterS1,
@@ -79,6 +82,7 @@ impl MockInstrument {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Supply {
+    /// Rigol DP821A, up to 60 V.
     #[default]
     Dp821a,
     /// Ends at 32 V, which is too low for the rated current in a warm coil.

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Trouble {
+    /// Works as it should.
     #[default]
     None,
     /// Receives and executes commands, but its replies are lost.
@@ -60,7 +61,9 @@ impl Trouble {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlannedTrouble {
+    /// The instrument with the trouble.
     pub instrument: MockInstrument,
+    /// The trouble; [`Trouble::can_strike`] must hold.
     pub trouble: Trouble,
     /// Time on the bench clock.
     pub from_s: f64,

@@ -12,8 +12,11 @@ use std::str::FromStr;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum Address {
+    /// Name of a serial port or pseudo-terminal.
     Serial(String),
+    /// Serial number of a USB device.
     Usb(String),
+    /// Host and port.
     Tcp(String),
     /// Has no text form: only the code that simulates the instrument can provide it.
     Inside(Inside),
@@ -66,6 +69,7 @@ impl fmt::Display for Address {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PortSettings {
+    /// The port.
     pub address: Address,
     /// Unused for TCP and USB devices.
     pub baud: u32,
@@ -75,6 +79,7 @@ pub struct PortSettings {
 }
 
 impl PortSettings {
+    /// A port without a record of its traffic.
     pub fn new(address: impl Into<Address>, baud: u32) -> Self {
         Self { address: address.into(), baud, record: None }
     }

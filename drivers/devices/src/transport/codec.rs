@@ -8,13 +8,20 @@ pub enum Scan {
     /// The beginning of a packet; more bytes are needed.
     Short,
     /// A whole packet, framing included.
-    Packet { length: usize },
+    Packet {
+        /// Length of the packet in bytes.
+        length: usize,
+    },
     /// Bytes that cannot begin a packet.
-    Noise { skip: usize },
+    Noise {
+        /// Number of bytes to discard.
+        skip: usize,
+    },
 }
 
 /// A message to an instrument without a reply.
 pub trait Command {
+    /// Appends the bytes of the message.
     fn encode(&self, out: &mut Vec<u8>);
 
     /// Name of the command in faults and logs.
@@ -23,8 +30,10 @@ pub trait Command {
 
 /// A command that is answered. The request knows its reply.
 pub trait Request: Command {
+    /// Meaning of the reply.
     type Reply;
 
+    /// Finds the reply at the start of the received bytes.
     fn scan(&self, received: &[u8]) -> Scan;
 
     /// `packet` has the length that [`Request::scan`] returned.

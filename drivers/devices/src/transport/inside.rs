@@ -12,11 +12,13 @@ pub trait Socket: Send + Sync {
     /// Display name of the connector.
     fn name(&self) -> &str;
 
+    /// A wire to the instrument. Fails if another one is plugged.
     fn plug(&self) -> io::Result<Box<dyn Cord>>;
 }
 
 /// One end of a wire. Neither end ever waits.
 pub trait Cord: Send {
+    /// Sends bytes. Fails if the instrument is unplugged.
     fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
 
     /// Appends the received bytes.

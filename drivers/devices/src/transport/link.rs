@@ -26,6 +26,7 @@ enum Trust {
     Lost,
 }
 
+/// An exclusively opened port to one instrument: requests with deadlines, and the trust in its replies.
 pub struct Link {
     instrument: String,
     settings: PortSettings,
@@ -78,19 +79,23 @@ impl Link {
         Ok(())
     }
 
+    /// Name of the instrument in faults.
     pub fn instrument(&self) -> &str {
         &self.instrument
     }
 
+    /// The port in text form.
     pub fn address(&self) -> &str {
         &self.address
     }
 
+    /// Longest time for a reply.
     pub fn deadline(&self) -> Duration {
         self.deadline
     }
 
-    pub fn is_trusted(&self) -> bool {
+    /// Replies belong to requests; otherwise the link must be drained and the instrument identified.
+    pub(crate) fn is_trusted(&self) -> bool {
         self.trust == Trust::Trusted
     }
 
@@ -101,7 +106,7 @@ impl Link {
     }
 
     /// The next reply may belong to another request: drain and identify before the next request.
-    pub fn distrust(&mut self) {
+    pub(crate) fn distrust(&mut self) {
         if self.trust == Trust::Trusted {
             self.trust = Trust::Stale;
         }
@@ -109,7 +114,7 @@ impl Link {
 
     /// Appends the received bytes to `bytes`, for instruments that send without a request. Waits at most `patience` for
     /// the first byte; returns the number of bytes.
-    pub fn overhear(&mut self, bytes: &mut Vec<u8>, patience: Duration) -> Result<usize, Fault> {
+    pub(crate) fn overhear(&mut self, bytes: &mut Vec<u8>, patience: Duration) -> Result<usize, Fault> {
         let before = bytes.len();
         bytes.append(&mut self.received);
         let mut until = Instant::now() + patience;
@@ -161,6 +166,7 @@ impl Link {
         self.discard(deadline, answered).map_err(|kind| self.broken(kind))
     }
 
+    /// A fault of this instrument at this port.
     pub fn fault(&self, kind: FaultKind) -> Fault {
         kind.at(&self.instrument, &self.address)
     }

@@ -11,19 +11,26 @@ use std::path::PathBuf;
 /// The description that a USB device gives of itself.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct UsbDevice {
+    /// Number of the vendor, assigned by the USB Implementers Forum.
     pub vendor_id: u16,
+    /// Number of the product, assigned by the vendor.
     pub product_id: u16,
+    /// Serial number of the device.
     pub serial_number: Option<String>,
+    /// Name of the maker.
     pub maker: Option<String>,
+    /// Name of the product.
     pub product: Option<String>,
 }
 
 /// A port that exists, usable or not.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FoundPort {
+    /// Address with which the port can be opened.
     pub address: Address,
     /// The address that stays the same in another socket: `usb://` and the serial number.
     pub lasting_address: Option<Address>,
+    /// `None`: the port is not that of a USB device.
     pub usb: Option<UsbDevice>,
     /// The usual instrument with this vendor and product on such a bench.
     pub likely: Option<&'static str>,

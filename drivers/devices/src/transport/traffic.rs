@@ -15,9 +15,12 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
+/// What happened on a wire.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
+    /// Bytes to the instrument.
     Sent(Vec<u8>),
+    /// Bytes from the instrument.
     Received(Vec<u8>),
     /// The port was lost.
     Lost,
@@ -26,18 +29,22 @@ pub enum Event {
 /// A recorded conversation. Consecutive pieces in one direction may have been split differently on the wire.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Traffic {
+    /// Each event with the time since the link was opened (s).
     pub events: Vec<(f64, Event)>,
 }
 
+/// A line of a record that cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line} of the traffic: `{text}`: expected seconds, `>`, `<` or `!`, and bytes in hexadecimal")]
 pub struct TrafficError {
     /// Counted from 1.
     pub line: usize,
+    /// The line, at most 80 characters.
     pub text: String,
 }
 
 impl Traffic {
+    /// Reads a record in the format of this module.
     pub fn parse(text: &str) -> Result<Self, TrafficError> {
         let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
         let events = lines.map(|(number, line)| {
@@ -77,16 +84,19 @@ impl Recorder {
         Ok(Self { file: Some(file), opened })
     }
 
+    /// Records bytes to the instrument.
     pub fn sent(&mut self, bytes: &[u8]) {
         self.write('>', bytes);
     }
 
+    /// Records bytes from the instrument.
     pub fn received(&mut self, bytes: &[u8]) {
         if !bytes.is_empty() {
             self.write('<', bytes);
         }
     }
 
+    /// Records the loss of the port.
     pub fn lost(&mut self) {
         self.line(&format!("{:.6} ! the port is lost\n", self.opened.elapsed().as_secs_f64()));
     }

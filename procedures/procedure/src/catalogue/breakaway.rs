@@ -28,7 +28,7 @@ const SCHEMA: &[Parameter] = &[
     sample_rate(250.0),
 ];
 
-/// Rest without torque between the approach and the ramp [s].
+/// Rest without torque between the approach and the ramp (s).
 const REST_S: f64 = 0.4;
 /// Highest motor speed after the breakaway, at which the velocity loop takes over.
 const RUNAWAY_RAD_S: f64 = 10.0;
@@ -95,6 +95,17 @@ struct Broke {
     sign: f64,
 }
 
+impl Broke {
+    /// `km` [Nm/A]: torque constant of the motor.
+    fn of(onset: &Onset, km: f64, link_position_rad: Option<&[f64]>) -> Self {
+        Self {
+            link_rad: link_position_rad.map_or(0.0, |link| link[onset.end - 1].rem_euclid(TAU)),
+            torque_nm: km * onset.current_a.abs(),
+            sign: onset.current_a.signum(),
+        }
+    }
+}
+
 /// Position at which a ramp of motor current moved the joint.
 pub(super) struct Onset {
     /// First row of the consecutive increases, and the end of the ramp's rows.
@@ -150,14 +161,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let increases = values.count("increases") as usize;
     let top_a = values.number("top_torque_nm") / km;
     let (onsets, held) = onsets(run, setpoint, increases, top_a);
-    let broke: Vec<Broke> = onsets
-        .into_iter()
-        .map(|onset| Broke {
-            link_rad: link.map_or(0.0, |link| link[onset.end - 1].rem_euclid(TAU)),
-            torque_nm: km * onset.current_a.abs(),
-            sign: onset.current_a.signum(),
-        })
-        .collect();
+    let broke: Vec<Broke> = onsets.into_iter().map(|onset| Broke::of(&onset, km, link)).collect();
     let of = |sign: f64| -> Vec<f64> { broke.iter().filter(|b| b.sign == sign).map(|b| b.torque_nm).collect() };
     let all: Vec<f64> = broke.iter().map(|b| b.torque_nm).collect();
     let (Some(mean), Some(forward), Some(backward)) = (Mean::of(&all), Mean::of(&of(1.0)), Mean::of(&of(-1.0))) else {
@@ -166,7 +170,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let [mean, forward, backward] = [mean, forward, backward].map(|mean| with_resolution(mean, ramp_step_nm(values)));
     let deviation = (all.iter().map(|t| (t - mean.value).powi(2)).sum::<f64>() / (all.len() - 1) as f64).sqrt();
     let differ = forward.ci95[0] > backward.ci95[1] || backward.ci95[0] > forward.ci95[1];
-    let words = |name, symbol, title| [name, symbol, title, "Nm"];
+    let named = |name, symbol, title, mean: &Mean| quantity([name, symbol, title, "Nm"], mean.value, Some(mean.ci95));
     Ok(Identification {
         verdict: if held == 0 { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
@@ -183,18 +187,10 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         advice: (held > 0)
             .then(|| format!("The joint did not break away at {held} positions. Increase top_torque_nm.")),
         quantities: vec![
-            quantity(words("tau_b", "τ_b", "Breakaway torque, mean"), mean.value, Some(mean.ci95)),
-            quantity(
-                words("tau_b_positive", "τ_b⁺", "Breakaway torque, positive direction"),
-                forward.value,
-                Some(forward.ci95),
-            ),
-            quantity(
-                words("tau_b_negative", "τ_b⁻", "Breakaway torque, negative direction"),
-                backward.value,
-                Some(backward.ci95),
-            ),
-            quantity(words("deviation", "s", "Standard deviation over positions"), deviation, None),
+            named("tau_b", "τ_b", "Breakaway torque, mean", &mean),
+            named("tau_b_positive", "τ_b⁺", "Breakaway torque, positive direction", &forward),
+            named("tau_b_negative", "τ_b⁻", "Breakaway torque, negative direction", &backward),
+            quantity(["deviation", "s", "Standard deviation over positions", "Nm"], deviation, None),
         ],
         figures: vec![over_angle(&broke), distribution(&all)],
         ..Identification::default()

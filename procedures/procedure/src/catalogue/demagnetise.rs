@@ -3,7 +3,7 @@
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use super::{Findable, Procedure, findable};
-use crate::findings::{Unusable, holds, quantity, scatter, verdict};
+use crate::findings::{Hold, Unusable, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
@@ -77,23 +77,23 @@ impl Procedure for Demagnetise {
     }
 }
 
-fn identify(run: &RunTable) -> Result<Identification, Unusable> {
-    const LITTLE: Unusable = Unusable::TooLittle("The run ended before the last turn.", "Repeat the run.");
-    let (Some(torque), Some(angle), Some(rated_nm)) =
-        (run.column("brake_torque_nm"), run.column("position_rad"), rated_nm(run))
-    else {
-        return Err(LITTLE);
-    };
-    let mut figures = Vec::new();
-    let mut left_nm = 0.0_f64;
-    let mut noise_nm = 0.0_f64;
-    let turns: Vec<_> = holds(run, 0.5).into_iter().filter(|hold| hold.repeat == 1).collect();
-    for (label, hold) in ["out", "back"].into_iter().zip(&turns) {
+/// Torque of one turn without current.
+struct Turn {
+    /// Link angle and mean torque.
+    means: Vec<(f64, f64)>,
+    /// Range of these means, peak to peak.
+    range_nm: f64,
+    /// Part of that range that noise explains.
+    noise_nm: f64,
+}
+
+impl Turn {
+    fn of(hold: &Hold, angle_rad: &[f64], torque_nm: &[f64]) -> Self {
         let rows = hold.tail(0.9);
         let mut sums = vec![(0.0, 0.0); PLACES];
         for row in rows.clone() {
-            let place = (angle[row].rem_euclid(TAU) / TAU * PLACES as f64) as usize % PLACES;
-            sums[place] = (sums[place].0 + torque[row], sums[place].1 + 1.0);
+            let place = (angle_rad[row].rem_euclid(TAU) / TAU * PLACES as f64) as usize % PLACES;
+            sums[place] = (sums[place].0 + torque_nm[row], sums[place].1 + 1.0);
         }
         let means: Vec<(f64, f64)> = sums
             .iter()
@@ -103,15 +103,27 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             .collect();
         let (low, high) = means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (_, v)| (v.min(l), v.max(h)));
         // Noise from differences of consecutive samples, within which the rotor does not pass a pole.
-        let steps = torque[rows.clone()].windows(2).map(|w| (w[1] - w[0]).powi(2));
+        let steps = torque_nm[rows.clone()].windows(2).map(|w| (w[1] - w[0]).powi(2));
         let sigma_nm = (steps.sum::<f64>() / (2.0 * (rows.len() - 1) as f64)).sqrt();
-        left_nm = left_nm.max(high - low);
-        noise_nm = noise_nm.max(RANGE_OF_NOISE * sigma_nm / (rows.len() as f64 / means.len() as f64).sqrt());
-        figures.push(scatter(label, means));
+        let noise_nm = RANGE_OF_NOISE * sigma_nm / (rows.len() as f64 / means.len() as f64).sqrt();
+        Self { means, range_nm: high - low, noise_nm }
     }
-    if figures.len() < 2 {
+}
+
+fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+    const LITTLE: Unusable = Unusable::TooLittle("The run ended before the last turn.", "Repeat the run.");
+    let (Some(torque), Some(angle), Some(rated_nm)) =
+        (run.column("brake_torque_nm"), run.column("position_rad"), rated_nm(run))
+    else {
+        return Err(LITTLE);
+    };
+    let holds = holds(run, 0.5).into_iter().filter(|hold| hold.repeat == 1);
+    let turns: Vec<Turn> = holds.take(2).map(|hold| Turn::of(&hold, angle, torque)).collect();
+    if turns.len() < 2 {
         return Err(LITTLE);
     }
+    let left_nm = turns.iter().map(|turn| turn.range_nm).fold(0.0, f64::max);
+    let noise_nm = turns.iter().map(|turn| turn.noise_nm).fold(0.0, f64::max);
     let allowed_nm = LEFT_SHARE * rated_nm + noise_nm;
     let clean = left_nm <= allowed_nm;
     Ok(Identification {
@@ -134,7 +146,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             form: Form::Polar,
             x: Axis::of("link angle", "rad"),
             y: Axis::of("torque", "Nm"),
-            series: figures,
+            series: ["out", "back"].into_iter().zip(turns).map(|(label, turn)| scatter(label, turn.means)).collect(),
         }],
         ..Identification::default()
     })

@@ -157,7 +157,7 @@ impl Law {
         Self { mu: value("load_linear", "mu"), mu_2_per_nm: value("load_quadratic", "mu_2") }
     }
 
-    /// Both on the motor side [Nm].
+    /// Both on the motor side (Nm).
     fn added_nm(self, load_nm: f64) -> f64 {
         self.mu * load_nm + self.mu_2_per_nm * load_nm * load_nm
     }

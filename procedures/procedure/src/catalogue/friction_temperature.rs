@@ -8,12 +8,12 @@ use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::warm_up;
 use super::{Findable, Procedure, findable};
 use crate::findings::{Plateau, Unusable, interval_of, parameter, plateaus, quantity, scatter, settled, verdict};
-use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
-use jointbench_model::{ModelSpec, Options, fit_prepared};
+use jointbench_model::{Fit, ModelSpec, Options, fit_prepared};
 
 pub(super) struct FrictionTemperature;
 
@@ -111,22 +111,6 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let effects = ["coulomb", "viscous", "temperature_coulomb", "temperature_viscous"];
     let spec = ModelSpec::new(run.kind(), given.into_iter().chain(effects))?;
     let fit = fit_prepared(&prepared, &spec, &Options::default())?;
-    let mut quantities = vec![
-        quantity(["temperature_low", "T₁", "Minimum temperature", "°C"], low_c, None),
-        quantity(["temperature_high", "T₂", "Maximum temperature", "°C"], high_c, None),
-    ];
-    for (effect, name, words) in [
-        ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction at 25 °C", "Nm"]),
-        ("viscous", "c_v", ["c_v", "c_v", "Viscous friction at 25 °C", "Nm·s/rad"]),
-        ("temperature_coulomb", "tau_t", ["tau_t", "τ_T", "Coulomb friction, change with temperature", "Nm/K"]),
-        ("temperature_viscous", "c_t", ["c_t", "c_T", "Viscous friction, change with temperature", "Nm·s/(rad·K)"]),
-    ] {
-        if let Some(found) = parameter(&fit, effect, name) {
-            let (value, ci95) = interval_of(found, 1.0);
-            quantities.push(quantity(words, value, Some(ci95)));
-        }
-    }
-    let figures = vec![over_temperature(run, &points), over_time(&points)];
     let top_rad_s = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let most_nm = points.iter().map(|p| (p.target - p.load_nm).abs()).fold(0.0, f64::max);
     // Significant, and above the least change over the whole temperature span, at the highest speed.
@@ -137,28 +121,51 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         })
     };
     let (dry, wet) = (moves("temperature_coulomb", "tau_t", 1.0), moves("temperature_viscous", "c_t", top_rad_s));
-    let what = match (dry, wet) {
+    let enough = high_c - low_c >= LEAST_SPAN_K;
+    Ok(Identification {
+        verdict: if enough { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!("{low_c:.1} to {high_c:.1} °C: {}.", changes(&fit, dry, wet)),
+        advice: (!enough).then(|| "The temperature range is too small. Increase heat_s or top_speed_rad_s.".into()),
+        quantities: quantities(&fit, low_c, high_c),
+        figures: vec![over_temperature(run, &points), over_time(&points)],
+        ..Identification::default()
+    })
+}
+
+/// Changes with temperature in words. `dry`, `wet`: Coulomb and viscous friction change significantly.
+fn changes(fit: &Fit, dry: bool, wet: bool) -> String {
+    match (dry, wet) {
         (false, false) => format!("Coulomb and viscous friction change by less than {:.0} %", 100.0 * NOTHING),
         (true, false) => "only Coulomb friction changes".to_owned(),
         (_, true) => {
-            let share = parameter(&fit, "temperature_viscous", "c_t").map_or(0.0, |p| p.value)
-                / parameter(&fit, "viscous", "c_v").map_or(f64::NAN, |p| p.value);
+            let share = parameter(fit, "temperature_viscous", "c_t").map_or(0.0, |p| p.value)
+                / parameter(fit, "viscous", "c_v").map_or(f64::NAN, |p| p.value);
             let coulomb = if dry { "changes too" } else { "does not change significantly" };
             format!(
                 "viscous friction changes by {:.2} %/K at {REFERENCE_C} °C; Coulomb friction {coulomb}",
                 100.0 * share
             )
         }
-    };
-    let enough = high_c - low_c >= LEAST_SPAN_K;
-    Ok(Identification {
-        verdict: if enough { Verdict::Identified } else { Verdict::Inconclusive },
-        summary: format!("{low_c:.1} to {high_c:.1} °C: {what}."),
-        advice: (!enough).then(|| "The temperature range is too small. Increase heat_s or top_speed_rad_s.".into()),
-        quantities,
-        figures,
-        ..Identification::default()
-    })
+    }
+}
+
+fn quantities(fit: &Fit, low_c: f64, high_c: f64) -> Vec<Quantity> {
+    let mut quantities = vec![
+        quantity(["temperature_low", "T₁", "Minimum temperature", "°C"], low_c, None),
+        quantity(["temperature_high", "T₂", "Maximum temperature", "°C"], high_c, None),
+    ];
+    for (effect, name, words) in [
+        ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction at 25 °C", "Nm"]),
+        ("viscous", "c_v", ["c_v", "c_v", "Viscous friction at 25 °C", "Nm·s/rad"]),
+        ("temperature_coulomb", "tau_t", ["tau_t", "τ_T", "Coulomb friction, change with temperature", "Nm/K"]),
+        ("temperature_viscous", "c_t", ["c_t", "c_T", "Viscous friction, change with temperature", "Nm·s/(rad·K)"]),
+    ] {
+        if let Some(found) = parameter(fit, effect, name) {
+            let (value, ci95) = interval_of(found, 1.0);
+            quantities.push(quantity(words, value, Some(ci95)));
+        }
+    }
+    quantities
 }
 
 fn over_temperature(run: &RunTable, points: &[Plateau]) -> Figure {

@@ -141,7 +141,7 @@ impl Legs {
         }
     }
 
-    /// Rotation of the motor by the last step [rad].
+    /// Rotation of the motor by the last step (rad).
     pub fn way_of_last(&self) -> f64 {
         self.steps.last().and_then(|step| step.velocity.integral().last().copied()).unwrap_or(0.0)
     }

@@ -35,6 +35,7 @@ use serde_json::{Map, Value};
 /// Steps that were planned during their run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Learnt {
+    /// The dependent steps ([`crate::plan::Lesson::to`]), planned anew.
     pub steps: Vec<Step>,
     /// The values that were used, in a sentence for the journal.
     pub said: String,
@@ -43,12 +44,15 @@ pub struct Learnt {
 /// A measurement method: it plans the steps of a run, and the engine performs them. Pure and deterministic: the same
 /// parameters on the same bench give the same plan.
 pub trait Procedure: Sync {
+    /// Stable name in files, REST and on the command line.
     fn id(&self) -> &'static str;
+    /// Name for people.
     fn title(&self) -> &'static str;
     /// One or two plain sentences.
     fn summary(&self) -> &'static str;
     /// The kind of its run table.
     fn kind(&self) -> Kind;
+    /// Its parameters, in the order of the form.
     fn schema(&self) -> &'static [Parameter];
     /// Plans with checked values.
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault>;
@@ -121,6 +125,7 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
     ]
 }
 
+/// The procedure with this id.
 pub fn procedure(id: &str) -> Option<&'static dyn Procedure> {
     catalogue().iter().copied().find(|procedure| procedure.id() == id)
 }

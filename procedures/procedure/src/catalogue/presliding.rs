@@ -32,7 +32,7 @@ const SCHEMA: &[Parameter] = &[
 const STROKE_RAD: f64 = 1.3;
 const STROKE_RAD_S: f64 = 10.0;
 const FURTHER: f64 = 1e-3;
-/// Rest without torque after the stroke [s].
+/// Rest without torque after the stroke (s).
 const REST_S: f64 = 0.4;
 /// Limits of a breakaway: this number of consecutive increases, or this motor speed.
 const UNTIL: Until = Until { increases: 50, speed_rad_s: 10.0 };

@@ -90,8 +90,7 @@ impl Procedure for PumaFriction {
         let gear = bench.constants.gear_ratio;
         let rate_hz = values.number("sample_rate_hz");
         let acceleration_rad_s2 = values.number("acceleration_rad_s2");
-        let speeds = speeds(values)?.map(|speed_rad_s| gear * speed_rad_s);
-        let mut speeds: Vec<f64> = speeds.collect();
+        let speeds: Vec<f64> = speeds(values)?.map(|speed_rad_s| gear * speed_rad_s).collect();
         let top_rad_s = speeds[speeds.len() - 1];
         let arc_rad = gear * values.number("arc_rad");
         let reached_rad_s = (2.0 * arc_rad * acceleration_rad_s2).sqrt();
@@ -102,31 +101,10 @@ impl Procedure for PumaFriction {
             });
         }
         let mut legs = Legs::new(acceleration_rad_s2);
-        let go = |legs: &mut Legs, label: String, way_rad: f64, speed_rad_s: f64| {
-            legs.push(label, stroke(way_rad, speed_rad_s, acceleration_rad_s2), Profile::constant(0.0));
-        };
         go(&mut legs, "to the end of the arc".into(), -arc_rad, MOVE_SHARE * top_rad_s);
-        legs.phase = Phase::WarmUp;
-        let mut work_s = 0.0;
-        while work_s < values.number("warm_up_s") {
-            for sign in [1.0, -1.0, 1.0, -1.0] {
-                go(&mut legs, "work-out".into(), 2.0 * sign * arc_rad, top_rad_s);
-                work_s += legs.steps.last().map_or(0.0, crate::plan::Step::duration_s);
-            }
-        }
-        legs.phase = Phase::Measure;
+        work_out(&mut legs, arc_rad, top_rad_s, values.number("warm_up_s"));
         let first = legs.steps.len();
-        let mut rng = ChaCha8Rng::seed_from_u64(u64::from(values.count("order_seed")));
-        for repeat in 0..values.count("repeats") {
-            legs.repeat = repeat;
-            speeds.shuffle(&mut rng);
-            for speed_rad_s in &speeds {
-                let shown = (speed_rad_s / gear).to_degrees();
-                for sign in [1.0, -1.0] {
-                    go(&mut legs, format!("{:+.1} °/s", sign * shown), 2.0 * sign * arc_rad, *speed_rad_s);
-                }
-            }
-        }
+        measure(&mut legs, values, gear, arc_rad, speeds);
         let lines = legs.steps.len() - first;
         go(&mut legs, "to the upright pose".into(), arc_rad, MOVE_SHARE * top_rad_s);
         break_away(&mut legs, values, bench);
@@ -167,6 +145,39 @@ fn speeds(values: &Values) -> Result<impl Iterator<Item = f64> + use<>, PlanFaul
     }
     let count = values.count("speeds");
     Ok((0..count).map(move |i| low + (top - low) * f64::from(i) / f64::from(count - 1)))
+}
+
+/// A motion by `way_rad` of the motor without brake current.
+fn go(legs: &mut Legs, label: String, way_rad: f64, speed_rad_s: f64) {
+    legs.push(label, stroke(way_rad, speed_rad_s, legs.acceleration_rad_s2), Profile::constant(0.0));
+}
+
+/// Whole cycles over the arc (motor) for at least `least_s`.
+fn work_out(legs: &mut Legs, arc_rad: f64, top_rad_s: f64, least_s: f64) {
+    legs.phase = Phase::WarmUp;
+    let mut work_s = 0.0;
+    while work_s < least_s {
+        for sign in [1.0, -1.0, 1.0, -1.0] {
+            go(legs, "work-out".into(), 2.0 * sign * arc_rad, top_rad_s);
+            work_s += legs.steps.last().map_or(0.0, crate::plan::Step::duration_s);
+        }
+    }
+    legs.phase = Phase::Measure;
+}
+
+/// Every motor speed over the arc (motor) in both directions, in a new order for each repeat.
+fn measure(legs: &mut Legs, values: &Values, gear: f64, arc_rad: f64, mut speeds: Vec<f64>) {
+    let mut rng = ChaCha8Rng::seed_from_u64(u64::from(values.count("order_seed")));
+    for repeat in 0..values.count("repeats") {
+        legs.repeat = repeat;
+        speeds.shuffle(&mut rng);
+        for speed_rad_s in &speeds {
+            let shown = (speed_rad_s / gear).to_degrees();
+            for sign in [1.0, -1.0] {
+                go(legs, format!("{:+.1} °/s", sign * shown), 2.0 * sign * arc_rad, *speed_rad_s);
+            }
+        }
+    }
 }
 
 /// Stiction at the upright pose; the joint arrives in the direction in which it will break away.

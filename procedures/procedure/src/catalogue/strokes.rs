@@ -8,7 +8,7 @@ use super::{Findable, Procedure, findable};
 use crate::findings::{
     Line, Plateau, Unusable, curve, keep, legs, plateaus, quantity, scatter, settled, solve, t95, verdict,
 };
-use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
@@ -207,73 +207,107 @@ fn without_gravity(prepared: &Prepared, points: &[Plateau], fastest_rad_s: f64) 
     Some(Lines { sides: [line(0), line(1)], half_difference: Some((half(&values), interval(&half))) })
 }
 
-fn identification(points: &[Plateau], lines: &Lines, planned_rad_s: f64) -> Identification {
-    let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
-    let (mut quantities, mut series, mut flat, mut said) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut vague = Vec::new();
-    for ((suffix, mark, sign), (points, line)) in
-        [("positive", "⁺", 1.0), ("negative", "⁻", -1.0)].into_iter().zip(&lines.sides)
-    {
-        series.push(scatter(suffix, points.clone()));
-        let Some(line) = line else { continue };
-        let ends = if sign > 0.0 { [0.0, top] } else { [-top, 0.0] };
-        series.push(curve(&format!("line, {suffix}"), ends, 1, |v| line.at(v)));
-        if line.slope_ci95[0] <= 0.0 && line.slope_ci95[1] >= 0.0 {
-            flat.push(format!("{suffix} motion (r² {:.2})", line.r2));
-        }
-        if 0.5 * (line.offset_ci95[1] - line.offset_ci95[0]) > VAGUE * line.offset.abs() {
-            vague.push(suffix);
-        }
-        let [offset, slope] = [(line.offset, "Nm"), (line.slope, "Nm·s/rad")].map(|(v, unit)| words::figure(v, unit));
-        said.push(format!("Line in {suffix} direction: {offset} at zero speed, slope {slope}."));
-        let named = |name: &str, symbol: &str, title: &str, unit: &str, value: f64, ci95: Option<[f64; 2]>| {
-            let title = format!("{title}, {suffix} direction");
-            let words = [&format!("{name}_{suffix}"), &format!("{symbol}{mark}"), &title, unit];
-            quantity(words, value, ci95)
-        };
-        quantities.extend([
-            named("offset", "τ₀", "Friction at zero speed (fitted line)", "Nm", line.offset, Some(line.offset_ci95)),
-            named("slope", "c", "Slope over motor speed", "Nm·s/rad", line.slope, Some(line.slope_ci95)),
-            named("r2", "r²", "Coefficient of determination", "", line.r2, None),
-        ]);
+/// Names of a direction in quantities and symbols.
+const DIRECTIONS: [(&str, &str); 2] = [("positive", "⁺"), ("negative", "⁻")];
+
+impl Lines {
+    /// The directions that have a line.
+    fn fitted(&self) -> Vec<(&'static str, &'static str, &Line)> {
+        let sides = DIRECTIONS.into_iter().zip(&self.sides);
+        sides.filter_map(|((suffix, mark), (_, line))| Some((suffix, mark, line.as_ref()?))).collect()
     }
-    let advice = if quantities.len() < 6 {
-        Some("A line requires at least two speeds. Increase speeds.".to_owned())
-    } else if FASTER * top < planned_rad_s {
-        Some(format!(
-            "The strokes at {planned_rad_s:.1} rad/s held no steady state. Increase travel_rad or acceleration_rad_s2."
-        ))
-    } else if !vague.is_empty() && lines.half_difference.is_some() {
-        Some(format!(
-            "Friction at zero speed is not determined in {} direction: no sensor measures gravity. The half difference of both \
-             directions is free of it. Increase travel_rad, or run puma_friction.",
-            vague.join(" and ")
-        ))
-    } else {
+
+    fn quantities(&self) -> Vec<Quantity> {
+        let mut quantities = Vec::new();
+        for (suffix, mark, line) in self.fitted() {
+            let named = |name: &str, symbol: &str, title: &str, unit: &str, value: f64, ci95: Option<[f64; 2]>| {
+                let title = format!("{title}, {suffix} direction");
+                let words = [&format!("{name}_{suffix}"), &format!("{symbol}{mark}"), &title, unit];
+                quantity(words, value, ci95)
+            };
+            let offset_ci95 = Some(line.offset_ci95);
+            quantities.extend([
+                named("offset", "τ₀", "Friction at zero speed (fitted line)", "Nm", line.offset, offset_ci95),
+                named("slope", "c", "Slope over motor speed", "Nm·s/rad", line.slope, Some(line.slope_ci95)),
+                named("r2", "r²", "Coefficient of determination", "", line.r2, None),
+            ]);
+        }
+        if let Some((value, ci95)) = self.half_difference {
+            let title = "Friction at zero speed, half difference of both directions";
+            quantities.push(quantity(["offset_half_difference", "τ₀", title, "Nm"], value, Some(ci95)));
+        }
+        quantities
+    }
+
+    fn said(&self) -> Vec<String> {
+        let line = |(suffix, _, line): (&str, &str, &Line)| {
+            let [offset, slope] =
+                [(line.offset, "Nm"), (line.slope, "Nm·s/rad")].map(|(v, unit)| words::figure(v, unit));
+            format!("Line in {suffix} direction: {offset} at zero speed, slope {slope}.")
+        };
+        self.fitted().into_iter().map(line).collect()
+    }
+
+    /// `None` if the lines are identified. `top_rad_s`: the highest measured motor speed.
+    fn advice(&self, top_rad_s: f64, planned_rad_s: f64) -> Option<String> {
+        let fitted = self.fitted();
+        if fitted.len() < 2 {
+            return Some("A line requires at least two speeds. Increase speeds.".to_owned());
+        }
+        if FASTER * top_rad_s < planned_rad_s {
+            return Some(format!(
+                "The strokes at {planned_rad_s:.1} rad/s held no steady state. Increase travel_rad or acceleration_rad_s2."
+            ));
+        }
+        let is_vague = |line: &Line| 0.5 * (line.offset_ci95[1] - line.offset_ci95[0]) > VAGUE * line.offset.abs();
+        let vague: Vec<&str> = fitted.iter().filter(|(.., line)| is_vague(line)).map(|(suffix, ..)| *suffix).collect();
+        if !vague.is_empty() && self.half_difference.is_some() {
+            return Some(format!(
+                "Friction at zero speed is not determined in {} direction: no sensor measures gravity. The half difference of both \
+                 directions is free of it. Increase travel_rad, or run puma_friction.",
+                vague.join(" and ")
+            ));
+        }
+        let is_flat = |line: &Line| line.slope_ci95[0] <= 0.0 && line.slope_ci95[1] >= 0.0;
+        let motion = |(suffix, _, line): &(&str, &str, &Line)| format!("{suffix} motion (r² {:.2})", line.r2);
+        let flat: Vec<String> = fitted.iter().filter(|(.., line)| is_flat(line)).map(motion).collect();
         let other = "Diagnose the run to find the cause of the differences, or increase top_speed_rad_s.";
         (!flat.is_empty()).then(|| format!("Speed has no significant linear effect in {}. {other}", flat.join(" and ")))
-    };
-    if let Some((value, ci95)) = lines.half_difference {
-        let title = "Friction at zero speed, half difference of both directions";
-        quantities.push(quantity(["offset_half_difference", "τ₀", title, "Nm"], value, Some(ci95)));
     }
-    let title = match lines.half_difference {
-        Some(_) => "Friction over motor speed, gravity removed",
-        None => "Friction over motor speed",
-    };
-    Identification {
-        verdict: if advice.is_none() { Verdict::Identified } else { Verdict::Inconclusive },
-        summary: format!("{} strokes up to {top:.1} rad/s (motor). {}", points.len(), said.join(" ")),
-        advice,
-        quantities,
-        figures: vec![Figure {
+
+    fn figure(&self, top_rad_s: f64) -> Figure {
+        let mut series = Vec::new();
+        for (((suffix, _), ends), (points, line)) in
+            DIRECTIONS.into_iter().zip([[0.0, top_rad_s], [-top_rad_s, 0.0]]).zip(&self.sides)
+        {
+            series.push(scatter(suffix, points.clone()));
+            series.extend(line.as_ref().map(|line| curve(&format!("line, {suffix}"), ends, 1, |v| line.at(v))));
+        }
+        let title = match self.half_difference {
+            Some(_) => "Friction over motor speed, gravity removed",
+            None => "Friction over motor speed",
+        };
+        Figure {
             name: "friction_over_speed".into(),
             title: title.into(),
             form: Form::Cartesian,
             x: Axis::of("motor velocity", "rad/s"),
             y: Axis::of("friction torque (motor)", "Nm"),
             series,
-        }],
+        }
+    }
+}
+
+fn identification(points: &[Plateau], lines: &Lines, planned_rad_s: f64) -> Identification {
+    let top_rad_s = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
+    let advice = lines.advice(top_rad_s, planned_rad_s);
+    let said = lines.said().join(" ");
+    Identification {
+        verdict: if advice.is_none() { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!("{} strokes up to {top_rad_s:.1} rad/s (motor). {said}", points.len()),
+        advice,
+        quantities: lines.quantities(),
+        figures: vec![lines.figure(top_rad_s)],
         ..Identification::default()
     }
 }

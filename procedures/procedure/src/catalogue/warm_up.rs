@@ -3,7 +3,7 @@
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::{Findable, Procedure, findable};
 use crate::findings::{Plateau, Unusable, curve, plateaus, quantity, scatter, settled, verdict};
-use crate::identification::{Axis, Figure, Form, Identification, Series, Verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Steady};
 use crate::steady::{Drift, SteadyWatch};
@@ -93,7 +93,6 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let points = plateaus(&settled(run)?);
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let fast: Vec<Plateau> = points.into_iter().filter(|p| p.velocity_rad_s.abs() > 0.9 * top).collect();
-    let end = &fast[fast.len().saturating_sub(JUDGED)..];
     let rule = rule(values);
     // The same rule ends a warm-up: one that ended by itself has just fallen below the bound.
     let watch = SteadyWatch::of(rule, run);
@@ -103,59 +102,79 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
             "Increase longest_s.",
         ));
     };
+    let has_temperature = run.column("temperature_c").is_some();
+    let found = Identification {
+        quantities: quantities(&fast, &drift, has_temperature),
+        figures: figures(&fast, &watch, &rule, has_temperature),
+        ..Identification::default()
+    };
+    let judged = judged(&rule, &drift, has_temperature);
+    let over: Vec<&str> = judged.iter().filter(|(is_steady, _)| !is_steady).map(|(_, said)| said.as_str()).collect();
+    Ok(if over.is_empty() {
+        let all: Vec<&str> = judged.iter().map(|(_, said)| said.as_str()).collect();
+        let summary = format!("Steady state reached: {}.", all.join(", "));
+        Identification { verdict: Verdict::Identified, summary, ..found }
+    } else {
+        let summary = format!("Steady state not reached: {}.", over.join("; "));
+        let advice = Some("Repeat the warm-up while the joint is warm, or increase longest_s.".to_owned());
+        Identification { verdict: Verdict::Inconclusive, summary, advice, ..found }
+    })
+}
+
+/// Whether current and temperature are steady, each drift with its limit in words.
+fn judged(rule: &Steady, drift: &Drift, has_temperature: bool) -> Vec<(bool, String)> {
+    let current = format!(
+        "current drift {:.2} %/min (limit {:.2} %/min, steady_share_per_min)",
+        100.0 * drift.current_share_per_min,
+        100.0 * rule.current_share_per_min
+    );
+    let mut judged = vec![(drift.is_current_steady(rule), current)];
+    if has_temperature {
+        let temperature = format!(
+            "temperature drift {:.2} K/min (limit {} K/min, steady_c_per_min)",
+            drift.temperature_c_per_min, rule.temperature_c_per_min
+        );
+        judged.push((drift.is_temperature_steady(rule), temperature));
+    }
+    judged
+}
+
+fn quantities(fast: &[Plateau], drift: &Drift, has_temperature: bool) -> Vec<Quantity> {
+    let end = &fast[fast.len().saturating_sub(JUDGED)..];
     let last_nm = end.iter().map(|p| p.target.abs()).sum::<f64>() / end.len() as f64;
     let mut quantities = vec![
         quantity(["torque", "τ_m", "Motor torque at the end of the run, fast legs", "Nm"], last_nm, None),
         quantity(["current_drift", "i̇/i", "Drift of the motor current", "1/min"], drift.current_share_per_min, None),
     ];
-    let torque = |p: &Plateau| (p.time_s / 60.0, p.target.abs());
-    let mut figures = vec![over_time("torque", "Motor torque of the fast legs", "motor torque", "Nm", &fast, torque)];
-    figures.push(until_steady(
-        ["current_drift_over_time", "Drift of the motor current", "drift of the current", "1/min"],
-        &watch,
-        rule.current_share_per_min,
-        |drift| drift.current_share_per_min,
-    ));
-    let mut drifts = vec![(
-        drift.is_current_steady(&rule),
-        format!("current drift {:.2} %/min", 100.0 * drift.current_share_per_min),
-        format!("limit {:.2} %/min, steady_share_per_min", 100.0 * rule.current_share_per_min),
-    )];
-    if run.column("temperature_c").is_some() {
+    if has_temperature {
         let words = ["temperature_drift", "Ṫ", "Drift of the temperature", "°C/min"];
         quantities.push(quantity(words, drift.temperature_c_per_min, None));
+    }
+    quantities
+}
+
+fn figures(fast: &[Plateau], watch: &SteadyWatch, rule: &Steady, has_temperature: bool) -> Vec<Figure> {
+    let torque = |p: &Plateau| (p.time_s / 60.0, p.target.abs());
+    let mut figures = vec![
+        over_time("torque", "Motor torque of the fast legs", "motor torque", "Nm", fast, torque),
+        until_steady(
+            ["current_drift_over_time", "Drift of the motor current", "drift of the current", "1/min"],
+            watch,
+            rule.current_share_per_min,
+            |drift| drift.current_share_per_min,
+        ),
+    ];
+    if has_temperature {
         let temperature = |p: &Plateau| (p.time_s / 60.0, p.temperature_c);
-        figures.push(over_time("temperature", "Temperature", "temperature", "°C", &fast, temperature));
+        figures.push(over_time("temperature", "Temperature", "temperature", "°C", fast, temperature));
         figures.push(until_steady(
             ["temperature_drift_over_time", "Drift of the temperature", "drift of the temperature", "°C/min"],
-            &watch,
+            watch,
             rule.temperature_c_per_min,
             |drift| drift.temperature_c_per_min,
         ));
-        drifts.push((
-            drift.is_temperature_steady(&rule),
-            format!("temperature drift {:.2} K/min", drift.temperature_c_per_min),
-            format!("limit {} K/min, steady_c_per_min", rule.temperature_c_per_min),
-        ));
     }
-    let said = |(_, drift, bound): &(bool, String, String)| format!("{drift} ({bound})");
-    let over: Vec<String> = drifts.iter().filter(|(is_steady, ..)| !is_steady).map(said).collect();
-    Ok(if over.is_empty() {
-        let drifts: Vec<String> = drifts.iter().map(said).collect();
-        let summary = format!("Steady state reached: {}.", drifts.join(", "));
-        Identification { verdict: Verdict::Identified, summary, quantities, figures, ..Identification::default() }
-    } else {
-        let summary = format!("Steady state not reached: {}.", over.join("; "));
-        let advice = Some("Repeat the warm-up while the joint is warm, or increase longest_s.".to_owned());
-        Identification {
-            verdict: Verdict::Inconclusive,
-            summary,
-            advice,
-            quantities,
-            figures,
-            ..Identification::default()
-        }
-    })
+    figures
 }
 
 fn over_time(

@@ -39,11 +39,13 @@ pub use tick::SLOW_EVERY_S;
 pub struct RunEnd {
     /// Final state.
     pub state: RunState,
+    /// Result of securing the bench.
     pub safe: Safe,
     /// Why the run was not completed.
     pub reason: Option<String>,
     /// Rows that the recorder has accepted.
     pub rows: u64,
+    /// Duration on the bench clock, including pauses and securing.
     pub duration_s: f64,
 }
 

@@ -22,7 +22,9 @@ const POLL_S: f64 = 0.05;
 /// Result of securing, with notes for users.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Secured {
+    /// What was verified.
     pub safe: Safe,
+    /// What was commanded and what could not be verified, in sentences for the journal.
     pub notes: Vec<String>,
 }
 

@@ -13,7 +13,7 @@ pub(crate) struct Plateau {
     pub velocity_rad_s: f64,
     /// Response of the models of this kind: motor torque, torsion, braking torque.
     pub target: f64,
-    /// Friction: τ_link/N [Nm]. Stiffness: τ_link [Nm].
+    /// Friction: τ_link/N (Nm). Stiffness: τ_link (Nm).
     pub load_nm: f64,
     pub temperature_c: f64,
     pub link_rad: f64,

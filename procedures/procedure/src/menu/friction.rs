@@ -12,9 +12,9 @@ const FASTEST_RATIO: f64 = 8.0;
 const ACCELERATION_RAD_S2: f64 = 400.0;
 /// Least dwell time of a stroke.
 const HELD_S: f64 = 0.6;
-/// Assumed warming of the joint by an hour of work, because it is unknown beforehand [K].
+/// Assumed warming of the joint by an hour of work, because it is unknown beforehand (K).
 const WARMS_BY_K: f64 = 10.0;
-/// Warm-up and cool-down [s].
+/// Warm-up and cool-down (s).
 const WARMING_S: f64 = 240.0;
 /// Highest speed without an explicit request (motor).
 const USUAL_RAD_S: f64 = 180.0;

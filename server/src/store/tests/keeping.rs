@@ -266,8 +266,7 @@ fn model_versions_are_a_tree() {
         let other = store.create_run(&new_run()).await.unwrap();
         let root = store.save_model(&model(run, None, &["coulomb", "viscous"])).await.unwrap();
         let left = store.save_model(&model(run, Some(root.id), &["coulomb", "viscous", "stribeck"])).await.unwrap();
-        let right = NewModel { validation_rms: 0.012, ..model(run, Some(root.id), &["coulomb", "load_linear"]) };
-        let right = store.save_model(&right).await.unwrap();
+        let right = store.save_model(&model(run, Some(root.id), &["coulomb", "load_linear"])).await.unwrap();
         assert_eq!((root.added, root.removed), (vec!["coulomb".into(), "viscous".into()], vec![]));
         assert_eq!((&left.added, &left.removed), (&vec!["stribeck".into()], &vec![]));
         assert_eq!((&right.added, &right.removed), (&vec!["load_linear".into()], &vec!["viscous".into()]));
@@ -278,6 +277,22 @@ fn model_versions_are_a_tree() {
         assert_eq!(store.model(left.id).await.unwrap(), left);
         assert_eq!(left.fit, model(run, None, &[]).fit);
 
+        let astray = store.save_model(&model(other, Some(root.id), &[])).await.unwrap_err();
+        assert!(matches!(astray, StoreError::OtherRun { .. }), "{astray}");
+        assert!(matches!(store.save_model(&model(run, Some(77), &[])).await, Err(StoreError::NoModel(77))));
+    });
+}
+
+#[test]
+fn a_run_shows_its_best_version_that_is_neither_idle_nor_only_tried() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        let run = store.create_run(&new_run()).await.unwrap();
+        let other = store.create_run(&new_run()).await.unwrap();
+        let root = store.save_model(&model(run, None, &["coulomb", "viscous"])).await.unwrap();
+        store.save_model(&model(run, Some(root.id), &["coulomb", "viscous", "stribeck"])).await.unwrap();
+        let right = NewModel { validation_rms: 0.012, ..model(run, Some(root.id), &["coulomb", "load_linear"]) };
+        let right = store.save_model(&right).await.unwrap();
         let told = store.run(run).await.unwrap().model.unwrap();
         assert_eq!(
             (&told["id"], &told["unit"], &told["coulomb"]["value"]),
@@ -300,11 +315,16 @@ fn model_versions_are_a_tree() {
         }
         assert_eq!(store.run(run).await.unwrap().model.unwrap()["id"], tried.id);
         assert!(matches!(store.keep_model(77, "lab").await, Err(StoreError::NoModel(77))));
+    });
+}
 
-        let astray = store.save_model(&model(other, Some(root.id), &[])).await.unwrap_err();
-        assert!(matches!(astray, StoreError::OtherRun { .. }), "{astray}");
-        assert!(matches!(store.save_model(&model(run, Some(77), &[])).await, Err(StoreError::NoModel(77))));
-
+#[test]
+fn diagnoses_and_cached_answers_belong_to_one_version() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        let run = store.create_run(&new_run()).await.unwrap();
+        let left = store.save_model(&model(run, None, &["coulomb"])).await.unwrap();
+        let right = store.save_model(&model(run, None, &["viscous"])).await.unwrap();
         assert_eq!(store.kept(Subject::Model(left.id), "worth").await.unwrap(), None);
         store.keep(Subject::Model(left.id), "worth", b"[1]").await.unwrap();
         store.keep(Subject::Model(left.id), "worth", b"[2]").await.unwrap();

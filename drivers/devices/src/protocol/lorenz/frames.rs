@@ -14,15 +14,20 @@ const LIMIT: usize = 4096;
 /// Calibrated counts of channels A and B.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Frame {
+    /// Number of the frame, modulo 256.
     pub index: u8,
+    /// Channels A and B; [`super::NOMINAL_COUNTS`] at nominal torque.
     pub counts: [i16; 2],
 }
 
+/// Content of the stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Item {
+    /// One accepted frame.
     Frame(Frame),
     /// Number of missing frames modulo 256; the index does not give more.
     Gap {
+        /// Missing frames, modulo 256.
         count: u8,
     },
 }
@@ -35,6 +40,7 @@ pub struct Frames {
 }
 
 impl Frames {
+    /// Adds received bytes; the iterator returns the frames in them.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }

@@ -8,7 +8,7 @@ mod requests;
 mod telegram;
 
 pub use frames::{Frame, Frames, Item, PERIOD_STEP_S};
-pub use nack::nack_text;
+pub(crate) use nack::nack_text;
 pub use requests::{ConfigBlock, Hello, RawReading, ReadConfig, ReadRaw, ReadStatusShort, StartStream, StopStream};
 pub use telegram::{HOST, SENSOR, STX, Telegram, command};
 

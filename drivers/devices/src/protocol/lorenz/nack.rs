@@ -1,6 +1,7 @@
 //! Reasons for which a sensor refuses a request (LorenzTelegram 1.0.0, `Error`).
 
-pub fn nack_text(code: u8) -> String {
+/// The error of a NACK or of a status byte, in words.
+pub(crate) fn nack_text(code: u8) -> String {
     let text = match code {
         1 => "generic error",
         2 => "watchdog",

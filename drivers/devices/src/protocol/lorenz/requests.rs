@@ -65,6 +65,7 @@ request!(Hello, command::HELLO, "Hello", (), |_this| &[], |self, packet| {
 #[derive(Debug, Clone, Copy)]
 pub struct ReadRaw;
 
+/// Reply to [`ReadRaw`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RawReading {
     /// Converter counts of channels A and B.
@@ -92,9 +93,11 @@ request!(ReadStatusShort, command::READ_STATUS_SHORT, "ReadStatusShort", u8, |_t
 /// 32 bytes of configuration: identifier, data, two checksums of 16 bit.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadConfig {
+    /// Number of the configuration block.
     pub block: u8,
 }
 
+/// Reply to [`ReadConfig`]: one block with correct checksums.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConfigBlock(pub [u8; 32]);
 

@@ -3,31 +3,46 @@
 use crate::transport::{Scan, shown};
 use jointbench_instrument::FaultKind;
 
+/// Start of a telegram; doubled inside of it.
 pub const STX: u8 = 0x02;
+/// Address of the computer.
 pub const HOST: u8 = 0xFF;
 /// Address of the first sensor.
 pub const SENSOR: u8 = 0x01;
 
 /// Command codes.
 pub mod command {
+    /// Reply: done.
     pub const ACK: u8 = 0x06;
+    /// Reply: refused, with an error code.
     pub const NACK: u8 = 0x15;
+    /// Checks whether the sensor answers.
     pub const HELLO: u8 = 0x40;
+    /// Both channels, raw and calibrated.
     pub const READ_RAW: u8 = 0x41;
+    /// State of the device as one error code.
     pub const READ_STATUS_SHORT: u8 = 0x43;
+    /// One block of the configuration.
     pub const READ_CONFIG: u8 = 0x44;
+    /// Selects a special mode; mode 3 is the stream of both channels.
     pub const SPECIAL_MODE: u8 = 0x5A;
 }
 
+/// A message in either direction (LorenzTelegram 1.0.0).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Telegram {
+    /// One of the codes in [`command`].
     pub command: u8,
+    /// Address of the receiver.
     pub to: u8,
+    /// Address of the sender.
     pub from: u8,
+    /// At most 255 bytes.
     pub parameters: Vec<u8>,
 }
 
 impl Telegram {
+    /// From the computer to the first sensor.
     pub fn to_sensor(command: u8, parameters: &[u8]) -> Self {
         Self { command, to: SENSOR, from: HOST, parameters: parameters.to_vec() }
     }
@@ -49,7 +64,7 @@ impl Telegram {
         }
     }
 
-    /// Decodes a whole telegram as measured by [`scan`].
+    /// Decodes a whole telegram of the length that `scan` finds.
     pub fn decode(packet: &[u8]) -> Result<Self, FaultKind> {
         let garbled = |why: &str| FaultKind::Garbled { what: format!("{}: {why}", shown(packet)) };
         let Unstuffed::Whole(body, _) = unstuff(packet) else { return Err(garbled("expected a whole telegram")) };

@@ -8,14 +8,20 @@ use jointbench_instrument::FaultKind;
 /// The parts of a drive that have their own error word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
+    /// Power supply and brake resistor.
     System,
+    /// State machine of the axis.
     Axis,
+    /// Motor and its power stage.
     Motor,
+    /// Encoder of the motor.
     Encoder,
+    /// Control loops.
     Controller,
 }
 
 impl Part {
+    /// Every part, the drive first.
     pub const ALL: [Part; 5] = [Part::System, Part::Axis, Part::Motor, Part::Encoder, Part::Controller];
 
     fn path(self) -> &'static str {
@@ -82,16 +88,19 @@ impl Part {
 /// An error word as far as nine characters can show it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ErrorWord {
+    /// The whole word.
     Bits(u64),
     /// Nine digits: the 64-bit word of the motor was cut. Only one fact is certain: a high bit is set.
     Cut,
 }
 
 impl ErrorWord {
+    /// No error is set.
     pub fn is_clear(self) -> bool {
         self == ErrorWord::Bits(0)
     }
 
+    /// Names of the set bits; bits without a name are given in hexadecimal.
     pub fn names(self, part: Part) -> Vec<String> {
         let bits = match self {
             ErrorWord::Cut => {

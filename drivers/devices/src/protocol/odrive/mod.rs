@@ -16,5 +16,6 @@ pub use requests::{
 };
 
 /// Axis states (`axis0.current_state`).
-pub const IDLE: f64 = 1.0;
-pub const CLOSED_LOOP: f64 = 8.0;
+pub(crate) const IDLE: f64 = 1.0;
+/// The drive follows its set-points.
+pub(crate) const CLOSED_LOOP: f64 = 8.0;

@@ -9,13 +9,16 @@ use jointbench_instrument::roles::Identity;
 /// Position and velocity of an axis, in full precision (`f`).
 #[derive(Debug, Clone, Copy)]
 pub struct ReadFeedback {
+    /// Number of the axis, 0 or 1.
     pub axis: u8,
 }
 
 /// `%f` prints six decimals, so the reply is a whole number of 10⁻⁶ turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Feedback {
+    /// Position [10⁻⁶ turns].
     pub position_micro_turns: i64,
+    /// Velocity [10⁻⁶ turns/s].
     pub velocity_micro_turns_s: i64,
 }
 
@@ -48,6 +51,7 @@ impl Request for ReadFeedback {
 /// A property as a number (`r`), cut after nine characters.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadNumber {
+    /// Path of the property, such as `vbus_voltage`.
     pub path: &'static str,
 }
 
@@ -76,7 +80,9 @@ impl Request for ReadNumber {
 /// Writes a property and reads it back in the same transmission. The reply is the value after the write.
 #[derive(Debug, Clone, Copy)]
 pub struct Set {
+    /// Path of the property.
     pub path: &'static str,
+    /// Value to write.
     pub value: f64,
 }
 
@@ -107,7 +113,9 @@ impl Request for Set {
 /// mode.
 #[derive(Debug, Clone, Copy)]
 pub struct SetVelocity {
+    /// Velocity set-point [turns/s].
     pub turns_s: f64,
+    /// Feed-forward torque (Nm).
     pub torque_nm: f64,
 }
 
@@ -140,6 +148,7 @@ impl Request for SetVelocity {
 /// the speed.
 #[derive(Debug, Clone, Copy)]
 pub struct SetTorque {
+    /// Torque set-point (Nm).
     pub torque_nm: f64,
 }
 
@@ -227,6 +236,7 @@ impl Command for RequestState {
 /// Starts with a line end, so that the rest of an incomplete line does not absorb the first command.
 #[derive(Debug, Clone, Copy)]
 pub struct StandDown {
+    /// An incomplete line was sent before: end it first.
     pub after_broken_line: bool,
 }
 

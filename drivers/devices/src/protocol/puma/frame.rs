@@ -12,30 +12,38 @@ const FRESH: u8 = 0x40;
 
 /// One command: its code on the wire, its parameter word, and the meaning of the word in the reply.
 pub trait Order {
+    /// Meaning of the word in the reply.
     type Reply;
 
+    /// Code of the order on the wire.
     const CODE: u8;
     /// Name of the order in faults.
     const NAME: &'static str;
 
+    /// Parameter word; 0 without a parameter.
     fn word(&self) -> u16 {
         0
     }
 
+    /// Decodes the word of the reply.
     fn reply(&self, word: u16) -> Result<Self::Reply, FaultKind>;
 }
 
 /// An order with its number; the reply has the same number.
 #[derive(Debug, Clone, Copy)]
 pub struct Numbered<O> {
+    /// Distinguishes consecutive orders.
     pub number: u8,
+    /// The order itself.
     pub order: O,
 }
 
 /// A reply, and whether positions count from a power-up that is not yet acknowledged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reply<T> {
+    /// The decoded word.
     pub value: T,
+    /// The positions count from a power-up that is not yet acknowledged.
     pub fresh: bool,
 }
 

@@ -1,12 +1,17 @@
 //! Addresses of table 2.7: the variables of the axis processor's program.
 
+/// `propgan`: gain of the position error.
 pub const PROPORTIONAL_GAIN: u8 = 0x03;
+/// `velgan`: gain of the velocity.
 pub const VELOCITY_GAIN: u8 = 0x04;
-pub const OUTPUT_SCALE: u8 = 0x05;
+/// `outscl`: scale factor of the control output.
+pub(crate) const OUTPUT_SCALE: u8 = 0x05;
 /// Clock ticks between set-points.
-pub const INTERVAL: u8 = 0x06;
-pub const POSITION_TOLERANCE: u8 = 0x52;
-pub const INTEGRAL_TOLERANCE: u8 = 0x54;
+pub(crate) const INTERVAL: u8 = 0x06;
+/// `postol`: tolerance band of the position, two bytes.
+pub(crate) const POSITION_TOLERANCE: u8 = 0x52;
+/// `inttol`: tolerance band of the integral action, two bytes.
+pub(crate) const INTEGRAL_TOLERANCE: u8 = 0x54;
 /// Address of the velocity gain in the manual of the Puma 500 and 600 series; unused in the disassembled program.
 pub const VELOCITY_GAIN_OF_MANUAL: u8 = 0x5C;
 /// The last address of the memory.
@@ -16,6 +21,7 @@ pub const LAST: u8 = 0x7F;
 /// bytes have 8 fractional bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
+    /// Unsigned whole number.
     Whole,
     /// Hexadecimal: bits, an address, or a code.
     Bits,
@@ -28,16 +34,22 @@ pub enum Form {
 /// A variable of the memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variable {
+    /// Address of its lowest byte.
     pub address: u8,
+    /// Number of bytes.
     pub bytes: u8,
+    /// Name in the document.
     pub name: &'static str,
+    /// Format of the bytes.
     pub form: Form,
     /// Unit of the value.
     pub unit: &'static str,
+    /// Meaning in the program of the axis processor.
     pub meaning: &'static str,
 }
 
 impl Variable {
+    /// Address of its highest byte.
     pub fn last(&self) -> u8 {
         self.address + self.bytes - 1
     }

@@ -38,6 +38,6 @@ pub use orders::{
 pub use status::Status;
 
 /// One count of the converters: 12 bit over ±10 V.
-pub const VOLTS_PER_COUNT: f64 = 10.0 / 2048.0;
+pub(crate) const VOLTS_PER_COUNT: f64 = 10.0 / 2048.0;
 /// The largest value of a converter.
 pub const MOST_COUNTS: i16 = 2047;

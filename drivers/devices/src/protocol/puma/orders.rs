@@ -207,7 +207,9 @@ impl Order for DiagRead {
 /// Writes one byte of the memory: a gain, a tolerance, or an unused address.
 #[derive(Debug, Clone, Copy)]
 pub struct DiagWrite {
+    /// Address, at most [`super::memory::LAST`].
     pub address: u8,
+    /// Value to write.
     pub byte: u8,
 }
 
@@ -233,11 +235,13 @@ pub enum Fact {
     Arm = 0,
     /// Counted from 1 at the base.
     Axis = 1,
+    /// Serial number of the servo.
     Serial = 2,
     /// Revision of the program in its memory.
     Revision = 3,
 }
 
+/// Asks for one identification word.
 #[derive(Debug, Clone, Copy)]
 pub struct Identify(pub Fact);
 

@@ -36,6 +36,7 @@ impl Status {
         states.into_iter().filter(|(bit, _)| self.0 & bit != 0).map(|(_, state)| state).collect()
     }
 
+    /// Set error bits in words; unknown bits in hexadecimal.
     pub fn errors(self) -> Vec<String> {
         let known = ERRORS.iter().filter(|(bit, _)| self.0 & bit != 0).map(|(_, name)| (*name).to_owned());
         let other = self.0 & 0xFF00 & !ERRORS.iter().fold(0, |bits, (bit, _)| bits | bit);

@@ -3,6 +3,7 @@
 
 use jointbench_instrument::roles::Identity;
 
+/// The two families of supplies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dialect {
     /// Rigol DP800 (programming guide PGH03109-1110).
@@ -30,6 +31,7 @@ impl Dialect {
         }
     }
 
+    /// Command and query of the voltage limit.
     pub fn voltage(self) -> [&'static str; 2] {
         match self {
             Dialect::Dp800 => [":SOUR1:VOLT", ":SOUR1:VOLT?"],
@@ -38,7 +40,7 @@ impl Dialect {
     }
 
     /// Programming resolution of the channel.
-    pub fn current_step_a(self) -> f64 {
+    pub(crate) fn current_step_a(self) -> f64 {
         match self {
             Dialect::Dp800 => 1e-4,
             Dialect::Hmp => 2e-4,
@@ -57,7 +59,7 @@ impl Dialect {
     }
 
     /// The output is on if all of them report on.
-    pub fn output_queries(self) -> &'static [&'static str] {
+    pub(crate) fn output_queries(self) -> &'static [&'static str] {
         match self {
             Dialect::Dp800 => &[":OUTP? CH1"],
             Dialect::Hmp => &["INST:NSEL 1\nOUTP:SEL?", "OUTP:GEN?"],
@@ -73,7 +75,7 @@ impl Dialect {
     }
 
     /// Bits of a tripped over-voltage and over-current protection (fuse).
-    pub fn trips(self) -> [u32; 2] {
+    pub(crate) fn trips(self) -> [u32; 2] {
         match self {
             Dialect::Dp800 => [1 << 2, 1 << 3],
             Dialect::Hmp => [1 << 9, 1 << 10],

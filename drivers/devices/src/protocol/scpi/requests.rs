@@ -13,12 +13,15 @@ pub const ERROR_QUEUE_DEPTH: usize = 20;
 /// Line end of a request: `\n` on the network and USB, `\r\n` on RS-232.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Terminator {
+    /// Line feed.
     Lf,
+    /// Carriage return and line feed.
     CrLf,
 }
 
 impl Terminator {
-    pub fn for_address(address: &Address) -> Self {
+    /// The line end for this kind of connection.
+    pub(crate) fn for_address(address: &Address) -> Self {
         match address {
             Address::Serial(_) | Address::Usb(_) | Address::Inside(_) => Terminator::CrLf,
             Address::Tcp(_) => Terminator::Lf,
@@ -91,6 +94,7 @@ macro_rules! query {
     };
 }
 
+/// Maker, model, serial number and firmware (`*IDN?`).
 #[derive(Debug, Clone, Copy)]
 pub struct Identify(pub Terminator);
 
@@ -129,9 +133,12 @@ query!(QueryFlag, |this| this.1, bool, |text| match text {
 #[derive(Debug, Clone, Copy)]
 pub struct ReadMeasured(pub Terminator, pub Dialect);
 
+/// Reply to [`ReadMeasured`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
+    /// Voltage at the output.
     pub voltage_v: f64,
+    /// Current through the output.
     pub current_a: f64,
 }
 
@@ -148,11 +155,16 @@ query!(ReadMeasured, |this| this.1.measured(), Measured, |_this, text| {
 #[derive(Debug, Clone, Copy)]
 pub struct ReadCondition(pub Terminator, pub Dialect);
 
+/// Reply to [`ReadCondition`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condition {
+    /// The output regulates its current.
     pub constant_current: bool,
+    /// The output regulates its voltage.
     pub constant_voltage: bool,
+    /// The over-voltage protection has switched the output off.
     pub over_voltage_trip: bool,
+    /// The over-current protection has switched the output off.
     pub over_current_trip: bool,
 }
 

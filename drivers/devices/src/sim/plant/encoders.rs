@@ -37,7 +37,7 @@ const AXIAL_M: f64 = 0.65e-3;
 const ROTATION_RAD: f64 = 1.0 * TAU / 360.0;
 const TILT_RAD: f64 = 1.5 * TAU / 360.0;
 
-/// Pose of the sensor of S2 on the stage: x radial, y vertical, z axial [m], then rotations about them [rad].
+/// Pose of the sensor of S2 on the stage: x radial, y vertical, z axial (m), then rotations about them (rad).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Pose {
     pub shift_m: [f64; 3],
@@ -47,6 +47,7 @@ pub struct Pose {
 /// The true behaviour of encoder S2 with its sensor at the nominal pose.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EncoderTruth {
+    /// Total delay of the position, filter included.
     pub delay_s: f64,
     /// Contribution of the filter, 0 if it is off.
     pub filter_delay_s: f64,
@@ -58,15 +59,21 @@ pub struct EncoderTruth {
     pub hysteresis_rad: f64,
     /// Errors once per turn, twice per turn, and within each of `pole_pairs`.
     pub eccentricity_rad: f64,
+    /// Amplitude of the error twice per turn.
     pub tilt_rad: f64,
+    /// Amplitude of the error within a pole pair.
     pub pole_rad: f64,
+    /// Pole pairs of the ring.
     pub pole_pairs: f64,
     /// Radial shift without eccentricity.
     pub best_radial_m: f64,
     /// Limits of period consistency: radial shift in both directions, axial shift, rotation and tilt.
     pub radial_m: [f64; 2],
+    /// Axial shift at which periods are lost.
     pub axial_m: f64,
+    /// Rotation at which periods are lost, to either side.
     pub rotation_rad: f64,
+    /// Tilt at which periods are lost, to either side.
     pub lost_tilt_rad: f64,
 }
 

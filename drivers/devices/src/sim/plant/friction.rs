@@ -3,7 +3,7 @@
 
 use super::STEP_S;
 
-/// Deflection of the rotor at which the bristles break away, at Coulomb torque [rad].
+/// Deflection of the rotor at which the bristles break away, at Coulomb torque (rad).
 const BREAK_RAD: f64 = 0.002;
 /// Damping ratio of the rotor on its bristles.
 const BRISTLE_DAMPING: f64 = 0.4;

@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 /// Torque of a brake over its current, for any history since demagnetisation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Everett {
-    /// Currents in rising order, the first 0 [A].
+    /// Currents in rising order, the first 0 (A).
     grid_a: Vec<f64>,
-    /// Torque reduction by the fall from `grid_a[i]` to `grid_a[j]`, for j ≤ i [Nm].
+    /// Torque reduction by the fall from `grid_a[i]` to `grid_a[j]`, for j ≤ i (Nm).
     falls_nm: Vec<Vec<f64>>,
-    /// Torque at zero current [Nm].
+    /// Torque at zero current (Nm).
     drag_nm: f64,
 }
 
@@ -73,6 +73,7 @@ impl Everett {
         self.grid_a.len()
     }
 
+    /// Highest current of the model (A).
     pub fn top_a(&self) -> f64 {
         self.grid_a[self.grid_a.len() - 1]
     }
@@ -97,6 +98,8 @@ impl Everett {
         }
     }
 
+    /// Torque (Nm) after a history of currents: the classical Preisach model in Everett form (Mayergoyz, "Mathematical
+    /// Models of Hysteresis", 1991).
     pub fn torque_nm(&self, history: &History) -> f64 {
         let (mut torque_nm, mut before_a, mut rises) = (self.drag_nm, 0.0, true);
         for turn_a in history.turns_a.iter().chain([&history.now_a]) {

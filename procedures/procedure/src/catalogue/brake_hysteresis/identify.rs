@@ -37,39 +37,21 @@ fn model_of(sweeps: &[Sweep]) -> Result<Everett, Unusable> {
 
 pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let sweeps = sweeps(run);
-    let of = |wanted: Part| part(&sweeps, wanted);
-    let major: Vec<&Sweep> = of(Part::Major).collect();
     let everett = model_of(&sweeps)?;
     let top = everett.top_a();
     let rated = rated_nm(run).unwrap_or_else(|| everett.torque_nm(&History::default().after(top)));
-
-    // The inverse has to return the current of each measured torque.
-    let (mut judged, mut current_error) = (Vec::new(), 0.0_f64);
-    for sweep in of(Part::Random).chain(of(Part::Minor)) {
-        let mut history = History::default();
-        for (current, torque) in &sweep.points {
-            if let Some(found) = everett.current_a(&history, *torque) {
-                current_error = current_error.max((found - current).abs());
-            }
-            history.go(*current);
-            judged.push((*torque, everett.torque_nm(&history)));
-        }
-    }
-    if judged.is_empty() {
-        return Err(LITTLE);
-    }
-    let errors = || judged.iter().map(|(torque, model)| (torque - model) / rated);
-    let worst = errors().map(f64::abs).fold(0.0, f64::max);
-    let rms = (errors().map(|e| e * e).sum::<f64>() / judged.len() as f64).sqrt();
-
+    let validation = Validation::of(&sweeps, &everett).ok_or(LITTLE)?;
+    let (worst, rms) = validation.errors(rated);
     let middle = 0.5 * top;
     let rising = everett.torque_nm(&History::default().after(middle));
     let falling = everett.torque_nm(&History::default().after(top).after(middle));
-    let full: Vec<f64> = major.iter().filter_map(|s| s.points.iter().find(|p| p.0 == top).map(|p| p.1)).collect();
+    let major = part(&sweeps, Part::Major);
+    let full: Vec<f64> = major.filter_map(|s| s.points.iter().find(|p| p.0 == top).map(|p| p.1)).collect();
+    let currents = everett.currents() as f64;
     let quantities = vec![
         quantity(
             ["model_currents", "N", "Currents of the Preisach model (Everett form), including 0", ""],
-            everett.currents() as f64,
+            currents,
             None,
         ),
         quantity(["torque_top", "T_max", "Torque at maximum current", "Nm"], mean(&full), spread(&full)),
@@ -77,7 +59,11 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         quantity(["drag", "T₀", "Torque without current", "Nm"], everett.torque_nm(&History::default()), None),
         quantity(["error_max", "e_max", "Maximum error, validation history, fraction of rated", ""], worst, None),
         quantity(["error_rms", "e_rms", "RMS error, validation history, fraction of rated", ""], rms, None),
-        quantity(["current_error", "e_I", "Maximum current error of the model inverse", "A"], current_error, None),
+        quantity(
+            ["current_error", "e_I", "Maximum current error of the model inverse", "A"],
+            validation.current_error_a,
+            None,
+        ),
         quantity(
             ["error_line", "e_line", "Maximum error of a linear model, fraction of rated", ""],
             by_line(&sweeps, rated),
@@ -97,9 +83,43 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         advice: (!good)
             .then(|| "Increase levels or dwell_s. The model error must be below 1 % of the rated torque.".into()),
         quantities,
-        figures: [loops(&sweeps, &everett), vec![judgement(&judged)]].concat(),
+        figures: [loops(&sweeps, &everett), vec![judgement(&validation.torques_nm)]].concat(),
         ..Identification::default()
     })
+}
+
+/// The model and its inverse on the random history and the minor loops, from which it is not built.
+struct Validation {
+    /// Measured torque, and torque of the model.
+    torques_nm: Vec<(f64, f64)>,
+    /// Largest deviation of the inverse, which has to return the current of each measured torque.
+    current_error_a: f64,
+}
+
+impl Validation {
+    /// `None` without such sweeps.
+    fn of(sweeps: &[Sweep], everett: &Everett) -> Option<Self> {
+        let (mut torques_nm, mut current_error_a) = (Vec::new(), 0.0_f64);
+        for sweep in part(sweeps, Part::Random).chain(part(sweeps, Part::Minor)) {
+            let mut history = History::default();
+            for (current, torque) in &sweep.points {
+                if let Some(found) = everett.current_a(&history, *torque) {
+                    current_error_a = current_error_a.max((found - current).abs());
+                }
+                history.go(*current);
+                torques_nm.push((*torque, everett.torque_nm(&history)));
+            }
+        }
+        (!torques_nm.is_empty()).then_some(Self { torques_nm, current_error_a })
+    }
+
+    /// Largest and RMS error of the torque, as shares of the rated torque.
+    fn errors(&self, rated_nm: f64) -> (f64, f64) {
+        let errors = || self.torques_nm.iter().map(|(torque, model)| (torque - model) / rated_nm);
+        let worst = errors().map(f64::abs).fold(0.0, f64::max);
+        let rms = (errors().map(|e| e * e).sum::<f64>() / self.torques_nm.len() as f64).sqrt();
+        (worst, rms)
+    }
 }
 
 /// The holds of every sweep, including the first one at zero current. A sweep that a pause interrupted is repeated as

@@ -27,12 +27,12 @@ pub(super) const FIGURES: [[&str; 4]; 5] = [
 struct Followed {
     way: Way,
     time_s: Vec<f64>,
-    /// θ_d relative to the position of the first row [rad].
+    /// θ_d relative to the position of the first row (rad).
     reference_rad: Vec<f64>,
-    /// θ_d − θ at the link [rad].
+    /// θ_d − θ at the link (rad).
     error_rad: Vec<f64>,
     /// Largest feedforward in excess of the total drive torque and its noise. A value of 0 or less means never active
-    /// (motor) [Nm].
+    /// (motor) (Nm).
     over_nm: f64,
 }
 

@@ -104,63 +104,77 @@ impl Procedure for EncoderLinearity {
             let what = "More than 10 % of the table entries contain no data.";
             return too_little(what, "Choose more turns, a higher sample rate or a smaller table.");
         };
-        let classes: Vec<Class> = unseen.iter().map(Class::of).collect();
-        let peak =
-            |left: &dyn Fn(&Sweep, usize) -> f64| classes.iter().map(|class| class.peak(left)).fold(0.0, f64::max);
         let before = |sweep: &Sweep, i: usize| sweep.error_rad[i] - terms.offset_rad;
         let direct = |sweep: &Sweep, i: usize| before(sweep, i) - table.at(sweep.angle_rad[i] + sweep.error_rad[i]);
         let delayed = |sweep: &Sweep, i: usize| direct(sweep, i) + terms.delay_s * sweep.speed_rad_s;
         let full = |sweep: &Sweep, i: usize| delayed(sweep, i) + terms.hysteresis_rad * sweep.speed_rad_s.signum();
-        let stages: [(&str, &str, f64); 4] = [
-            ("before", "without compensation (INL)", peak(&before)),
-            ("table", "with the look-up table", peak(&direct)),
-            ("velocity", "with table and velocity term", peak(&delayed)),
-            ("direction", "with table, velocity and direction term", peak(&full)),
-        ];
-        let bits = |peak_rad: f64| (TAU / peak_rad).log2();
-        let mut quantities: Vec<Quantity> = Vec::new();
-        for (name, title, peak_rad) in stages {
-            let (bits_name, peak_name) = (format!("bits_{name}"), format!("peak_{name}"));
-            quantities.push(quantity([&bits_name, "", &format!("Usable bits {title}"), ""], bits(peak_rad), None));
-            quantities.push(quantity([&peak_name, "", &format!("Maximum error {title}"), "rad"], peak_rad, None));
-        }
-        quantities.extend(repeatability(&known, &unseen));
-        quantities.extend(harmonics(&known, &terms));
+        let peaks_rad = peaks_rad(&unseen, [&before, &direct, &delayed, &full]);
         let poles = PolePairs::of(&table)?;
-        let name = ["pole_period", "", "Maximum error within a pole pair", "rad"];
-        quantities.push(quantity(name, poles.amplitude_rad, None));
-        quantities.push(quantity(
-            ["pole_period_order", "", "Pole pairs (periods per turn)", ""],
-            f64::from(poles.order),
-            None,
-        ));
         let compared: [(&str, Left); 2] = [("before", &before), ("after", &full)];
         let figures = figures(&unseen, &table, &poles, compared);
-        let summary = format!(
-            "Usable resolution: {:.1} bits uncompensated, {:.1} with a look-up table of {} entries, {:.1} with the \
-             velocity term added, {:.1} with the direction term added. {} {}",
-            bits(stages[0].2),
-            bits(stages[1].2),
-            table.len(),
-            bits(stages[2].2),
-            bits(stages[3].2),
-            what_it_takes(bits(stages[2].2), bits(stages[3].2)),
-            poles.said()
-        );
-        let advice = poles.or.map(|_| {
-            "To determine the number of pole pairs, use more turns and a larger table: jointbench run \
-             encoder_linearity --set turns=32 --set table_size=4096."
-                .into()
-        });
+        let mut quantities = usable(peaks_rad);
+        quantities.extend(repeatability(&known, &unseen));
+        quantities.extend(harmonics(&known, &terms));
+        quantities.extend(pole_period(&poles));
         Some(Identification {
             verdict: Verdict::Identified,
-            summary,
-            advice,
+            summary: summary(peaks_rad.map(bits), table.len(), &poles),
+            advice: poles.or.map(|_| {
+                "To determine the number of pole pairs, use more turns and a larger table: jointbench run \
+                 encoder_linearity --set turns=32 --set table_size=4096."
+                    .into()
+            }),
             quantities,
             figures,
             ..Identification::default()
         })
     }
+}
+
+/// Maximum error (rad) that each stage of the compensation leaves in the validation data.
+fn peaks_rad(unseen: &[Sweep], stages: [Left; 4]) -> [f64; 4] {
+    let classes: Vec<Class> = unseen.iter().map(Class::of).collect();
+    stages.map(|left| classes.iter().map(|class| class.peak(left)).fold(0.0, f64::max))
+}
+
+/// Usable bits of a turn with this maximum error.
+fn bits(peak_rad: f64) -> f64 {
+    (TAU / peak_rad).log2()
+}
+
+/// Usable bits and maximum error of each stage.
+fn usable(peaks_rad: [f64; 4]) -> Vec<Quantity> {
+    let stages = [
+        ("before", "without compensation (INL)"),
+        ("table", "with the look-up table"),
+        ("velocity", "with table and velocity term"),
+        ("direction", "with table, velocity and direction term"),
+    ];
+    let of_stage = |((name, title), peak_rad): ((&str, &str), f64)| {
+        let (bits_name, peak_name) = (format!("bits_{name}"), format!("peak_{name}"));
+        [
+            quantity([&bits_name, "", &format!("Usable bits {title}"), ""], bits(peak_rad), None),
+            quantity([&peak_name, "", &format!("Maximum error {title}"), "rad"], peak_rad, None),
+        ]
+    };
+    stages.into_iter().zip(peaks_rad).flat_map(of_stage).collect()
+}
+
+fn pole_period(poles: &PolePairs) -> [Quantity; 2] {
+    let (amplitude, order) = (poles.amplitude_rad, f64::from(poles.order));
+    [
+        quantity(["pole_period", "", "Maximum error within a pole pair", "rad"], amplitude, None),
+        quantity(["pole_period_order", "", "Pole pairs (periods per turn)", ""], order, None),
+    ]
+}
+
+fn summary([before, table, velocity, direction]: [f64; 4], entries: usize, poles: &PolePairs) -> String {
+    format!(
+        "Usable resolution: {before:.1} bits uncompensated, {table:.1} with a look-up table of {entries} entries, \
+         {velocity:.1} with the velocity term added, {direction:.1} with the direction term added. {} {}",
+        what_it_takes(velocity, direction),
+        poles.said()
+    )
 }
 
 /// Whether table and velocity, the terms of the thesis, are sufficient for more than its 14 bits.

@@ -97,64 +97,71 @@ pub(crate) fn free(run: &RunTable) -> Vec<Leg> {
     legs(run).into_iter().filter(|leg| leg.segment >= warm_up && unloaded(leg)).collect()
 }
 
-/// `expected_rad_s` is the Stribeck velocity at the link for which the run was planned.
-pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
-    let free = free(run);
-    if ![1.0, -1.0].iter().all(|sign| free.iter().any(|leg| leg.direction == *sign)) {
-        return Err(Unusable::TooLittle("One unloaded step in each direction is required.", "Repeat the run."));
-    }
-    let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
-    // A run of hours takes seconds, so that the directions are fitted in parallel.
-    let (whole, sides) = thread::scope(|scope| {
-        let sides = scope.spawn(|| [1.0, -1.0].map(|sign| FreeFriction::of(&settled(&part(sign)?)?)));
-        let whole = || -> Result<_, Unusable> {
-            let both = settled(&keep(run, &free)?)?;
-            let whole = FreeFriction::of(&both)?;
-            let square = coulomb_with_quadratic_drag(&both, &whole);
-            Ok((whole, square, plateaus(&both)))
-        };
-        (whole(), sides.join())
-    });
-    let [forward, backward] = sides.unwrap_or_else(|panic| resume_unwind(panic));
-    let ((whole, square, points), forward, backward) = (whole?, forward?, backward?);
-    let gear = run.meta().gear_ratio.unwrap_or(1.0);
+/// Friction of both directions together and of each direction.
+struct Fits {
+    points: Vec<Plateau>,
+    whole: FreeFriction,
+    /// Coulomb friction (Nm) with a quadratic drag, if the run does not distinguish this drag from the Stribeck effect.
+    with_drag_nm: Option<f64>,
+    forward: FreeFriction,
+    backward: FreeFriction,
+}
 
-    let mut quantities = named("", "", "", &whole, gear);
-    quantities.extend(named("_positive", "⁺", ", positive direction", &forward, gear));
-    quantities.extend(named("_negative", "⁻", ", negative direction", &backward, gear));
-    let sides = [("positive", Side::of(&points, 1.0, &forward)), ("negative", Side::of(&points, -1.0, &backward))];
-    for ((suffix, side), symbol) in sides.iter().zip(["r²⁺", "r²⁻"]) {
-        let title = format!("Coefficient of determination, {suffix} direction");
-        let words = [&format!("r2_{suffix}"), symbol, &title, ""];
-        quantities.push(quantity(words, side.r2, None));
+impl Fits {
+    /// A run of hours takes seconds, so that the directions are fitted in parallel.
+    fn of(run: &RunTable, free: &[Leg]) -> Result<Self, Unusable> {
+        let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
+        let (both, sides) = thread::scope(|scope| {
+            let sides = scope.spawn(|| [1.0, -1.0].map(|sign| FreeFriction::of(&settled(&part(sign)?)?)));
+            let both = || -> Result<_, Unusable> {
+                let both = settled(&keep(run, free)?)?;
+                let whole = FreeFriction::of(&both)?;
+                let with_drag_nm = coulomb_with_quadratic_drag(&both, &whole);
+                Ok((whole, with_drag_nm, plateaus(&both)))
+            };
+            (both(), sides.join())
+        });
+        let [forward, backward] = sides.unwrap_or_else(|panic| resume_unwind(panic));
+        let ((whole, with_drag_nm, points), forward, backward) = (both?, forward?, backward?);
+        Ok(Self { points, whole, with_drag_nm, forward, backward })
     }
-    let differences = [
-        quantity_of(
-            ["tau_c_difference", "τ_c⁺ − τ_c⁻", "Coulomb friction, difference between directions", "Nm"],
-            combined(forward.coulomb, backward.coulomb, -1.0),
-        ),
-        quantity_of(
-            ["c_v_difference", "c_v⁺ − c_v⁻", "Viscous friction, difference between directions", "Nm·s/rad"],
-            combined(forward.viscous, backward.viscous, -1.0),
-        ),
-    ];
-    let differ = differences.iter().any(|d| d.ci95.is_some_and(|[low, high]| low > 0.0 || high < 0.0));
-    quantities.extend(differences);
 
-    let directions = if differ {
-        "The directions differ significantly (95 %)"
-    } else {
-        "No significant difference between directions (95 %)"
-    };
-    let figures = vec![over_speed(&points, &whole), near_zero(&points, &whole, gear)];
-    let hidden_nm = match whole.stribeck {
-        Some(_) => None,
-        None => hidden_rise_nm(&points, expected_rad_s * gear),
-    };
-    quantities.extend(hidden_nm.map(|most_nm| {
-        quantity(["tau_s_most", "τ_s", "Maximum rise towards zero speed that cannot be excluded", "Nm"], most_nm, None)
-    }));
-    let (is_decided, rise) = match (&whole.stribeck, hidden_nm) {
+    fn sides(&self) -> [(&'static str, Side); 2] {
+        [
+            ("positive", Side::of(&self.points, 1.0, &self.forward)),
+            ("negative", Side::of(&self.points, -1.0, &self.backward)),
+        ]
+    }
+
+    fn differences(&self) -> [Quantity; 2] {
+        [
+            quantity_of(
+                ["tau_c_difference", "τ_c⁺ − τ_c⁻", "Coulomb friction, difference between directions", "Nm"],
+                combined(self.forward.coulomb, self.backward.coulomb, -1.0),
+            ),
+            quantity_of(
+                ["c_v_difference", "c_v⁺ − c_v⁻", "Viscous friction, difference between directions", "Nm·s/rad"],
+                combined(self.forward.viscous, self.backward.viscous, -1.0),
+            ),
+        ]
+    }
+
+    fn quantities(&self, sides: &[(&str, Side); 2], gear: f64) -> Vec<Quantity> {
+        let mut quantities = named("", "", "", &self.whole, gear);
+        quantities.extend(named("_positive", "⁺", ", positive direction", &self.forward, gear));
+        quantities.extend(named("_negative", "⁻", ", negative direction", &self.backward, gear));
+        for ((suffix, side), symbol) in sides.iter().zip(["r²⁺", "r²⁻"]) {
+            let title = format!("Coefficient of determination, {suffix} direction");
+            let words = [&format!("r2_{suffix}"), symbol, &title, ""];
+            quantities.push(quantity(words, side.r2, None));
+        }
+        quantities
+    }
+}
+
+/// Whether the run determines the friction towards zero speed, and a sentence about it.
+fn rise(whole: &FreeFriction, hidden_nm: Option<f64>, gear: f64) -> (bool, String) {
+    match (&whole.stribeck, hidden_nm) {
         (Some(stribeck), _) => {
             let below = words::figure(stribeck.speed.0 / gear, "rad/s");
             let to = words::figure(whole.coulomb.0 + stribeck.rise.0, "Nm");
@@ -162,48 +169,79 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
         }
         (None, Some(most_nm)) => {
             let most = words::figure(most_nm, "Nm");
-            match is_small(most_nm, &whole) {
+            match is_small(most_nm, whole) {
                 true => (true, format!("Towards zero speed friction rises by at most {most}")),
                 false => (false, format!("A rise of up to {most} towards zero speed cannot be excluded")),
             }
         }
         (None, None) => (false, "A rise of friction towards zero speed is not determined by this run".to_owned()),
-    };
-    let rest = rest(&sides, &whole);
-    let square_said = square.map(|coulomb_nm| {
-        let coulomb = words::figure(coulomb_nm, "Nm");
-        format!(" Quadratic drag explains this run equally well; Coulomb friction would then be {coulomb}.")
-    });
-    // The parameters of a curve over speed are not reported if friction depends on something else.
-    let is_decided = is_decided && square.is_none() && rest.is_none();
-    let advice = match (&rest, is_decided) {
-        _ if square.is_some() => Some(
+    }
+}
+
+/// What separates the effects that this run leaves open.
+fn advice(is_drag_possible: bool, is_explained: bool, is_decided: bool) -> Option<&'static str> {
+    match (is_drag_possible, is_explained, is_decided) {
+        (true, ..) => Some(
             "To distinguish the two effects, open the run in the workbench or diagnose its export (jointbench export \
              RUN, jointbench diagnose run-RUN.csv). If they remain confounded, repeat the run with twice as many \
              fast_speeds.",
         ),
-        (Some(_), _) => Some(
+        (false, false, _) => Some(
             "To find the missing effect, open the run in the workbench or diagnose its export (jointbench export RUN, \
              jointbench diagnose run-RUN.csv).",
         ),
-        (None, false) => Some(
+        (false, true, false) => Some(
             "Another effect may mask the Stribeck effect. Diagnose the run first (jointbench export RUN, jointbench \
              diagnose run-RUN.csv). Otherwise repeat it with more repeats or a lower stribeck_speed_rad_s.",
         ),
-        (None, true) => None,
+        (false, true, true) => None,
+    }
+}
+
+/// `expected_rad_s` is the Stribeck velocity at the link for which the run was planned.
+pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
+    let free = free(run);
+    if ![1.0, -1.0].iter().all(|sign| free.iter().any(|leg| leg.direction == *sign)) {
+        return Err(Unusable::TooLittle("One unloaded step in each direction is required.", "Repeat the run."));
+    }
+    let fits = Fits::of(run, &free)?;
+    let (whole, points) = (&fits.whole, &fits.points);
+    let gear = run.meta().gear_ratio.unwrap_or(1.0);
+    let (sides, differences) = (fits.sides(), fits.differences());
+    let hidden_nm = match whole.stribeck {
+        Some(_) => None,
+        None => hidden_rise_nm(points, expected_rad_s * gear),
     };
+    let directions = if differences.iter().any(|d| d.ci95.is_some_and(|[low, high]| low > 0.0 || high < 0.0)) {
+        "The directions differ significantly (95 %)"
+    } else {
+        "No significant difference between directions (95 %)"
+    };
+    let mut quantities = fits.quantities(&sides, gear);
+    quantities.extend(differences);
+    quantities.extend(hidden_nm.map(|most_nm| {
+        quantity(["tau_s_most", "τ_s", "Maximum rise towards zero speed that cannot be excluded", "Nm"], most_nm, None)
+    }));
+    let (is_rise_decided, rise) = rise(whole, hidden_nm, gear);
+    let rest = rest(&sides, whole);
+    let drag = fits.with_drag_nm.map(|coulomb_nm| {
+        let coulomb = words::figure(coulomb_nm, "Nm");
+        format!(" Quadratic drag explains this run equally well; Coulomb friction would then be {coulomb}.")
+    });
+    // The parameters of a curve over speed are not reported if friction depends on something else.
+    let is_decided = is_rise_decided && drag.is_none() && rest.is_none();
     Ok(Identification {
         verdict: if is_decided { Verdict::Identified } else { Verdict::Inconclusive },
+        advice: advice(drag.is_some(), rest.is_none(), is_decided).map(str::to_owned),
         summary: format!(
             "Coulomb friction {}, viscous friction {} (motor side). {rise}. {directions}.{}{}",
             words::figure(whole.coulomb.0, "Nm"),
             words::figure(whole.viscous.0, "Nm·s/rad"),
-            square_said.unwrap_or_default(),
+            drag.unwrap_or_default(),
             rest.map(|rest| format!(" {rest}")).unwrap_or_default()
         ),
-        advice: advice.map(str::to_owned),
         quantities,
-        figures,
+        figures: vec![over_speed(points, whole), near_zero(points, whole, gear)],
         ..Identification::default()
     })
 }

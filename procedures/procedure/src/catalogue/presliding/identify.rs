@@ -2,7 +2,7 @@
 
 use super::loops::{Swings, dahl, swings};
 use crate::findings::{Unusable, curve, quantity, scatter, solve, t95};
-use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::Values;
 use jointbench_instrument::RunTable;
 use jointbench_model::words;
@@ -15,7 +15,7 @@ const POLYGON_END: f64 = 0.98;
 /// Largest relative half width of the interval of an identified parameter.
 const WIDEST: f64 = 0.25;
 
-/// Compliance [rad/Nm], Coulomb torque [Nm] and a constant bias torque [Nm].
+/// Compliance [rad/Nm], Coulomb torque (Nm) and a constant bias torque (Nm).
 #[derive(Debug, Clone, Copy)]
 struct Dahl {
     compliance: f64,
@@ -79,15 +79,7 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
         quantity(["reach", "τ_c/σ₀", "Presliding displacement", "rad"], dahl.reach_rad(), reach),
         quantity(["bias", "τ₀", "Torque offset", "Nm"], dahl.bias_nm, bias),
     ];
-    for (i, (stiffness, slips_nm)) in maxwell(dahl).into_iter().enumerate() {
-        let (n, title) = (i + 1, format!("Maxwell slip, element {}", i + 1));
-        let named = |what: &str, symbol: &str, text: &str, unit: &str, value| {
-            let words = [&format!("element_{n}_{what}"), &format!("{symbol}_{n}"), &format!("{title}: {text}"), unit];
-            quantity(words.map(|word: &str| word), value, None)
-        };
-        quantities.push(named("stiffness", "k", "stiffness", "Nm/rad", stiffness));
-        quantities.push(named("slip", "w", "slip torque", "Nm", slips_nm));
-    }
+    quantities.extend(elements(dahl));
     Ok(Identification {
         verdict: if decided { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
@@ -107,6 +99,21 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
         figures: vec![loops(&held, dahl), first_loading(dahl)],
         ..Identification::default()
     })
+}
+
+/// Stiffness and slip torque of each Maxwell-slip element.
+fn elements(dahl: Dahl) -> Vec<Quantity> {
+    let mut quantities = Vec::new();
+    for (i, (stiffness, slips_nm)) in maxwell(dahl).into_iter().enumerate() {
+        let (n, title) = (i + 1, format!("Maxwell slip, element {}", i + 1));
+        let named = |what: &str, symbol: &str, text: &str, unit: &str, value| {
+            let words = [&format!("element_{n}_{what}"), &format!("{symbol}_{n}"), &format!("{title}: {text}"), unit];
+            quantity(words.map(|word: &str| word), value, None)
+        };
+        quantities.push(named("stiffness", "k", "stiffness", "Nm/rad", stiffness));
+        quantities.push(named("slip", "w", "slip torque", "Nm", slips_nm));
+    }
+    quantities
 }
 
 fn others<'s>(held: &[&'s Swings], left_out: usize) -> Vec<&'s Swings> {
@@ -187,7 +194,7 @@ fn errors(swings: &Swings, at: Dahl) -> (Vec<f64>, f64) {
 }
 
 /// Parallel elements whose initial loading curve is a polygon on the Dahl curve: stiffness [Nm/rad] and slip torque
-/// [Nm] of each.
+/// (Nm) of each.
 fn maxwell(at: Dahl) -> Vec<(f64, f64)> {
     let loading = |way_rad: f64| first(at, way_rad);
     let end_rad = -at.reach_rad() * (1.0 - POLYGON_END).ln();

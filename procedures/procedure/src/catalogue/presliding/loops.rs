@@ -2,14 +2,14 @@
 
 use jointbench_instrument::RunTable;
 
-/// A smaller change of position counts as rest [rad].
+/// A smaller change of position counts as rest (rad).
 const STILL_RAD: f64 = 1e-7;
 
 /// One oscillation step: the commanded torques, and the points at which the position is known.
 pub struct Swings {
-    /// Torque at each row (motor) [Nm].
+    /// Torque at each row (motor) (Nm).
     pub torque_nm: Vec<f64>,
-    /// Row, and motor position [rad] relative to an arbitrary zero of this step.
+    /// Row, and motor position (rad) relative to an arbitrary zero of this step.
     pub points: Vec<(usize, f64)>,
     /// The joint broke away and was stopped; the rows before that are kept.
     pub broke_away: bool,

@@ -50,61 +50,21 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
     };
     let holds = measured(run, warm_up as i64, count as i64, planned as i64);
     let (points, arc_rad) = figures.points(&holds)?;
-    let slopes: Vec<f64> = points.iter().map(|point| point.per_sine).collect();
-    let weight = Mean::of(&slopes).ok_or(FEW)?;
-    let side = |sign: f64| -> Vec<(f64, f64)> {
-        points.iter().filter(|p| p.deg_s * sign > 0.0).map(|p| (p.deg_s, p.volts)).collect()
-    };
-    let (forward, backward) = (Line::through(&side(1.0)).ok_or(FEW)?, Line::through(&side(-1.0)).ok_or(FEW)?);
-
-    let top_a = values.number("top_torque_nm") / km;
-    let (broke, held) = onsets(run, setpoint, values.count("increases") as usize, top_a);
-    // Gravity acts outside the upright pose and is corrected.
-    let stiction = |sign: f64| -> Option<Mean> {
-        let volts = |onset: &Onset| onset.current_a / scale - weight.value * figures.link_rad[onset.row].sin();
-        let of_side = broke.iter().filter(|o| o.current_a * sign > 0.0).map(volts).collect::<Vec<_>>();
-        Mean::of(&of_side).map(|mean| with_resolution(mean, ramp_step_nm(values) / km / scale))
-    };
-    let (out, back) = (stiction(1.0), stiction(-1.0));
-
-    let offset = |line: &Line| (line.offset, line.offset_ci95);
-    let slope = |line: &Line| (line.slope, line.slope_ci95);
-    // f⁻ is negative, so that the sum is the difference of the magnitudes.
-    let f_difference = combined(offset(&forward), offset(&backward), 1.0);
-    let b_difference = combined(slope(&forward), slope(&backward), -1.0);
-    let differ = |(_, [low, high]): (f64, [f64; 2])| low > 0.0 || high < 0.0;
-    let mut quantities = sides(&forward, &backward);
-    quantities.extend([
-        named(["f_difference", "|f⁺| − |f⁻|", "Coulomb friction, difference between directions", "V"], f_difference),
-        named(["b_difference", "B⁺ − B⁻", "Viscous friction, difference between directions", "V/(°/s)"], b_difference),
-        named(
-            ["weight", "g", "Gravity torque, link horizontal", "V"],
-            (-weight.value, [-weight.ci95[1], -weight.ci95[0]]),
-        ),
-    ]);
-    for (name, symbol, title, mean) in [
-        ("stiction_positive", "τ_s⁺", "Breakaway (static) friction, positive direction", &out),
-        ("stiction_negative", "τ_s⁻", "Breakaway (static) friction, negative direction", &back),
-    ] {
-        quantities.extend(mean.map(|mean| named([name, symbol, title, "V"], (mean.value, mean.ci95))));
-    }
+    let lines = Lines::through(&points)?;
+    let stiction = Stiction::of(values, run, setpoint, [km, scale], &lines, &figures);
     let nm_per_v = km * scale;
-    quantities.extend(at_motor(&forward, &backward, nm_per_v, nm_per_v * gear.recip().to_degrees()));
-
-    let comparison = match (differ(f_difference), differ(b_difference)) {
-        (true, true) => "Coulomb and viscous friction differ between directions (95 %)",
-        (true, false) => "Coulomb friction differs between directions (95 %); viscous friction does not",
-        (false, true) => "Viscous friction differs between directions (95 %); Coulomb friction does not",
-        (false, false) => "No significant difference between directions (95 %)",
-    };
-    let over_volts = over_speed(&points, &forward, &backward);
-    let complete = held == 0 && out.is_some() && back.is_some();
+    let mut quantities = lines.quantities();
+    quantities.extend(stiction.quantities());
+    quantities.extend(lines.at_motor(nm_per_v, nm_per_v * gear.recip().to_degrees()));
+    let over_volts = over_speed(&points, &lines.forward, &lines.backward);
+    let complete = stiction.is_complete();
     Ok(Identification {
         verdict: if complete { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Coulomb friction (motor side): {} in positive, {} in negative direction. {comparison}.",
-            words::figure(nm_per_v * forward.offset, "Nm"),
-            words::figure(nm_per_v * backward.offset, "Nm"),
+            "Coulomb friction (motor side): {} in positive, {} in negative direction. {}.",
+            words::figure(nm_per_v * lines.forward.offset, "Nm"),
+            words::figure(nm_per_v * lines.backward.offset, "Nm"),
+            lines.comparison(),
         ),
         advice: (!complete)
             .then(|| "Not all breakaway events were detected. Increase top_torque_nm or breakaways.".into()),
@@ -112,6 +72,129 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
         figures: vec![over_volts.clone(), in_torque(over_volts, nm_per_v), figures.over_angle(&holds, arc_rad)],
         ..Identification::default()
     })
+}
+
+/// Voltage over link speed in both directions, and the change of the voltage for each unit of the sine of the link
+/// angle.
+struct Lines {
+    forward: Line,
+    backward: Line,
+    weight: Mean,
+}
+
+impl Lines {
+    fn through(points: &[Point]) -> Result<Self, Unusable> {
+        let slopes: Vec<f64> = points.iter().map(|point| point.per_sine).collect();
+        let weight = Mean::of(&slopes).ok_or(FEW)?;
+        let side = |sign: f64| -> Vec<(f64, f64)> {
+            points.iter().filter(|p| p.deg_s * sign > 0.0).map(|p| (p.deg_s, p.volts)).collect()
+        };
+        let (forward, backward) = (Line::through(&side(1.0)).ok_or(FEW)?, Line::through(&side(-1.0)).ok_or(FEW)?);
+        Ok(Self { forward, backward, weight })
+    }
+
+    /// Difference of the magnitudes of f; f⁻ is negative, so that it is the sum.
+    fn f_difference(&self) -> (f64, [f64; 2]) {
+        let offset = |line: &Line| (line.offset, line.offset_ci95);
+        combined(offset(&self.forward), offset(&self.backward), 1.0)
+    }
+
+    fn b_difference(&self) -> (f64, [f64; 2]) {
+        let slope = |line: &Line| (line.slope, line.slope_ci95);
+        combined(slope(&self.forward), slope(&self.backward), -1.0)
+    }
+
+    fn quantities(&self) -> Vec<Quantity> {
+        let mut quantities = sides(&self.forward, &self.backward);
+        quantities.extend([
+            named(
+                ["f_difference", "|f⁺| − |f⁻|", "Coulomb friction, difference between directions", "V"],
+                self.f_difference(),
+            ),
+            named(
+                ["b_difference", "B⁺ − B⁻", "Viscous friction, difference between directions", "V/(°/s)"],
+                self.b_difference(),
+            ),
+            named(
+                ["weight", "g", "Gravity torque, link horizontal", "V"],
+                (-self.weight.value, [-self.weight.ci95[1], -self.weight.ci95[0]]),
+            ),
+        ]);
+        quantities
+    }
+
+    /// The same in newton metres at the motor, as magnitudes.
+    fn at_motor(&self, nm_per_v: f64, nm_s_per_slope: f64) -> Vec<Quantity> {
+        let sized = |value: f64, ci95: [f64; 2], scale: f64| {
+            let ends = ci95.map(|end| end * scale * value.signum());
+            ((value * scale).abs(), [ends[0].min(ends[1]), ends[0].max(ends[1])])
+        };
+        let mut all = Vec::new();
+        for (suffix, sign, line) in [("positive", "⁺", &self.forward), ("negative", "⁻", &self.backward)] {
+            let [coulomb, viscous] =
+                ["Coulomb", "Viscous"].map(|kind| format!("{kind} friction (motor), {suffix} direction"));
+            let coulomb = [&format!("tau_c_{suffix}"), &format!("τ_c{sign}"), &coulomb, "Nm"];
+            all.push(named(coulomb, sized(line.offset, line.offset_ci95, nm_per_v)));
+            let viscous = [&format!("c_v_{suffix}"), &format!("c_v{sign}"), &viscous, "Nm·s/rad"];
+            all.push(named(viscous, sized(line.slope, line.slope_ci95, nm_s_per_slope)));
+        }
+        all
+    }
+
+    fn comparison(&self) -> &'static str {
+        let differ = |(_, [low, high]): (f64, [f64; 2])| low > 0.0 || high < 0.0;
+        match (differ(self.f_difference()), differ(self.b_difference())) {
+            (true, true) => "Coulomb and viscous friction differ between directions (95 %)",
+            (true, false) => "Coulomb friction differs between directions (95 %); viscous friction does not",
+            (false, true) => "Viscous friction differs between directions (95 %); Coulomb friction does not",
+            (false, false) => "No significant difference between directions (95 %)",
+        }
+    }
+}
+
+/// Breakaway of both directions in volts, corrected for gravity.
+struct Stiction {
+    positive: Option<Mean>,
+    negative: Option<Mean>,
+    /// Ramps that reached the highest torque without motion.
+    held: usize,
+}
+
+impl Stiction {
+    /// `km` [Nm/A] is the torque constant, `scale` [A/V] that of the shunt.
+    fn of(
+        values: &Values,
+        run: &RunTable,
+        setpoint_a: &[f64],
+        [km, scale]: [f64; 2],
+        lines: &Lines,
+        figures: &Figures<'_>,
+    ) -> Self {
+        let top_a = values.number("top_torque_nm") / km;
+        let (broke, held) = onsets(run, setpoint_a, values.count("increases") as usize, top_a);
+        // Gravity acts outside the upright pose and is corrected.
+        let volts = |onset: &Onset| onset.current_a / scale - lines.weight.value * figures.link_rad[onset.row].sin();
+        let stiction = |sign: f64| -> Option<Mean> {
+            let of_side = broke.iter().filter(|o| o.current_a * sign > 0.0).map(volts).collect::<Vec<_>>();
+            Mean::of(&of_side).map(|mean| with_resolution(mean, ramp_step_nm(values) / km / scale))
+        };
+        Self { positive: stiction(1.0), negative: stiction(-1.0), held }
+    }
+
+    fn is_complete(&self) -> bool {
+        self.held == 0 && self.positive.is_some() && self.negative.is_some()
+    }
+
+    fn quantities(&self) -> Vec<Quantity> {
+        let sides = [
+            ("stiction_positive", "τ_s⁺", "Breakaway (static) friction, positive direction", &self.positive),
+            ("stiction_negative", "τ_s⁻", "Breakaway (static) friction, negative direction", &self.negative),
+        ];
+        let of_side = |(name, symbol, title, mean): (&str, &str, &str, &Option<Mean>)| {
+            mean.as_ref().map(|mean| named([name, symbol, title, "V"], (mean.value, mean.ci95)))
+        };
+        sides.into_iter().filter_map(of_side).collect()
+    }
 }
 
 const FEW: Unusable = Unusable::TooLittle("Too few speeds were measured.", "Repeat the run.");
@@ -222,24 +305,6 @@ fn sides(forward: &Line, backward: &Line) -> Vec<Quantity> {
         ] {
             all.push(quantity([&name, &symbol, &title, unit], value, ci95));
         }
-    }
-    all
-}
-
-/// The same in newton metres at the motor, as magnitudes.
-fn at_motor(forward: &Line, backward: &Line, nm_per_v: f64, nm_s_per_slope: f64) -> Vec<Quantity> {
-    let sized = |value: f64, ci95: [f64; 2], scale: f64| {
-        let ends = ci95.map(|end| end * scale * value.signum());
-        ((value * scale).abs(), [ends[0].min(ends[1]), ends[0].max(ends[1])])
-    };
-    let mut all = Vec::new();
-    for (suffix, sign, line) in [("positive", "⁺", forward), ("negative", "⁻", backward)] {
-        let [coulomb, viscous] =
-            ["Coulomb", "Viscous"].map(|kind| format!("{kind} friction (motor), {suffix} direction"));
-        let coulomb = [&format!("tau_c_{suffix}"), &format!("τ_c{sign}"), &coulomb, "Nm"];
-        all.push(named(coulomb, sized(line.offset, line.offset_ci95, nm_per_v)));
-        let viscous = [&format!("c_v_{suffix}"), &format!("c_v{sign}"), &viscous, "Nm·s/rad"];
-        all.push(named(viscous, sized(line.slope, line.slope_ci95, nm_s_per_slope)));
     }
     all
 }

@@ -5,6 +5,7 @@ use crate::findings::{Unusable, holds, interval_of, keep_rows, parameter, quanti
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use jointbench_instrument::RunTable;
 use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit, residuals};
+use std::ops::Range;
 
 /// Steady-state share at the end of a hold, after the wind-up of joint and brake.
 const SETTLED: f64 = 0.5;
@@ -57,6 +58,89 @@ const CURVE_POINTS: usize = 100;
 /// Means of one hold: torque and torsion.
 type Point = (f64, f64);
 
+/// The line, and the models of which the result is made.
+struct Fits {
+    line: Fit,
+    /// Equally good models, the best first: curves if they are better than the line, otherwise the line.
+    selected: Vec<Fit>,
+    is_curved: bool,
+}
+
+impl Fits {
+    /// `settled`: the rows at the ends of the holds.
+    fn of(settled: &RunTable) -> Result<Self, Unusable> {
+        let with = |more: &str, own: Vec<OwnEffect>| {
+            let spec = ModelSpec::with_own(settled.kind(), ["offset", "compliance", more], own)?;
+            fit(settled, &spec, &Options::default())
+        };
+        let line = with("directional_offset", Vec::new())?;
+        let curve_of = |shape: &&str| with(SOFT, vec![softening(settled, shape)?]).ok();
+        let mut curves: Vec<Fit> = SHAPES.iter().filter_map(curve_of).collect();
+        curves.retain(|curve| curve.validation_rms < BETTER * line.validation_rms);
+        curves.sort_by(|a, b| a.validation_rms.total_cmp(&b.validation_rms));
+        let end = curves.first().and_then(|best| Some(parameter(best, SOFT, "phi")?.value.abs()));
+        let bound = curves.first().map_or(0.0, |best| best.validation_rms.max(ALIKE * end.unwrap_or(0.0)));
+        curves.retain(|curve| curve.validation_rms <= bound);
+        let is_curved = !curves.is_empty();
+        let selected = if is_curved { curves } else { vec![line.clone()] };
+        Ok(Self { line, selected, is_curved })
+    }
+
+    fn best(&self) -> &Fit {
+        &self.selected[0]
+    }
+
+    /// Slope k'⁻¹ of the line through high loads.
+    fn compliance(&self) -> Option<(f64, [f64; 2])> {
+        of_all(&self.selected, "compliance", "inverse_k")
+    }
+
+    fn offsets(&self, run: &RunTable, gear: f64) -> Vec<Quantity> {
+        let mut found = Vec::new();
+        let (effect, name, label) = match self.is_curved {
+            true => (SOFT, "phi", "Offset of the line at high loads"),
+            false => ("directional_offset", "beta_0", "Directional offset"),
+        };
+        if let Some(offset) = of_all(&self.selected, effect, name) {
+            let (value, ci95) = with_steps(offset, run, gear);
+            found.push(quantity(["beta_0", "β₀", label, "rad"], value, Some(ci95)));
+        }
+        if let Some(offset) = parameter(self.best(), "offset", "xi") {
+            let (value, ci95) = with_steps(interval_of(offset, 1.0), run, gear);
+            found.push(quantity(["xi", "ξ", "Offset of the encoders", "rad"], value, Some(ci95)));
+        }
+        found
+    }
+
+    fn errors(&self) -> [Quantity; 2] {
+        let of_line = ["line_rms", "e_line", "Validation error of the straight line (RMS)", "rad"];
+        let of_best = ["rms", "e", "Validation error of the selected curve (RMS)", "rad"];
+        [quantity(of_line, self.line.validation_rms, None), quantity(of_best, self.best().validation_rms, None)]
+    }
+}
+
+/// Stiffness of the joint from the measured compliance and the compliance of the bearing in series with it.
+fn stiffness((inverse, ci95): (f64, [f64; 2]), bearing: f64) -> [Quantity; 2] {
+    let of_joint = match bearing > 0.0 {
+        true => "Stiffness of the joint, without bearing",
+        false => "Stiffness of joint and bearing",
+    };
+    let stiffness = |inverse: f64| 1.0 / (inverse - bearing);
+    [
+        quantity(["inverse_k", "k'⁻¹", "Measured compliance", "rad/Nm"], inverse, Some(ci95)),
+        quantity(["k", "k", of_joint, "Nm/rad"], stiffness(inverse), Some([stiffness(ci95[1]), stiffness(ci95[0])])),
+    ]
+}
+
+/// Mean torque and torsion of some rows.
+fn point(run: &RunTable, rows: &Range<usize>, gear: f64) -> Point {
+    let mean = |name: &str| {
+        let column = &run.column(name).unwrap_or_default()[rows.clone()];
+        column.iter().sum::<f64>() / column.len() as f64
+    };
+    (mean("link_torque_nm"), mean("motor_position_rad") / gear - mean("link_position_rad"))
+}
+
 pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let held: Vec<_> = holds(run, 0.4).into_iter().filter(|hold| hold.velocity_rad_s != 0.0).collect();
     let rows: Vec<_> = held.iter().map(|hold| hold.tail(SETTLED)).collect();
@@ -64,94 +148,42 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         return Err(Unusable::TooLittle("The run contains too few loads.", "Repeat the run."));
     }
     let settled = keep_rows(run, &rows)?;
-    let with = |more: &str, own: Vec<OwnEffect>| {
-        let spec = ModelSpec::with_own(run.kind(), ["offset", "compliance", more], own)?;
-        fit(&settled, &spec, &Options::default())
-    };
-    let line = with("directional_offset", Vec::new())?;
-    let curve_of = |shape: &&str| with(SOFT, vec![softening(&settled, shape)?]).ok();
-    let mut curves: Vec<Fit> = SHAPES.iter().filter_map(curve_of).collect();
-    curves.retain(|curve| curve.validation_rms < BETTER * line.validation_rms);
-    curves.sort_by(|a, b| a.validation_rms.total_cmp(&b.validation_rms));
-    let end = curves.first().and_then(|best| Some(parameter(best, SOFT, "phi")?.value.abs()));
-    let bound = curves.first().map_or(0.0, |best| best.validation_rms.max(ALIKE * end.unwrap_or(0.0)));
-    curves.retain(|curve| curve.validation_rms <= bound);
-    let is_curved = !curves.is_empty();
-    let fits = if is_curved { curves } else { vec![line.clone()] };
-    let best = &fits[0];
-
+    let fits = Fits::of(&settled)?;
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
-    let points: Vec<Point> = rows
-        .iter()
-        .map(|rows| {
-            let mean = |name: &str| {
-                let column = &run.column(name).unwrap_or_default()[rows.clone()];
-                column.iter().sum::<f64>() / column.len() as f64
-            };
-            (mean("link_torque_nm"), mean("motor_position_rad") / gear - mean("link_position_rad"))
-        })
-        .collect();
-    let Some((inverse, inverse_ci95)) = of_all(&fits, "compliance", "inverse_k") else {
+    let points: Vec<Point> = rows.iter().map(|rows| point(run, rows, gear)).collect();
+    let Some(compliance) = fits.compliance() else {
         return Err(Unusable::TooLittle(
             "The loads do not determine the stiffness.",
             "Increase top_load or load_levels.",
         ));
     };
     let bearing = run.meta().bearing_stiffness_nm_per_rad.map_or(0.0, f64::recip);
-    if inverse_ci95[0] <= bearing {
+    if compliance.1[0] <= bearing {
         return Err(Unusable::TooLittle(
             "bearing_stiffness_nm_rad is below the measured stiffness of bearing and joint.",
             "Enter it in Nm/rad, or 0 if unknown.",
         ));
     }
-    let stiffness = |inverse: f64| 1.0 / (inverse - bearing);
     let reversal = Reversal::of(run, &held, gear);
-    let area = reversal.as_ref().map_or(0.0, Reversal::area_j);
-    let of_joint = match bearing > 0.0 {
-        true => "Stiffness of the joint, without bearing",
-        false => "Stiffness of joint and bearing",
-    };
-    let mut quantities = vec![
-        quantity(["inverse_k", "k'⁻¹", "Measured compliance", "rad/Nm"], inverse, Some(inverse_ci95)),
-        quantity(
-            ["k", "k", of_joint, "Nm/rad"],
-            stiffness(inverse),
-            Some([stiffness(inverse_ci95[1]), stiffness(inverse_ci95[0])]),
-        ),
-    ];
-    let (effect, name, label) = match is_curved {
-        true => (SOFT, "phi", "Offset of the line at high loads"),
-        false => ("directional_offset", "beta_0", "Directional offset"),
-    };
-    if let Some(found) = of_all(&fits, effect, name) {
-        let (value, ci95) = with_steps(found, run, gear);
-        quantities.push(quantity(["beta_0", "β₀", label, "rad"], value, Some(ci95)));
-    }
-    if let Some(found) = parameter(best, "offset", "xi") {
-        let (value, ci95) = with_steps(interval_of(found, 1.0), run, gear);
-        quantities.push(quantity(["xi", "ξ", "Offset of the encoders", "rad"], value, Some(ci95)));
-    }
-    quantities.extend(zones(&points, bearing));
-    quantities.extend(reversal.iter().flat_map(Reversal::quantities));
-    quantities.extend([
-        quantity(
-            ["line_rms", "e_line", "Validation error of the straight line (RMS)", "rad"],
-            line.validation_rms,
-            None,
-        ),
-        quantity(["rms", "e", "Validation error of the selected curve (RMS)", "rad"], best.validation_rms, None),
-        quantity(["loop_area", "A", "Loop area at maximum load", "J"], area, None),
-    ]);
-    let whole = torsion_over_torque(&points, model(&settled, best)?, reversal.as_ref());
-    let beyond = beyond_the_slope(&whole, inverse);
-    let shape = if is_curved {
+    let [measured, joint] = stiffness(compliance, bearing);
+    let shape = if fits.is_curved {
         "Stiffness decreases at low torque. Use the curve or a look-up table"
     } else {
         "Linear with a directional offset"
     };
+    let summary = format!("Stiffness of the joint {:.1} Nm/rad. {shape}.", joint.value);
+    let mut quantities = vec![measured, joint];
+    quantities.extend(fits.offsets(run, gear));
+    quantities.extend(zones(&points, bearing));
+    quantities.extend(reversal.iter().flat_map(Reversal::quantities));
+    quantities.extend(fits.errors());
+    let area_j = reversal.as_ref().map_or(0.0, Reversal::area_j);
+    quantities.push(quantity(["loop_area", "A", "Loop area at maximum load", "J"], area_j, None));
+    let whole = torsion_over_torque(&points, model(&settled, fits.best())?, reversal.as_ref());
+    let beyond = beyond_the_slope(&whole, compliance.0);
     Ok(Identification {
         verdict: Verdict::Identified,
-        summary: format!("Stiffness of the joint {:.1} Nm/rad. {shape}.", stiffness(inverse)),
+        summary,
         advice: (bearing == 0.0)
             .then(|| "The value includes the bearing. Enter bearing_stiffness_nm_rad to separate it.".into()),
         quantities,

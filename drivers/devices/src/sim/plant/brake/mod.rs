@@ -23,7 +23,7 @@ const COPPER_PER_K: f64 = 0.003_93;
 /// Drag at 1000 rpm is 0.0918 Nm; a part of it remains at standstill (split assumed).
 const DRAG_NM: f64 = 0.03;
 const DRAG_NM_S: f64 = 5.9e-4;
-/// Wind-up of the rotor before it slips [rad] (assumed).
+/// Wind-up of the rotor before it slips (rad) (assumed).
 const WIND_UP_RAD: f64 = 0.01;
 const WIND_UP_DAMPING_NM_S: f64 = 1.0;
 /// Temperature coefficient of the torque by rotor temperature (assumed).

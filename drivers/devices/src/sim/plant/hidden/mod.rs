@@ -31,7 +31,9 @@ pub const HIDDEN_EFFECTS: [(Kind, &[&str]); 4] = [
 /// One hidden effect with its true parameters; the names contain the units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HiddenEffect {
+    /// Name of the effect, from [`HIDDEN_EFFECTS`].
     pub effect: String,
+    /// True value of each parameter; the unit is the suffix of its name.
     pub parameters: BTreeMap<String, f64>,
 }
 
