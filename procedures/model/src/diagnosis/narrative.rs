@@ -17,49 +17,11 @@ use crate::{Fit, Options};
 /// The missing effects, and the structure that remains with them. `fit` is the given model, `complete` the one with
 /// all suggestions.
 pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
-    let unit = Scale::of(fit.validation_rms, &fit.unit);
-    let (error, floor) = (unit.figure(fit.validation_rms), floor(found, complete, &unit));
-    let first = &suggestions[0];
     let named: Vec<String> = suggestions.iter().map(with_confounded).collect();
-    let with = unit.figure(first.validation_rms);
-    let effect = &first.effect;
-    let all = match suggestions.len() {
-        1 => String::new(),
-        _ => format!(", and adding all of them to {}", unit.figure(complete.validation_rms)),
-    };
     let plural = if named.len() > 1 { "s" } else { "" };
     let head = match suggestions.iter().all(|s| s.evidence == Evidence::Weak) {
         true => format!("Possibly missing effect{plural} (weak evidence)"),
         false => format!("Missing effect{plural}"),
-    };
-    let place = match found.start.spec.find(effect).map(Effect::regime) {
-        Ok(Regime::Transient) => "on ramps",
-        _ => "around reversals",
-    };
-    let is_transient = found.start.spec.find(effect).is_ok_and(|e| e.regime() != Regime::SteadyState);
-    let is_apart = is_transient && first.validation_rms > (1.0 - SMALL_REDUCTION) * fit.validation_rms;
-    let gain = if let (true, Some(without), Some(alone)) = (is_apart, fit.effects_rms, first.effects_rms) {
-        format!(
-            "It acts {place}: adding it reduces the error of the effects alone from {} to {}. The nuisance terms of the fit \
-             hide this: with them, the validation error is {with} with {effect} and {error} without it; {floor}.",
-            unit.figure(without),
-            unit.figure(alone)
-        )
-    } else if is_apart {
-        format!(
-            "It acts {place}, where it reduces the error by {}; at steady state the validation error is {with} with it and \
-             {error} without it; {floor}.",
-            percent(first.error_reduction)
-        )
-    } else if first.validation_rms >= fit.validation_rms {
-        // The decision gives samples near reversals less weight.
-        format!(
-            "Away from reversals and rest, adding {effect} reduces the squared error by {}; over all samples the validation \
-             error is {with} with it and {error} without it; {floor}.",
-            percent(found.ranking().first().map_or(0.0, |(_, share)| *share))
-        )
-    } else {
-        format!("Adding {effect} reduces the validation error from {error} to {with}{all}; {floor}.")
     };
     let beyond = match found.end_verdict() {
         Verdict::UnexplainedStructure => {
@@ -73,13 +35,54 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
         }
         _ => String::new(),
     };
-    let named = named.join(", then ");
     format!(
-        "{}{head}: {named}. {gain}{beyond}{}{}",
+        "{}{head}: {}. {}{beyond}{}{}",
         attention(found, &[fit, complete]),
+        named.join(", then "),
+        gain(found, fit, complete, suggestions),
         open(found),
         rejected(found, &fit.unit)
     )
+}
+
+/// What the first suggestion does to the error, and where.
+fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
+    let unit = Scale::of(fit.validation_rms, &fit.unit);
+    let first = &suggestions[0];
+    let effect = &first.effect;
+    let (error, with) = (unit.figure(fit.validation_rms), unit.figure(first.validation_rms));
+    let floor = floor(found, complete, &unit);
+    let regime = found.start.spec.find(effect).map_or(Regime::SteadyState, Effect::regime);
+    let place = if regime == Regime::Transient { "on ramps" } else { "around reversals" };
+    let is_apart = regime != Regime::SteadyState && first.validation_rms > (1.0 - SMALL_REDUCTION) * fit.validation_rms;
+    if let (true, Some(without), Some(alone)) = (is_apart, fit.effects_rms, first.effects_rms) {
+        return format!(
+            "It acts {place}: adding it reduces the error of the effects alone from {} to {}. The nuisance terms of the fit \
+             hide this: with them, the validation error is {with} with {effect} and {error} without it; {floor}.",
+            unit.figure(without),
+            unit.figure(alone)
+        );
+    }
+    if is_apart {
+        return format!(
+            "It acts {place}, where it reduces the error by {}; at steady state the validation error is {with} with it and \
+             {error} without it; {floor}.",
+            percent(first.error_reduction)
+        );
+    }
+    if first.validation_rms >= fit.validation_rms {
+        // The decision gives samples near reversals less weight.
+        return format!(
+            "Away from reversals and rest, adding {effect} reduces the squared error by {}; over all samples the validation \
+             error is {with} with it and {error} without it; {floor}.",
+            percent(found.ranking().first().map_or(0.0, |(_, share)| *share))
+        );
+    }
+    let all = match suggestions.len() {
+        1 => String::new(),
+        _ => format!(", and adding all of them to {}", unit.figure(complete.validation_rms)),
+    };
+    format!("Adding {effect} reduces the validation error from {error} to {with}{all}; {floor}.")
 }
 
 /// An effect with those that it is confounded with.
