@@ -13,16 +13,21 @@ use std::borrow::Cow;
 /// model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EffectInfo<'e> {
+    /// Stable identifier, as in model lists and JSON results: `stribeck`.
     pub id: &'e str,
+    /// Kind of run whose response the effect is a part of.
     pub kind: Kind,
+    /// Name for users: `Stribeck effect`.
     pub title: &'e str,
     /// One sentence for users.
     pub sentence: &'e str,
+    /// Contribution to the response, with the parameters by their names: `τ_c·sign ω`.
     pub formula: &'e str,
     /// Document and equation, or paper.
     pub source: &'e str,
     /// Appearance of the residual if the effect is missing.
     pub looks: &'e str,
+    /// Coefficients and nonlinear parameters of all forms, each once; a family `a_1`, `a_2`, … is listed as `a`.
     pub parameters: &'e [ParameterInfo],
     /// Columns in addition to the required ones, without which the effect is not visible.
     pub needs: &'e [&'static str],
@@ -50,9 +55,13 @@ impl<'e> EffectInfo<'e> {
 /// A parameter with its physical bounds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParameterInfo {
+    /// Name in JSON results, tables and exported code: `tau_c`.
     pub name: Cow<'static, str>,
+    /// SI unit for a rotating joint, `1` if dimensionless; for a sliding joint rad is m, and Nm is N.
     pub unit: Cow<'static, str>,
+    /// Smallest physically possible value, −∞ if unbounded. An interval outside gives `impossible`.
     pub min: f64,
+    /// Largest physically possible value, ∞ if unbounded.
     pub max: f64,
 }
 
@@ -67,6 +76,7 @@ pub type Columns = Vec<Vec<f64>>;
 /// A form of an effect. A model contains at most one form of each effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Form<'e> {
+    /// Name of the form within its effect, as stored in a fit: `linear` or `lugre`.
     pub name: &'e str,
     /// Names of the coefficients, one for each column.
     pub linear: Vec<&'e str>,
@@ -79,9 +89,13 @@ pub struct Form<'e> {
 /// A nonlinear parameter, with the range that this data can identify.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape<'e> {
+    /// Name of the parameter, one of [`EffectInfo::parameters`] or of a family there.
     pub name: &'e str,
+    /// Smallest value that this data can identify.
     pub min: f64,
+    /// Largest value that this data can identify; equal to `min` for a fixed parameter.
     pub max: f64,
+    /// How the fit searches for the value between its starting points.
     pub search: ShapeSearch,
 }
 
@@ -141,7 +155,34 @@ pub enum Regime {
     Hysteresis,
 }
 
+/// One physical cause as a sum of coefficients times columns. The columns may depend on nonlinear parameters.
+///
+/// [`Effect::info`], [`Effect::forms`] and [`Effect::columns`] are required; the other methods have defaults.
+///
+/// ```
+/// use jointbench_instrument::Kind;
+/// use jointbench_model::effects::find;
+/// use jointbench_model::signal::{Signal, Signals};
+/// use jointbench_model::view::View;
+/// use jointbench_model::{Effect, EffectInfo};
+///
+/// let mut signals = Signals::new(4);
+/// signals.set(Signal::Velocity, vec![-2.0, -1.0, 1.0, 2.0]);
+/// signals.set(Signal::Direction, vec![-1.0, -1.0, 1.0, 1.0]);
+/// let view = View::new(signals.clone(), signals, Vec::new(), vec![0], 0.01);
+///
+/// let coulomb: &dyn Effect = find(Kind::Friction, "coulomb").unwrap();
+/// let EffectInfo { parameters, .. } = coulomb.info();
+/// assert_eq!((parameters[0].name.as_ref(), parameters[0].unit.as_ref()), ("tau_c", "Nm"));
+/// // One form without nonlinear parameters: its column is the direction of motion.
+/// let form = &coulomb.forms(&view)[0];
+/// assert_eq!(coulomb.columns(form.name, &[], &view), [vec![-1.0, -1.0, 1.0, 1.0]]);
+/// // Gravity needs the link angle, which this data does not contain.
+/// let gravity = find(Kind::Friction, "gravity").unwrap();
+/// assert_eq!(gravity.missing(&view), Some("link_position_rad"));
+/// ```
 pub trait Effect: Sync {
+    /// Description, parameters and required columns of the effect.
     fn info(&self) -> EffectInfo<'_>;
 
     /// Forms of the effect that this data can identify. Empty: not visible.
@@ -166,6 +207,7 @@ pub trait Effect: Sync {
         None
     }
 
+    /// The part of the data that shows the effect. Default: steady state.
     fn regime(&self) -> Regime {
         Regime::SteadyState
     }

@@ -17,9 +17,36 @@ use jointbench_instrument::RunTable;
 
 /// Fits the effects of a model to a run.
 ///
-/// Coefficients by least squares on scaled columns, nonlinear parameters by variable projection, 95 % intervals by a
-/// jackknife over blocks. Effects that the run cannot show stay in the model with zero coefficients, and the notes name
-/// them. [`ModelError::Collinear`] if two effects are proportional in this data.
+/// Coefficients by least squares on scaled columns, nonlinear parameters by variable projection (Golub, Pereyra 2003),
+/// 95 % intervals by a jackknife over blocks (MacKinnon, Nielsen, Webb 2023). Effects that the run cannot show stay in
+/// the model with zero coefficients, and the notes name them.
+///
+/// # Errors
+/// [`ModelError::Collinear`] if two effects are proportional in this data, [`ModelError::NotVisible`] if the columns of
+/// an effect are zero, [`ModelError::WrongKind`] for a run of another kind, and the errors of preprocessing.
+///
+/// ```
+/// use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
+/// use jointbench_model::{ModelSpec, Options, ParameterState, fit};
+///
+/// // A joint that swings for 12 s: 30 mNm Coulomb friction, 2 mNm·s/rad viscous friction, and a little noise.
+/// let mut trace = Trace::new(["time_s", "motor_position_rad", "motor_current_a"].map(Channel::new).to_vec());
+/// for i in 0..3000 {
+///     let t = 0.004 * f64::from(i);
+///     let (position, velocity) = (5.0 * (2.0 * t).sin(), 10.0 * (2.0 * t).cos());
+///     let noise = 1e-3 * (f64::from(i * i % 1009) / 1009.0 - 0.5);
+///     let torque = 0.03 * velocity.signum() + 0.002 * velocity + noise;
+///     trace.push_row(&[t, position, torque / 0.08]);
+/// }
+/// let kind = Some(Kind::Friction);
+/// let run = RunTable::new(Meta { kind, torque_constant_nm_per_a: Some(0.08), ..Meta::default() }, trace).unwrap();
+///
+/// let model = ModelSpec::parse(Kind::Friction, "coulomb, viscous").unwrap();
+/// let fit = fit(&run, &model, &Options::default()).unwrap();
+/// let coulomb = fit.parameters.iter().find(|p| p.name == "tau_c").unwrap();
+/// assert!((coulomb.value - 0.03).abs() < 1e-3 && coulomb.state == ParameterState::Ok);
+/// assert!(fit.rms < 1e-3 && fit.unit == "Nm");
+/// ```
 pub fn fit(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
     fit_prepared(&prepare(run, options)?, spec, options)
 }

@@ -1,5 +1,7 @@
 //! The heart: effects, identification and diagnosis of joints, encoders, stiffness and brakes. Pure numbers, no I/O.
 
+#![warn(missing_docs)]
+
 mod allocator;
 pub mod channels;
 mod compare;

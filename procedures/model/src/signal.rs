@@ -13,6 +13,7 @@ pub enum Signal {
     Position,
     /// Velocity of the same shaft [rad/s].
     Velocity,
+    /// Acceleration of the same shaft [rad/s²].
     Acceleration,
     /// Derivative of the acceleration [rad/s³].
     Jerk,
@@ -22,6 +23,7 @@ pub enum Signal {
     Link,
     /// Friction: link torque on the motor side, τ_link/N [Nm]. Stiffness: link torque [Nm].
     Load,
+    /// Temperature of the joint, encoder or brake [°C].
     Temperature,
     /// Coil current of a brake [A].
     Current,
@@ -88,28 +90,34 @@ pub struct Signals {
 }
 
 impl Signals {
+    /// No signals yet, for `len` values each.
     pub fn new(len: usize) -> Self {
         Self { columns: Vec::new(), len }
     }
 
+    /// Number of values of each signal.
     pub fn len(&self) -> usize {
         self.len
     }
 
+    /// Whether the signals have no values.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
+    /// Sets or replaces a signal. `values` has [`Signals::len`] entries.
     pub fn set(&mut self, signal: Signal, values: Vec<f64>) {
         debug_assert_eq!(values.len(), self.len);
         self.columns.retain(|(known, _)| *known != signal);
         self.columns.push((signal, Arc::new(values)));
     }
 
+    /// Values of a signal. `None` if it is missing.
     pub fn find(&self, signal: Signal) -> Option<&[f64]> {
         self.iter().find(|(known, _)| *known == signal).map(|(_, values)| values)
     }
 
+    /// All signals with their values, in the order in which they were set.
     pub fn iter(&self) -> impl Iterator<Item = (Signal, &[f64])> {
         self.columns.iter().map(|(signal, values)| (*signal, values.as_slice()))
     }
@@ -125,12 +133,12 @@ impl Signals {
 const NO_CAUSE: [&str; 9] = ["Nm", "A", "V", "W", "rad", "rad/s", "rad/s²", "s", "ms"];
 
 /// Position of a stage: set from outside, no motion of the joint.
-pub fn is_pose(column: &str) -> bool {
+pub(crate) fn is_pose(column: &str) -> bool {
     column.starts_with("stage_")
 }
 
 /// Whether the residual may depend on a column of this name. A column without a unit is excluded, because it may be
 /// the response under another name.
-pub fn may_cause(column: &str) -> bool {
+pub(crate) fn may_cause(column: &str) -> bool {
     is_pose(column) || unit_of(column).is_some_and(|unit| !NO_CAUSE.contains(&unit))
 }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 /// A model: a kind and the effects whose sum it is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModelSpec {
+    /// Kind of run that the model describes.
     pub kind: Kind,
     /// Stable effect ids, in the order in which they were added.
     pub effects: Vec<String>,
@@ -68,14 +69,20 @@ impl ModelSpec {
         user_effects::find_with_own(self.kind, &self.own, id)
     }
 
+    /// Whether the effect is in the model.
     pub fn contains(&self, id: &str) -> bool {
         self.effects.iter().any(|e| e == id)
     }
 
+    /// The model with one more effect, added last.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownEffect`] for an unknown id, [`ModelError::TwiceNamed`] if the model contains it already.
     pub fn with(&self, id: &str) -> Result<Self, ModelError> {
         Self::with_own(self.kind, self.effects.iter().map(String::as_str).chain([id]), self.own.clone())
     }
 
+    /// The model without an effect; unchanged if it does not contain it.
     pub fn without(&self, id: &str) -> Self {
         let effects = self.effects.iter().filter(|e| *e != id).cloned().collect();
         Self { effects, ..self.clone() }
@@ -100,6 +107,7 @@ pub struct Options {
     pub practical_share: f64,
     /// Number of sign flips in permutation tests.
     pub flips: usize,
+    /// Seed of the sign flips: the same run, options and seed give the same p-values.
     pub seed: u64,
 }
 

@@ -13,7 +13,9 @@ use std::sync::Arc;
 /// Constants of the set-up that effects use.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Constants {
+    /// Pole pairs of the encoder from the set-up. `None` if not given.
     pub pole_pairs: Option<u32>,
+    /// Number of poles of the brake from the set-up. `None` if not given.
     pub poles: Option<u32>,
     /// Rotor inertia from the set-up [kg·m²].
     pub rotor_inertia: Option<f64>,
@@ -38,6 +40,7 @@ pub struct Constants {
 /// The first sample of a recording, with the loading history before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start {
+    /// Index of the sample.
     pub at: usize,
     /// The last extreme of the signal before the recording. `None`: no loading history.
     pub past: Option<f64>,
@@ -52,20 +55,25 @@ impl From<usize> for Start {
 /// Signals at the points, and the samples behind them.
 #[derive(Debug, Clone, Default)]
 pub struct View {
+    /// Signals at the points.
     pub points: Signals,
+    /// Signals at the samples behind the points; the same as `points` if points are samples.
     pub samples: Signals,
     /// The samples of each point. Empty if points are samples.
     pub chunks: Vec<Range<usize>>,
     /// First samples of recordings; the history before them is not in the run.
     pub starts: Vec<Start>,
+    /// Time step of the samples [s].
     pub sample_s: f64,
     /// The measured load of each sample, if `samples` contains a smoothed one.
     pub felt: Option<Arc<Vec<f64>>>,
+    /// Constants of the set-up and limits of the run.
     pub constants: Constants,
     zeros: Vec<f64>,
 }
 
 impl View {
+    /// A view without constants and loading history. `starts` are the first samples of recordings, `sample_s` is in s.
     pub fn new(
         points: Signals,
         samples: Signals,
@@ -78,14 +86,17 @@ impl View {
         Self { points, samples, chunks, starts, sample_s, felt: None, constants: Constants::default(), zeros }
     }
 
+    /// Number of points.
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
+    /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
+    /// The signal at the points. `None` if it is missing.
     pub fn find(&self, signal: Signal) -> Option<&[f64]> {
         self.points.find(signal)
     }

@@ -63,6 +63,7 @@ fn is_prefixed(unit: &str) -> bool {
     unit.starts_with("Nm") || unit.starts_with("rad") || unit == "N" || unit == "m"
 }
 
+/// A share in percent, with one digit below 10 %: `6.1 %`, `18 %`.
 pub fn percent(share: f64) -> String {
     if share.abs() < 0.0995 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0} %", 100.0 * share) }
 }

@@ -26,8 +26,10 @@ pub enum OverTime {
 }
 
 impl OverTime {
+    /// Every function over time.
     pub const ALL: [OverTime; 3] = [OverTime::Derivative, OverTime::Integral, OverTime::Smooth];
 
+    /// Function name in a formula.
     pub fn name(self) -> &'static str {
         match self {
             OverTime::Derivative => "derivative",

@@ -4,7 +4,7 @@ mod formula;
 mod over_time;
 mod spectrum;
 
-pub use formula::{ChannelFormula, OverTime};
+pub use formula::ChannelFormula;
 pub use spectrum::{Spectrum, spectrum};
 
 #[cfg(test)]

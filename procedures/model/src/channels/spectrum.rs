@@ -13,6 +13,7 @@ const LONGEST: usize = 1 << 14;
 /// Amplitude spectrum: the amplitude of a sine at each frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
+    /// Frequencies from 0 to half the sample rate, equally spaced [Hz]; as many as amplitudes.
     pub frequency_hz: Vec<f64>,
     /// Amplitude of a sine, in the unit of the values.
     pub amplitude: Vec<f64>,

@@ -27,6 +27,34 @@ use jointbench_instrument::RunTable;
 const MOST_EFFECTS: usize = 6;
 
 /// Compares a model with a run: regions of large residuals, missing effects, and their significance.
+///
+/// # Errors
+/// As [`crate::fit()`]. Contradicting columns and effects that the run cannot show are part of the result.
+///
+/// ```
+/// use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
+/// use jointbench_model::{ModelSpec, Options, Verdict, diagnose};
+///
+/// // A joint that swings for 40 s with Coulomb and viscous friction, and with the gravity of a link.
+/// let names = ["time_s", "motor_position_rad", "motor_current_a", "link_position_rad"];
+/// let mut trace = Trace::new(names.map(Channel::new).to_vec());
+/// for i in 0..10_000 {
+///     let t = 0.004 * f64::from(i);
+///     let position = 20.0 * (0.7 * t).sin() + 5.0 * (2.0 * t).sin();
+///     let velocity = 14.0 * (0.7 * t).cos() + 10.0 * (2.0 * t).cos();
+///     let noise = 1e-3 * (f64::from(i * i % 1009) / 1009.0 - 0.5);
+///     let torque = 0.03 * velocity.signum() + 0.002 * velocity + 0.02 * (position / 10.0).sin() + noise;
+///     trace.push_row(&[t, position, torque / 0.08, position / 10.0]);
+/// }
+/// let (kind, torque_constant_nm_per_a) = (Some(Kind::Friction), Some(0.08));
+/// let meta = Meta { kind, torque_constant_nm_per_a, gear_ratio: Some(10.0), ..Meta::default() };
+/// let run = RunTable::new(meta, trace).unwrap();
+///
+/// let model = ModelSpec::parse(Kind::Friction, "coulomb, viscous").unwrap();
+/// let found = diagnose(&run, &model, &Options::default()).unwrap();
+/// assert_eq!(found.verdict, Verdict::MissingEffect, "{}", found.summary);
+/// assert_eq!(found.suggestions[0].effect, "gravity");
+/// ```
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
     let prepared = prepare(run, options)?;
     let found = Findings::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;

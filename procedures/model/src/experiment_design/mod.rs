@@ -25,10 +25,13 @@ use std::cmp::Ordering;
 /// A possible run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
+    /// Name of the procedure, returned in [`Experiment::procedure`].
     pub procedure: String,
+    /// Parameters of the procedure by name, returned unchanged in [`Experiment::parameters`].
     pub parameters: Map<String, Value>,
     /// Infinite if unknown.
     pub duration_s: f64,
+    /// Steady-state parts of the run in their order; transients are not predicted.
     pub stretches: Vec<Stretch>,
 }
 
@@ -49,6 +52,7 @@ impl Choice {
 pub struct Stretch {
     /// Time since the start of the run.
     pub start_s: f64,
+    /// Length of the stretch [s].
     pub duration_s: f64,
     /// Motor side; for encoders the shaft.
     pub velocity_rad_s: f64,
@@ -73,6 +77,7 @@ pub struct Open {
     pub ties: Vec<(String, Vec<String>)>,
     /// An effect that may be present as well.
     pub imitated: Option<String>,
+    /// Whether repeats determine the noise floor. Without one, a run with repeats is recommended.
     pub has_noise_floor: bool,
     /// Unexplained structure remains in this data; a run for effects that it cannot show would not explain that.
     pub has_structure: bool,

@@ -14,15 +14,22 @@ const VERSION: u32 = 1;
 pub struct ModelFile {
     /// `jointbench-model`.
     pub format: String,
+    /// Version of the format, 1.
     pub version: u32,
+    /// The fit with all its digits.
     pub fit: Fit,
 }
 
 impl ModelFile {
+    /// A file in the format and version of this program.
     pub fn new(fit: Fit) -> Self {
         Self { format: FORMAT.to_owned(), version: VERSION, fit }
     }
 
+    /// The file as indented JSON.
+    ///
+    /// # Errors
+    /// [`ModelError::BadFile`] if a value cannot be written as JSON.
     pub fn to_json(&self) -> Result<String, ModelError> {
         serde_json::to_string_pretty(self).map_err(|fault| ModelError::BadFile(fault.to_string()))
     }

@@ -39,8 +39,10 @@ pub enum Format {
 }
 
 impl Format {
+    /// Every format.
     pub const ALL: [Format; 5] = [Format::Json, Format::C, Format::Table, Format::Mujoco, Format::Urdf];
 
+    /// Name of the format on the command line and in REST: `json`, `c`, `lut`, `mujoco` or `urdf`.
     pub fn name(self) -> &'static str {
         match self {
             Format::Json => "json",

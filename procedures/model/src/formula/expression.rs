@@ -6,11 +6,12 @@ use crate::signal::{Signal, Signals};
 use std::borrow::Cow;
 use std::ops::Range;
 
+/// A part of a formula, with its position in the text. Opaque outside of this crate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expression {
     /// Byte range in the formula.
-    pub at: Range<usize>,
-    pub what: What,
+    pub(crate) at: Range<usize>,
+    pub(crate) what: What,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +27,7 @@ pub enum What {
 
 impl Expression {
     /// The value of every row.
-    pub fn column(&self, parameters: &[f64], signals: &Signals) -> Vec<f64> {
+    pub(crate) fn column(&self, parameters: &[f64], signals: &Signals) -> Vec<f64> {
         self.value(parameters, signals).of_rows(signals.len())
     }
 
@@ -44,7 +45,7 @@ impl Expression {
     }
 
     /// Whether any part of the expression satisfies `such`.
-    pub fn any(&self, such: &mut impl FnMut(&What) -> bool) -> bool {
+    pub(crate) fn any(&self, such: &mut impl FnMut(&What) -> bool) -> bool {
         such(&self.what)
             || match &self.what {
                 What::Number(_) | What::Signal(_) | What::Parameter(_) => false,
@@ -54,16 +55,16 @@ impl Expression {
             }
     }
 
-    pub fn uses(&self, parameter: usize) -> bool {
+    pub(crate) fn uses(&self, parameter: usize) -> bool {
         self.any(&mut |what| *what == What::Parameter(parameter))
     }
 
-    pub fn uses_signal(&self, signal: Signal) -> bool {
+    pub(crate) fn uses_signal(&self, signal: Signal) -> bool {
         self.any(&mut |what| *what == What::Signal(signal))
     }
 
     /// First occurrence of a signal.
-    pub fn place_of(&self, signal: Signal) -> Option<Range<usize>> {
+    pub(crate) fn place_of(&self, signal: Signal) -> Option<Range<usize>> {
         match &self.what {
             What::Number(_) | What::Parameter(_) => None,
             What::Signal(own) => (*own == signal).then(|| self.at.clone()),
@@ -74,7 +75,7 @@ impl Expression {
     }
 
     /// The expression with other parameter numbers.
-    pub fn renumbered(&self, number: &dyn Fn(usize) -> usize) -> Self {
+    pub(crate) fn renumbered(&self, number: &dyn Fn(usize) -> usize) -> Self {
         let of = |e: &Expression| e.renumbered(number);
         let what = match &self.what {
             What::Number(value) => What::Number(*value),

@@ -25,8 +25,11 @@ pub struct FormulaFault {
 /// A further error of a text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Also {
+    /// Characters before the error, in the same text.
     pub position: usize,
+    /// Length of the error in characters; 0 if something is missing.
     pub length: usize,
+    /// The error, and what to write instead.
     pub message: String,
 }
 

@@ -5,12 +5,17 @@ use std::f64::consts::TAU;
 /// Name in a formula and in C, and the number of arguments.
 macro_rules! functions {
     ($($variant:ident $name:literal $c:literal $arity:literal $apply:expr;)*) => {
+        /// A function of a formula. Angles are in radians, logarithms of non-positive arguments are not finite.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        pub enum Function { $($variant),* }
+        pub enum Function {
+            $(#[doc = concat!("`", $name, "`: `", stringify!($apply), "`.")] $variant),*
+        }
 
         impl Function {
+            /// Every function.
             pub const ALL: &'static [Function] = &[$(Function::$variant),*];
 
+            /// Name in a formula.
             pub fn name(self) -> &'static str {
                 match self { $(Function::$variant => $name),* }
             }
@@ -20,6 +25,7 @@ macro_rules! functions {
                 match self { $(Function::$variant => $c),* }
             }
 
+            /// Number of arguments, 1 or 2.
             pub fn arity(self) -> usize {
                 match self { $(Function::$variant => $arity),* }
             }
@@ -56,6 +62,7 @@ functions! {
 }
 
 impl Function {
+    /// The function with a name. `None` if there is none.
     pub fn find(name: &str) -> Option<Function> {
         Function::ALL.iter().copied().find(|f| f.name() == name)
     }

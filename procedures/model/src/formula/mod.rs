@@ -12,13 +12,13 @@ pub(crate) mod signals;
 pub(crate) mod syntax;
 pub(crate) mod units;
 
-pub(crate) use crate::formula::expression::Value;
-pub use crate::formula::expression::{Expression, What};
+pub use crate::formula::expression::Expression;
+pub(crate) use crate::formula::expression::{Value, What};
 pub(crate) use crate::formula::fault::Mistake;
 pub use crate::formula::fault::{Also, FormulaFault};
 pub use crate::formula::function::Function;
 pub use crate::formula::signals::{NamedSignal, in_formula, left_hand_side, signals};
-pub use crate::formula::syntax::Operator;
+pub(crate) use crate::formula::syntax::Operator;
 
 use crate::signal::Signal;
 use jointbench_instrument::{Kind, Motion};

@@ -10,11 +10,15 @@ pub const COLUMN: &str = "column";
 /// A signal in a formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NamedSignal {
+    /// Name in a formula: `velocity`.
     pub name: &'static str,
+    /// The signal of the model.
     pub signal: Signal,
+    /// SI unit for a rotating joint, `1` if dimensionless.
     pub unit: &'static str,
     /// Its source column; empty for a derived signal.
     pub column: &'static str,
+    /// Description in a few words, with the side of the gear or the sign where it matters.
     pub meaning: &'static str,
 }
 

@@ -84,6 +84,7 @@ impl Cholesky {
         inverse
     }
 
+    /// Whether column `i` depends linearly on the columns before it, so that its coefficient is zero.
     pub fn is_dependent(&self, i: usize) -> bool {
         self.dead[i]
     }
@@ -108,6 +109,7 @@ impl Cholesky {
         x
     }
 
+    /// Solution of A·x = b, with zeros for dependent columns.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         let n = self.n;
         let mut x = self.whiten(b);

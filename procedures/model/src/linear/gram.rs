@@ -6,12 +6,15 @@ use crate::thresholds::FOLD_COVERAGE;
 /// Σ xxᵀ and Σ xy of each group of rows, and Σ yy.
 #[derive(Debug, Clone)]
 pub struct BlockGrams {
-    pub columns: usize,
-    pub groups: usize,
+    /// Number of columns, p.
+    pub(crate) columns: usize,
+    /// Number of groups.
+    pub(crate) groups: usize,
     pub(crate) xx: Vec<f64>,
     pub(crate) xy: Vec<f64>,
     pub(crate) yy: Vec<f64>,
-    pub rows: Vec<usize>,
+    /// Number of rows of each group.
+    pub(crate) rows: Vec<usize>,
 }
 
 impl BlockGrams {
@@ -19,11 +22,13 @@ impl BlockGrams {
         Self { columns, groups: rows.len(), xx: Vec::new(), xy: Vec::new(), yy: Vec::new(), rows }
     }
 
+    /// Σ xxᵀ of one group: p·p values, row-major.
     pub fn xx(&self, group: usize) -> &[f64] {
         let size = self.columns * self.columns;
         &self.xx[group * size..(group + 1) * size]
     }
 
+    /// Σ xy of one group: p values.
     pub fn xy(&self, group: usize) -> &[f64] {
         &self.xy[group * self.columns..(group + 1) * self.columns]
     }
@@ -40,6 +45,7 @@ impl BlockGrams {
         (xx, xy)
     }
 
+    /// Σ xxᵀ (p·p, row-major) and Σ xy (p) over all rows.
     pub fn total(&self) -> (Vec<f64>, Vec<f64>) {
         self.sum(0..self.groups)
     }

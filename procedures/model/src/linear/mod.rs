@@ -11,7 +11,7 @@ pub(crate) mod gram;
 pub(crate) mod non_negative;
 
 pub use crate::linear::augmented_gram::AugmentedGrams;
-pub use crate::linear::basis::{Basis, dot};
+pub(crate) use crate::linear::basis::Basis;
 pub use crate::linear::cholesky::Cholesky;
-pub use crate::linear::condition::condition;
+pub(crate) use crate::linear::condition::condition;
 pub use crate::linear::gram::BlockGrams;

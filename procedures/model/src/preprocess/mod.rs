@@ -23,14 +23,12 @@ use crate::effect::Regime;
 use crate::effects::friction::presliding;
 use crate::preprocess::checks::unit_mismatch::DataErrors;
 use crate::preprocess::checks::{metadata, unit_mismatch};
-pub use crate::preprocess::design::replicates::Unlike;
-pub use crate::preprocess::design::segments::stretches;
+use crate::preprocess::design::replicates::Unlike;
 use crate::preprocess::filter::{ABREAST, LowPass};
 use crate::preprocess::form_error::FormError;
 use crate::preprocess::memo::Memo;
 use crate::report::fit::{Bristles, GivenConstant, Preparation};
 use crate::signal::Signal;
-pub use crate::signal::may_cause;
 use crate::stats::summary::{median, range};
 use crate::view::View;
 use crate::{ModelError, Options, ResidualKind};
@@ -41,41 +39,45 @@ use std::sync::Arc;
 /// The data that a model is fitted to and judged on: the response at points with the signals that may explain it.
 #[derive(Debug, Clone)]
 pub struct Problem {
+    /// Signals at the points, and at the samples behind them.
     pub view: View,
     /// The response at the rows.
     pub target: Vec<f64>,
     /// The response at the samples of the view if rows are means over samples, otherwise empty.
-    pub sampled: Arc<Vec<f64>>,
+    pub(crate) sampled: Arc<Vec<f64>>,
     /// Converts columns at points to columns at rows, in the same way as the response.
-    pub reduce: Reduce,
+    pub(crate) reduce: Reduce,
     /// Block of each row, numbered from 0: long enough to be independent of the others.
-    pub block: Vec<usize>,
-    pub blocks: usize,
+    pub(crate) block: Vec<usize>,
+    pub(crate) blocks: usize,
     /// Fold of each row: rows that all others predict together, the repeats of one condition.
-    pub fold: Vec<usize>,
-    pub folds: usize,
+    pub(crate) fold: Vec<usize>,
+    pub(crate) folds: usize,
     /// Pairs of rows that differ only by noise: the same condition and phase in another repeat.
     pub replicate_pairs: Vec<(usize, usize)>,
     /// Replicate pairs with a different loading history: equal only for a model with hysteresis.
-    pub different_history: HashSet<(usize, usize)>,
+    pub(crate) different_history: HashSet<(usize, usize)>,
     /// Replicate pairs at different link angles, if repeats start at different angles: effects of the angle differ
     /// between them.
-    pub different_angle: HashSet<(usize, usize)>,
+    pub(crate) different_angle: HashSet<(usize, usize)>,
     /// Why there are no replicate pairs, if repeats are different motions.
-    pub unlike: Option<Unlike>,
+    pub(crate) unlike: Option<Unlike>,
+    /// Number of the segment of each row, from its column or detected.
     pub segment: Vec<i64>,
+    /// Number of the repeat of each row; the same everywhere if the run has no repeats.
     pub repeat: Vec<i64>,
     /// Speed and load are constant within a block, so that their changes there are sensor noise.
-    pub settled: bool,
+    pub(crate) settled: bool,
     /// Nuisance columns for the form error, for a run that is judged sample by sample.
-    pub form_error: Option<Arc<FormError>>,
+    pub(crate) form_error: Option<Arc<FormError>>,
     /// The same run at other filter corners: the difference between them is an uncertainty of the estimate.
-    pub bandwidths: Vec<Problem>,
+    pub(crate) bandwidths: Vec<Problem>,
     /// Solutions of recently fitted models.
     pub(crate) memo: Memo,
 }
 
 impl Problem {
+    /// Number of rows: points after the reduction, to which the coefficients are fitted.
     pub fn rows(&self) -> usize {
         self.target.len()
     }
@@ -83,7 +85,7 @@ impl Problem {
 
 /// Conversion of columns at points to columns at rows.
 #[derive(Debug, Clone)]
-pub enum Reduce {
+pub(crate) enum Reduce {
     /// Points are rows.
     Same,
     /// Every recording is filtered, with its ends extended by `pad` samples, and some samples are kept.
@@ -120,27 +122,28 @@ const SHORTEST: usize = 16;
 /// A preprocessed run, for every fit and test.
 #[derive(Debug, Clone)]
 pub struct Prepared {
+    /// Kind of the run, which determines the response.
     pub kind: Kind,
-    pub motion: Motion,
+    pub(crate) motion: Motion,
     /// Effects that the test conditions of the run imply.
-    pub baseline: Vec<String>,
+    pub(crate) baseline: Vec<String>,
     /// The problem for most effects.
     pub main: Problem,
     /// The same with a presliding direction, for models with that effect.
-    pub bristled: Option<Problem>,
+    pub(crate) bristled: Option<Problem>,
     /// Ramps and reversals, if the main problem contains only steady-state motion.
-    pub moving: Option<Problem>,
+    pub(crate) moving: Option<Problem>,
     /// The slow part of these, where the loading history before a reversal matters.
-    pub memory: Option<Problem>,
+    pub(crate) memory: Option<Problem>,
     /// Factor from the load in model quantities to the column of the run table.
-    pub load_scale: f64,
+    pub(crate) load_scale: f64,
     /// Constants of the set-up that were used to compute signals or the response.
-    pub constants: Vec<GivenConstant>,
+    pub(crate) constants: Vec<GivenConstant>,
     /// Columns that contradict each other, in sentences.
-    pub clashes: DataErrors,
+    pub(crate) clashes: DataErrors,
     /// Missing or wrong test conditions, in sentences.
-    pub doubts: Vec<String>,
-    pub about: Preparation,
+    pub(crate) doubts: Vec<String>,
+    pub(crate) about: Preparation,
 }
 
 impl Prepared {
@@ -164,13 +167,13 @@ impl Prepared {
     }
 
     /// The problem that a model of these effects is judged on. Presliding replaces the direction by its state.
-    pub fn judged(&self, effects: &[String]) -> &Problem {
+    pub(crate) fn judged(&self, effects: &[String]) -> &Problem {
         let bends = effects.iter().any(|effect| effect == presliding::ID);
         self.bristled.as_ref().filter(|_| bends).unwrap_or(&self.main)
     }
 
     /// Regimes that the main problem can judge: steady-state means show only steady-state effects.
-    pub fn regimes(&self) -> &'static [Regime] {
+    pub(crate) fn regimes(&self) -> &'static [Regime] {
         match self.about.residual {
             ResidualKind::PlateauMean => &[Regime::SteadyState],
             ResidualKind::Raw => &[Regime::SteadyState, Regime::Transient, Regime::Hysteresis],
@@ -178,7 +181,7 @@ impl Prepared {
     }
 
     /// Column name of a signal for users.
-    pub fn column_name(&self, signal: Signal) -> &'static str {
+    pub(crate) fn column_name(&self, signal: Signal) -> &'static str {
         match (signal, self.kind) {
             (Signal::Time, _) => "time_s",
             (Signal::Position, Kind::Encoder) => "reference_position_rad",
@@ -202,11 +205,11 @@ impl Prepared {
     }
 
     /// Factor from a signal in model quantities to its column.
-    pub fn column_scale(&self, signal: Signal) -> f64 {
+    pub(crate) fn column_scale(&self, signal: Signal) -> f64 {
         if signal == Signal::Load { self.load_scale } else { 1.0 }
     }
 
-    pub fn column_unit(&self, signal: Signal) -> String {
+    pub(crate) fn column_unit(&self, signal: Signal) -> String {
         let unit = match signal {
             Signal::Direction | Signal::Repeat => "1",
             Signal::Acceleration => "rad/s²",
@@ -216,7 +219,7 @@ impl Prepared {
         self.motion.label(unit)
     }
 
-    pub fn unit(&self) -> String {
+    pub(crate) fn unit(&self) -> String {
         self.motion.label(self.kind.target_unit())
     }
 }
@@ -231,6 +234,10 @@ pub fn attention(run: &RunTable) -> Vec<String> {
 }
 
 /// Preprocesses a run. Deterministic, with a cost linear in the rows.
+///
+/// # Errors
+/// [`ModelError::BadOption`], [`ModelError::TooFewSamples`], [`ModelError::TooLarge`], [`ModelError::Constant`], or
+/// [`ModelError::MissingConstant`] for a fact that the meta file lacks.
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
     prepare_with(run, options, None)
 }

@@ -4,28 +4,39 @@ use crate::report::fit::{Evaluation, Parameter};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 
+/// Result of `compare`: differences between two models of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
+    /// Kind of both models.
     pub kind: Kind,
     /// Effects of the second model that the first one lacks.
     pub added: Vec<String>,
+    /// Effects of the first model that the second one lacks.
     pub removed: Vec<String>,
+    /// Every parameter of either model: those of the first one in its order, then those only in the second one.
     pub parameters: Vec<ParameterPair>,
     /// Both on the same run.
     pub first: Evaluation,
+    /// Evaluation of the second model on that run.
     pub second: Evaluation,
     /// Validation error of each model on its own run.
     pub first_validation_rms: f64,
+    /// Validation error of the second model on the run that it was fitted to.
     pub second_validation_rms: f64,
 }
 
 /// A parameter in two models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ParameterPair {
+    /// Id of the effect that the parameter belongs to.
     pub effect: String,
+    /// Name of the parameter within its effect.
     pub name: String,
+    /// Unit of both values.
     pub unit: String,
+    /// The parameter in the first model. `None` if that model lacks it.
     pub first: Option<Parameter>,
+    /// The parameter in the second model. `None` if that model lacks it.
     pub second: Option<Parameter>,
     /// Whether the values differ by more than their intervals allow. `None` if one is missing or has no interval.
     pub differ: Option<bool>,
@@ -39,6 +50,8 @@ pub struct ParameterPair {
 pub struct Wider {
     /// Whether the second model has the wider interval.
     pub second: bool,
+    /// Ratio of the wider interval to the narrower one, above 1.
     pub times: f64,
+    /// The reason in words: a trade-off, fewer rows, a larger residual or more parameters.
     pub why: String,
 }

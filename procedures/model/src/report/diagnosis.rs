@@ -21,6 +21,7 @@ pub enum UndecidedReason {
     ImpossibleParameter,
 }
 
+/// Conclusion of a diagnosis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -35,16 +36,22 @@ pub enum Verdict {
 /// Result of `diagnose`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Diagnosis {
+    /// Kind of the run and the model.
     pub kind: Kind,
+    /// Effect ids of the diagnosed model, without suggestions.
     pub model: Vec<String>,
     /// User effects that the diagnosis included.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<OwnEffect>,
+    /// The diagnosed model, fitted to the run without suggestions.
     pub fit: Fit,
+    /// Data that the residual and all RMS figures refer to.
     pub residual: ResidualKind,
     /// Noise floor of the run, comparable with the RMS figures. `None` without repeats.
     pub noise_floor_rms: Option<f64>,
+    /// The noise floor with its interval and source.
     pub noise_floor: NoiseFloor,
+    /// The conclusion; also read `undecided`.
     pub verdict: Verdict,
     /// Why the verdict is undecided: too little data to reject the model, so that `adequate` only means that nothing
     /// was found, or contradicting columns. `jointbench` then ends with code 3.
@@ -72,6 +79,7 @@ pub struct Diagnosis {
     /// An effect that may be present in addition to the suggestions and changes the parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imitated: Option<Imitated>,
+    /// The recommended next run. Without a menu (`next_run`) only missing repeats are recommended, otherwise `None`.
     pub experiment: Option<Experiment>,
     /// Effects that were tested and not found, with their detection limits.
     pub silent: Vec<Silent>,
@@ -85,7 +93,9 @@ pub struct Diagnosis {
 /// Noise floor: the repeatability of the measurement.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct NoiseFloor {
+    /// RMS of the pure error, in the unit of the fit. `None` if fewer than eight pairs of rows are replicates.
     pub rms: Option<f64>,
+    /// 95 % interval of `rms`, jackknife over blocks. `None` if a few blocks contain all the noise.
     pub ci95: Option<[f64; 2]>,
     /// Source of the figure, in words.
     pub source: String,
@@ -100,6 +110,7 @@ pub struct NoiseFloor {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Evidence {
+    /// Significant, with a reduction of at least [`SMALL_REDUCTION`].
     #[default]
     Strong,
     /// Significant, but less than [`SMALL_REDUCTION`] of the validation error.
@@ -125,6 +136,7 @@ impl Evidence {
 /// One missing effect with its evidence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Suggestion {
+    /// Id of the missing effect.
     pub effect: String,
     /// Validation error of the model with this effect.
     pub validation_rms: f64,
@@ -145,6 +157,7 @@ pub struct Suggestion {
     pub error_reduction_together: f64,
     /// Family-wise, from sign flips of whole blocks.
     pub p_value: f64,
+    /// Class of the evidence, from the p-value and the error reductions.
     #[serde(default)]
     pub evidence: Evidence,
     /// No flip reached this score, so that `p_value` is an upper limit.
@@ -154,14 +167,18 @@ pub struct Suggestion {
     pub parameters: Vec<Parameter>,
     /// Effects that explain this data as well.
     pub confounded_with: Vec<String>,
+    /// What the effect is, its evidence and its confounded effects, in sentences.
     pub why: String,
 }
 
 /// A run that would answer the questions that this run leaves open.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Experiment {
+    /// Name of the procedure.
     pub procedure: String,
+    /// Parameters of the procedure by name; empty if the defaults apply.
     pub parameters: serde_json::Map<String, serde_json::Value>,
+    /// The question that the run answers, in words.
     pub why: String,
     /// Expected separation of the alternatives in standard deviations.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -177,18 +194,22 @@ pub struct Experiment {
 /// An effect that another one imitates: its absence hardly changes the error, but biases a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Imitated {
+    /// Id of the effect that may be present.
     pub effect: String,
     /// The biased parameter of the given model, as `effect.parameter`.
     pub parameter: String,
+    /// Unit of `without` and `with`.
     pub unit: String,
     /// Its value without the effect, and with it.
     pub without: f64,
+    /// Its value with the effect.
     pub with: f64,
 }
 
 /// An effect that was tested and not found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Silent {
+    /// Id of the effect.
     pub effect: String,
     /// Detection limit: RMS of the smallest effect that is found with 80 % power, in the unit of the fit.
     pub minimum_detectable_rms: f64,
@@ -200,14 +221,18 @@ pub struct Silent {
 /// A rejected effect, which may nevertheless be present.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
+    /// Id of the effect.
     pub effect: String,
+    /// Why it was rejected, in words.
     pub why: String,
 }
 
 /// An effect that this data cannot show.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Invisible {
+    /// Id of the effect.
     pub effect: String,
+    /// The missing signal or excitation, in words.
     pub why: String,
 }
 
@@ -268,28 +293,39 @@ impl RemovalReason {
 /// One step of `discover`. The first one is the given model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
+    /// Effect that this step added. `None` for the given model and for a removal.
     pub added: Option<String>,
     /// An added effect that is removed again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub removed: Option<String>,
+    /// Why `removed` was removed. `None` if nothing was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub removal_reason: Option<RemovalReason>,
     /// Effects that explain this data as well as the added one, in the final model too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub confounded_with: Vec<String>,
+    /// Effect ids of the model after this step.
     pub model: Vec<String>,
+    /// Training error after this step, in the unit of the fit.
     pub rms: f64,
+    /// Validation error after this step, in the unit of the fit.
     pub validation_rms: f64,
 }
 
 /// Result of `discover`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Discovery {
+    /// Kind of the run and the model.
     pub kind: Kind,
+    /// The given model, then one step for each added or removed effect.
     pub steps: Vec<Step>,
+    /// Data that the residual and all RMS figures refer to.
     pub residual: ResidualKind,
+    /// Noise floor of the run, comparable with the RMS figures. `None` without repeats.
     pub noise_floor_rms: Option<f64>,
+    /// The noise floor with its interval and source.
     pub noise_floor: NoiseFloor,
+    /// The conclusion on the final model.
     pub verdict: Verdict,
     /// Why the verdict is undecided: too little data to reject the model, so that `adequate` only means that nothing
     /// was found, or contradicting columns. `jointbench` then ends with code 3.
@@ -298,9 +334,13 @@ pub struct Discovery {
     /// The category of that reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided_reason: Option<UndecidedReason>,
+    /// The conclusion in plain sentences.
     pub summary: String,
+    /// Effect ids of the final model.
     pub model: Vec<String>,
+    /// The final model, fitted to the run.
     pub fit: Fit,
+    /// Regions where the final model has a significant residual, the worst first.
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
     /// The residual over the two axes with most structure, for the verdict `unexplained_structure`.
@@ -312,6 +352,7 @@ pub struct Discovery {
     /// An effect that may be present in addition to those of the model and changes the parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imitated: Option<Imitated>,
+    /// The recommended next run. Without a menu (`next_run`) only missing repeats are recommended, otherwise `None`.
     pub experiment: Option<Experiment>,
     /// Effects that were tested and not found, with their detection limits.
     #[serde(default)]

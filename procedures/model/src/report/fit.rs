@@ -17,7 +17,9 @@ pub enum ResidualKind {
 /// A model with the parameters that fit one run best.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
+    /// Kind of the fitted run, which determines the response.
     pub kind: Kind,
+    /// Effect ids in the order of the model, including effects that the run cannot show.
     pub effects: Vec<String>,
     /// Definitions of the user effects that the fit contains.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -30,10 +32,13 @@ pub struct Fit {
     /// nuisance terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects_rms: Option<f64>,
+    /// Unit of the response and of every RMS: `Nm` or `rad`, for a sliding axis `N` or `m`.
     pub unit: String,
+    /// Data that the residual and all RMS figures refer to.
     pub residual: ResidualKind,
     /// ‖residual‖ / ‖measured‖.
     pub relative_error: f64,
+    /// Coefficients and nonlinear parameters, in the order of `effects`.
     pub parameters: Vec<Parameter>,
     /// Pairs of parameters with a trade-off.
     pub trade_offs: Vec<TradeOff>,
@@ -42,6 +47,7 @@ pub struct Fit {
     pub condition: f64,
     /// Notes for the user, in plain sentences.
     pub notes: Vec<String>,
+    /// How the run was preprocessed.
     pub preparation: Preparation,
     /// The parameters in the structure of the effects, for predictions.
     pub terms: Vec<Term>,
@@ -57,13 +63,18 @@ pub struct Fit {
 /// One number of the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
+    /// Id of the effect that the parameter belongs to.
     pub effect: String,
+    /// Name within the effect: `tau_c`.
     pub name: String,
+    /// Estimate in `unit`; 0 if the run cannot show the effect.
     pub value: f64,
+    /// Unit of value and interval, `1` if dimensionless.
     pub unit: String,
     /// 95 % interval over segments or repeats (delete-group jackknife, t with G − 1 degrees of freedom).
     #[serde(deserialize_with = "open_interval")]
     pub ci95: [f64; 2],
+    /// Whether the run determines the parameter, and its value is possible.
     pub state: ParameterState,
     /// The state in words, if it is not `ok`. In a diagnosis also the value with an effect that the run does not
     /// exclude.
@@ -71,9 +82,11 @@ pub struct Parameter {
     pub note: Option<String>,
 }
 
+/// How well a run determines a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ParameterState {
+    /// The run determines the value, and the value is physically possible.
     Ok,
     /// The estimate is at a bound of the physically plausible range.
     AtBound,
@@ -98,32 +111,38 @@ fn open_end<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
 pub struct TradeOff {
     /// `effect.parameter`.
     pub first: String,
+    /// The other parameter, as `effect.parameter`.
     pub second: String,
+    /// Correlation of both estimates, −1 to 1; reported if its absolute value exceeds 0.95.
     pub correlation: f64,
 }
 
 /// Preprocessing of the run for the fit. A run is preprocessed in the same way when the fit is evaluated on it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Preparation {
+    /// The data that the fit uses.
     pub residual: ResidualKind,
+    /// Sample rate of the recorded run, 1 / median time step [Hz].
     pub sample_rate_hz: f64,
     /// `None` without a filter.
     pub cutoff_hz: Option<f64>,
     /// Corrected delay of the measured velocity against the position. `None` without a correction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity_lag_s: Option<f64>,
+    /// Every n-th filtered sample is used; 1 without decimation.
     pub decimation: usize,
     /// The presliding direction of motion. `None` if the direction is the sign of the velocity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bristles: Option<Bristles>,
     /// Length of a chunk. In a long run in steps, a row is the mean of several neighbouring chunks.
     pub chunk_s: Option<f64>,
+    /// Samples of the recorded run.
     pub samples: usize,
     /// Rows of the fit: chunks or decimated samples.
     pub rows: usize,
     /// Independent blocks for validation, intervals and tests.
     pub blocks: usize,
-    /// Source of the segments: `column` or `found`.
+    /// Source of the segments: `column`, `found` or `operating points`.
     pub segments_from: String,
     /// Source of the repeats: `column`, `found` or `none`.
     pub repeats_from: String,
@@ -161,16 +180,19 @@ impl Bristles {
 pub struct FormErrorTerm {
     /// `bristle`, `jerk`, `snap` or `load_rate`, or an effect, for another form of it.
     pub name: String,
+    /// Name of the form if the term is an effect, otherwise empty.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub form: String,
     /// Nonlinear parameters for another form, otherwise the place of the column.
     pub shape: Vec<f64>,
+    /// Coefficients of the columns.
     pub linear: Vec<f64>,
 }
 
 /// One effect of the model, as numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Term {
+    /// Id of the effect.
     pub effect: String,
     /// The best form of the effect.
     pub form: String,
@@ -186,6 +208,7 @@ pub struct Term {
 /// Range of validity of a fit, for its use without the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scope {
+    /// Whether the joint rotates or slides, which determines the units.
     pub motion: Motion,
     /// Factor from the load in model quantities to the link torque: the gear ratio for friction runs, otherwise 1.
     pub load_scale: f64,
@@ -213,10 +236,13 @@ pub struct Scope {
 /// The mean curve of a hysteresis effect over its signal, fitted to the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeanCurve {
+    /// Id of the hysteresis effect.
     pub effect: String,
     /// Formula name of the signal.
     pub signal: String,
+    /// Values of the signal at the supporting points, ascending.
     pub at: Vec<f64>,
+    /// Mean contribution of the effect at these points, in the unit of the fit; as many as `at`.
     pub mean: Vec<f64>,
     /// RMS difference between the effect and the curve.
     pub off_rms: f64,
@@ -225,15 +251,22 @@ pub struct MeanCurve {
 /// A constant of the set-up, by its name in the meta file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GivenConstant {
+    /// Name in the meta file, with its unit: `torque_constant_nm_per_a`.
     pub name: String,
+    /// Value in the unit of the name.
     pub value: f64,
 }
 
+/// Smallest and largest value of a signal at the points of a fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SignalRange {
+    /// Name of the signal in formulas.
     pub name: String,
+    /// Unit of the range and the noise.
     pub unit: String,
+    /// Smallest value.
     pub min: f64,
+    /// Largest value.
     pub max: f64,
     /// RMS of the noise that the fit removed from the signal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -243,15 +276,20 @@ pub struct SignalRange {
 /// A fit on a run that was not used for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
+    /// RMS of the residual on the evaluated run, in `unit`.
     pub rms: f64,
     /// RMS error of the effects alone. `None` for a fit without nuisance terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects_rms: Option<f64>,
+    /// Unit of both RMS figures.
     pub unit: String,
+    /// Data that the residual refers to, as in the fit.
     pub residual: ResidualKind,
     /// ‖residual‖ / ‖measured‖.
     pub relative_error: f64,
+    /// Rows that were predicted: chunks or decimated samples.
     pub rows: usize,
+    /// Samples of the evaluated run.
     pub samples: usize,
     /// Share of the samples at steady state, if only these are judged.
     pub settled_share: Option<f64>,

@@ -13,15 +13,19 @@ const MOST_PARAMETERS: usize = 8;
 /// Largest number of tested integers, including all combinations of several integer parameters.
 const MOST_WHOLE: f64 = 512.0;
 
+/// A user effect as written, not yet checked; `OwnEffect::try_from` checks it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
     /// Lower case letters, digits and underscores; not an id of the library.
     pub id: String,
+    /// Kind of run whose response the formula is a part of.
     pub kind: Kind,
     /// `response = formula` over signals and parameters; the right-hand side alone is sufficient.
     pub formula: String,
+    /// Parameters of the formula, at most eight; each must occur in it.
     pub parameters: Vec<OwnParameter>,
+    /// Name for users; may be empty.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub title: String,
     /// One sentence for users.
@@ -33,11 +37,15 @@ pub struct Definition {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OwnParameter {
+    /// Name in the formula: a letter, then letters, digits and underscores; not a signal, constant or function.
     pub name: String,
+    /// Unit in results, `1` if not given; contradictions with the formula are warnings.
     #[serde(default = "one")]
     pub unit: String,
+    /// Smallest possible value. `None`: unbounded, for a nonlinear parameter a bound that follows from the data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min: Option<f64>,
+    /// Largest possible value. `None`: as for `min`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
     /// Range of the starting points, inside the bounds.

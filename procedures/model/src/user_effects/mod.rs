@@ -52,18 +52,22 @@ impl OwnEffect {
         inline::read(kind, text)
     }
 
+    /// Id, unique within the library and the model.
     pub fn id(&self) -> &str {
         &self.definition.id
     }
 
+    /// Kind of run whose response the formula is a part of.
     pub fn kind(&self) -> Kind {
         self.definition.kind
     }
 
+    /// The definition with the complete formula, including its left-hand side.
     pub fn definition(&self) -> &Definition {
         &self.definition
     }
 
+    /// The parsed formula.
     pub fn formula(&self) -> &Formula {
         &self.formula
     }
