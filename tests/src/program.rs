@@ -15,9 +15,14 @@ static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
     }
     let here = std::env::current_exe().expect("the test binary has a path");
     let folder = here.parent().expect("target/PROFILE/deps, or target/PROFILE");
-    let profile = if folder.ends_with("deps") { folder.parent().expect("target/PROFILE") } else { folder };
+    let is_test = folder.ends_with("deps");
+    let profile = if is_test { folder.parent().expect("target/PROFILE") } else { folder };
     let mut build = Command::new(env!("CARGO"));
     build.args(["build", "--quiet", "--workspace", "--bin", "jointbench"]).current_dir(root());
+    if is_test {
+        // With a test among the targets the libraries have the same features as in `cargo test`, which has built them.
+        build.args(["--test", "suite"]);
+    }
     build.env("CARGO_TARGET_DIR", profile.parent().expect("target"));
     if profile.ends_with("release") {
         build.arg("--release");

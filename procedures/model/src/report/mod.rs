@@ -8,8 +8,8 @@ pub(crate) mod residuals;
 
 pub use crate::report::comparison::{Comparison, ParameterPair, Wider};
 pub use crate::report::diagnosis::{
-    Diagnosis, Discovery, Evidence, Experiment, Imitated, Invisible, LeftOut, NoiseFloor, Silent, Step, Suggestion,
-    UndecidedReason, Verdict,
+    Diagnosis, Discovery, Evidence, Experiment, Imitated, Invisible, LeftOut, NoiseFloor, RemovalReason, Silent, Step,
+    Suggestion, UndecidedReason, Verdict,
 };
 pub use crate::report::fit::{
     Bristles, Evaluation, Fit, FormErrorTerm, GivenConstant, MeanCurve, Parameter, ParameterState, Preparation,
