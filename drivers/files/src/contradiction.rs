@@ -98,15 +98,17 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
     Some(Note::with(said, format!("--unwrap {name}{period}")))
 }
 
-/// Degrees in a turn, and the relative tolerance of a range that is a whole turn.
+/// Degrees in a turn, and the tolerance at its ends.
 const DEGREES: f64 = 360.0;
-const SAME_TURN: f64 = 0.01;
+const END: f64 = 2.0;
 
-/// 360 rad are no whole number of turns: a range of 360 is one turn in degrees.
+/// From 0 to 360, or from -180 to 180: one turn in degrees. A motor behind a gear may turn by as many radians, but hardly
+/// between these ends.
 fn in_degrees(run: &RunTable, name: &str) -> Option<Note> {
     let values = run.column(name)?;
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-    (((high - low) / DEGREES - 1.0).abs() < SAME_TURN).then(|| {
+    let is_turn = |from: f64| (low - from).abs() < END && (high - from - DEGREES).abs() < END;
+    [0.0, -DEGREES / 2.0].into_iter().any(is_turn).then(|| {
         let said = format!("{name} ranges from {low:.1} to {high:.1} rad: perhaps it is in degrees");
         Note::with(said, format!("--unit {name}=deg"))
     })
@@ -243,7 +245,9 @@ mod tests {
             one.contains("ranges from 0.0 to 360.0 rad") && one.ends_with("--unit motor_position_rad=deg)"),
             "{one}"
         );
-        assert_eq!(told(&|x| 17.0 * x).filter(|said| said.contains("degrees")), None);
+        for angle in [&|x| 17.0 * x, &|x| 28.0 + 9.0 * x] as [&dyn Fn(f64) -> f64; 2] {
+            assert_eq!(told(angle).filter(|said| said.contains("degrees")), None);
+        }
     }
 
     #[test]
