@@ -100,14 +100,14 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
 
 /// Degrees in a turn, and the tolerance at its ends.
 const DEGREES: f64 = 360.0;
-const END: f64 = 2.0;
+const END_TOLERANCE: f64 = 2.0;
 
 /// From 0 to 360, or from -180 to 180: one turn in degrees. A motor behind a gear may turn by as many radians, but hardly
 /// between these ends.
 fn in_degrees(run: &RunTable, name: &str) -> Option<Note> {
     let values = run.column(name)?;
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-    let is_turn = |from: f64| (low - from).abs() < END && (high - from - DEGREES).abs() < END;
+    let is_turn = |from: f64| (low - from).abs() < END_TOLERANCE && (high - from - DEGREES).abs() < END_TOLERANCE;
     [0.0, -DEGREES / 2.0].into_iter().any(is_turn).then(|| {
         let said = format!("{name} ranges from {low:.1} to {high:.1} rad: perhaps it is in degrees");
         Note::with(said, format!("--unit {name}=deg"))
@@ -237,16 +237,16 @@ mod tests {
 
     #[test]
     fn an_angle_over_360_is_in_degrees() {
-        let told = |angle: &dyn Fn(f64) -> f64| proposals(&run(1.0, angle)).first().map(Note::to_string);
-        let turns = told(&|x| x.to_degrees().rem_euclid(360.0)).unwrap();
+        let proposal = |angle: &dyn Fn(f64) -> f64| proposals(&run(1.0, angle)).first().map(Note::to_string);
+        let turns = proposal(&|x| x.to_degrees().rem_euclid(360.0)).unwrap();
         assert!(turns.ends_with("(--unit motor_position_rad=deg --unwrap motor_position_rad)"), "{turns}");
-        let one = told(&|x| 180.0 + 9.0 * x).unwrap();
+        let one = proposal(&|x| 180.0 + 9.0 * x).unwrap();
         assert!(
             one.contains("ranges from 0.0 to 360.0 rad") && one.ends_with("--unit motor_position_rad=deg)"),
             "{one}"
         );
         for angle in [&|x| 17.0 * x, &|x| 28.0 + 9.0 * x] as [&dyn Fn(f64) -> f64; 2] {
-            assert_eq!(told(angle).filter(|said| said.contains("degrees")), None);
+            assert_eq!(proposal(angle).filter(|said| said.contains("degrees")), None);
         }
     }
 

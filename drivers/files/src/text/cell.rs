@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn a_number_tells_its_decimal_sign_only_where_it_can() {
-        for (cell, told) in [
+        for (cell, expected) in [
             ("1.5", Some(Decimal::Point)),
             ("0.005", Some(Decimal::Point)),
             ("1.234.5", None),
@@ -237,7 +237,7 @@ mod tests {
             ("12", None),
             ("2.5e3", Some(Decimal::Point)),
         ] {
-            assert_eq!(decimal_sign(cell.as_bytes()), told, "{cell}");
+            assert_eq!(decimal_sign(cell.as_bytes()), expected, "{cell}");
         }
     }
 

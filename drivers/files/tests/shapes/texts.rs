@@ -264,15 +264,12 @@ fn fortran_and_typesetters_write_numbers_too() {
 /// Without a kind each column may be needed: one empty cell is a question, many are a reason to omit the column.
 #[test]
 fn a_conversion_keeps_a_column_with_few_gaps() {
-    let convert = |text: &str, leave_empty_rows: bool| {
-        let choices = Choices { leave_empty_rows, ..Choices::default() };
-        understand_bytes("run.csv", text.as_bytes(), &choices.options().unwrap())
-    };
+    let convert = |text: &str| understand_bytes("run.csv", text.as_bytes(), &ReadOptions::default());
     let text = "time_s,force,remark\n0.1,1,\n0.2,2,\n0.3,,4\n0.4,4,\n0.5,5,\n";
-    let said = convert(text, false).unwrap_err().to_string();
+    let said = convert(text).unwrap_err().to_string();
     assert!(said.contains("line 4, column force") && said.contains("--leave-empty-rows"), "{said}");
     let sparse = text.replace(",,4", ",3,4");
-    let table = convert(&sparse, false).unwrap();
+    let table = convert(&sparse).unwrap();
     assert_eq!(table.trace.column("force").unwrap(), [1.0, 2.0, 3.0, 4.0, 5.0]);
     assert!(table.trace.column("remark").is_none() && table.left == ["remark"], "{:?}", table.left);
 }
