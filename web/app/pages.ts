@@ -1,14 +1,14 @@
 /** All pages except the first one: their scripts are loaded when they are opened. */
-import { later } from './ui/later.svelte';
+import { later } from './ui/lazy.svelte';
 
 export const pages = {
-	live: later(() => import('./run/Live.svelte')),
+	live: later(() => import('./run/LivePage.svelte')),
 	run: later(() => import('./run/RunPage.svelte')),
 	runs: later(() => import('./runs/Runs.svelte')),
 	workbench: later(() => import('./workbench/Workbench.svelte')),
-	pick: later(() => import('./workbench/Pick.svelte')),
+	pick: later(() => import('./workbench/RunPicker.svelte')),
 	alignment: later(() => import('./result/Alignment.svelte')),
-	log: later(() => import('./settings/Log.svelte')),
+	log: later(() => import('./settings/LogPage.svelte')),
 	settings: later(() => import('./settings/Settings.svelte')),
 };
 

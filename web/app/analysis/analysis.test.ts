@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
-import { choicesOf, derivedOf, readDerived, readOver, writeDerived } from './address';
-import { pairsOf } from './pairs';
+import { choicesOf, derivedOf, readDerived, readOver, writeDerived } from './derivedChannels';
+import { pairsOf } from './xyPoints';
 
 it('takes title and unit from in front of a formula', () => {
 	expect(derivedOf('drive power [W] = a * b')).toEqual({ formula: 'a * b', title: 'drive power', unit: 'W' });

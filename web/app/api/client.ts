@@ -1,4 +1,4 @@
-import { ask } from './ask';
+import { ask } from './request';
 import type { EffectDefinition, NewAutopilot, NewModel } from './types';
 
 export const BASE = '/api/v1';

@@ -1,4 +1,4 @@
-import { request } from './ask';
+import { request } from './request';
 import { BASE } from './client';
 import type { ImportPreview, Run } from './types';
 

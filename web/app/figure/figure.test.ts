@@ -1,8 +1,8 @@
 import { describe, expect, it } from 'vitest';
 import { cartesian } from './cartesian';
 import { type Figure, type Series, inUnits, magnification, magnified, reachOf, styles, tableOf } from './figure';
-import { glyphs, line, ribbon } from './ink';
-import { flow } from './legend';
+import { glyphs, line, ribbon } from './paths';
+import { flow } from './legendLayout';
 import { polar } from './polar';
 
 const series = (label: string, mark: Series['mark'], x: number[], y: number[], band?: number[][]): Series => ({ label, mark, x, y, band });

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import type { ImportPreview } from '../api/types';
-import { isWhole, optionInWords, parseOption, recall, remember, timingOf, withOption, withTiming, without } from './choices';
+import { isWhole, optionInWords, parseOption, recall, remember, timingOf, withOption, withTiming, without } from './importOptions';
 import { instructions, unitsOf } from './columns';
 import { unzip } from './unpack';
 

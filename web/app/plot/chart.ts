@@ -3,10 +3,10 @@ import { spanOf } from '../figure/figure';
 import { BARE, type Backdrop, paintBackdrop } from './backdrop';
 import { colour } from './colour';
 import { type Asked, type View, gestures } from './gestures';
-import { dashes, points } from './marks';
-import { type Cursors, type Moved, rulers } from './measure';
+import { dashes, points } from './markPaths';
+import { type Cursors, type Moved, rulers } from './cursors';
 import { powerText, tickText } from './ticks';
-import { trace } from './trace';
+import { trace } from './linePaths';
 
 /** `line` joins the points, `chord` only the first and the last; the others mark each point separately. */
 export type Mark = 'line' | 'chord' | 'dot' | 'ring' | 'dash';

@@ -1,4 +1,4 @@
-import { levelsOf } from './levels';
+import { levelsOf } from './setPoints';
 
 /** Bin edges of an axis. */
 export interface Bins {

@@ -1,5 +1,5 @@
 import { binOf } from './bins';
-import { Sums, type Tally } from './tally';
+import { Sums, type Tally } from './blockMeans';
 
 export interface Point extends Tally {
 	from: number;

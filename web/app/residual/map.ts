@@ -1,5 +1,5 @@
 import { type Bins, binOf } from './bins';
-import { Sums, type Tally } from './tally';
+import { Sums, type Tally } from './blockMeans';
 
 export interface ResidualMap {
 	x: Bins;

@@ -1,15 +1,15 @@
 import { describe, expect, it } from 'vitest';
-import { agreeing } from './agreeing';
+import { agreeing } from './improvedRepeats';
 import { binOf, binsFor } from './bins';
 import { curve, explainedShare } from './curve';
 import { residualMap } from './map';
-import { reach } from './line';
-import { neverVisited } from './never';
-import { middle, place } from './place';
+import { reach } from './meanCurves';
+import { neverVisited } from './emptyCells';
+import { middle, place } from './axisScale';
 import { inOneTurn, withMore } from './points';
-import { half, quantile, score, Sums } from './tally';
+import { half, quantile, score, Sums } from './blockMeans';
 import { wholeBins } from './bins';
-import { atDepth, depth, reachOfMap, readShading, toldOf, writeShading } from './shade';
+import { atDepth, depth, reachOfMap, readShading, toldOf, writeShading } from './mapColour';
 
 /** Reproducible noise in −1…1. */
 function noise(seed = 1): () => number {

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
-import { afterHand, readLook, readOffs, readOwns, viewOf, writeLook, writeOffs, writeOwns } from './follow';
-import { groupsOf } from './groups';
-import { meansOf } from './means';
+import { afterHand, readLook, readOffs, readOwns, viewOf, writeLook, writeOffs, writeOwns } from './plotRange';
+import { groupsOf } from './channelGroups';
+import { meansOf } from './shortMeans';
 import { stepOn } from './progress';
 
 describe('following the live end', () => {

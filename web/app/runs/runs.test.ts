@@ -1,9 +1,9 @@
 import { expect, it } from 'vitest';
 import type { Samples } from '../api/types';
 import { alignCourses, chosenChannels, courseOf, factTable, meanRow, momentOf, sharedMoments } from './align';
-import { completions } from './complete';
-import { against, differ } from './differ';
-import { readMarked, toggleMarked, withBase } from './marked';
+import { completions } from './searchCompletions';
+import { against, differ } from './differences';
+import { readMarked, toggleMarked, withBase } from './comparedRuns';
 
 const samples = {
 	time_s: [0, 1, 2, 3],

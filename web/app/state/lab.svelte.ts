@@ -1,12 +1,12 @@
 import { api } from '../api/client';
 import { connectLive } from '../api/live';
-import { asRefusal } from '../api/problem';
+import { asRefusal } from '../api/apiError';
 import type { Bench, Channel, LiveMessage, Progress, RunEvent, RunState } from '../api/types';
 import type { Frame } from '../api/frame';
-import { chase } from '../plot/chase';
-import { Tape } from '../plot/tape';
+import { smoothFollow } from '../plot/smoothFollow';
+import { Tape } from '../plot/sampleBuffer';
 import { renewed } from './benches';
-import { entry } from './entry.svelte';
+import { entry } from './tokenRequest.svelte';
 import { role } from './role.svelte';
 
 /** After this time without a message the page sends a request. */
@@ -186,7 +186,7 @@ class LabState {
 	private readonly draw = (now_ms: number): void => {
 		const newest_s = this.tape?.last_s ?? null;
 		const passed_ms = calm.matches ? Infinity : Math.max(0, now_ms - this.drawn_ms);
-		this.shown_s = newest_s === null ? null : chase(this.shown_s, newest_s, passed_ms);
+		this.shown_s = newest_s === null ? null : smoothFollow(this.shown_s, newest_s, passed_ms);
 		this.drawn_ms = now_ms;
 		if (this.fresh) this.frames += 1;
 		this.fresh = false;

@@ -1,5 +1,5 @@
 import { untrack } from 'svelte';
-import { type Refusal, asRefusal } from '../api/problem';
+import { type Refusal, asRefusal } from '../api/apiError';
 
 export interface Resource<T> {
 	readonly data: T | undefined;

@@ -1,6 +1,6 @@
 import type { Model, Suggestion, Worth } from '../api/types';
 import { words } from '../format/label';
-import { sameData, stepName } from './tree';
+import { sameData, stepName } from './versionTree';
 
 export interface Bar {
 	key: string;

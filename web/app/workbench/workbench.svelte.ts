@@ -1,21 +1,21 @@
 import { untrack } from 'svelte';
 import { api } from '../api/client';
-import { type Refusal, asRefusal } from '../api/problem';
+import { type Refusal, asRefusal } from '../api/apiError';
 import type { Exclusion, Model, Run } from '../api/types';
 import { change, quantity } from '../format/number';
 import { words } from '../format/label';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
-import { readMarked } from '../runs/marked';
+import { readMarked } from '../runs/comparedRuns';
 import { role } from '../state/role.svelte';
 import { router } from '../state/router.svelte';
 import { reveal } from '../ui/reveal';
 import { isFinal } from '../ui/states';
 import { type Side, inOneTurn, withMore } from '../residual/points';
-import { selected } from '../residual/selected';
-import { usualAxes } from './ranked';
+import { selected } from '../residual/regionSamples';
+import { usualAxes } from './rankedAxes';
 import { readRegion } from './region';
-import { WORTH, childWith, gain, isAside, sameData, undecided, worded } from './tree';
+import { WORTH, childWith, gain, isAside, sameData, undecided, worded } from './versionTree';
 
 /** The model of one run in the workbench. Call during component initialization. */
 export function openWorkbench(id: number) {

@@ -1,13 +1,13 @@
 import { describe, expect, it } from 'vitest';
 import type { Model, Parameter, ResidualSet, Suggestion } from '../api/types';
-import { forest } from './forest';
+import { forest } from './parameterRows';
 import { overlay } from './overlay';
-import { rankAxes } from './ranked';
-import { readView, writeView } from './lens';
+import { rankAxes } from './rankedAxes';
+import { readView, writeView } from './zoom';
 import { readRegion, strength, writeRegion, writeStretch } from './region';
-import { sharesOf } from '../residual/line';
-import { selected } from '../residual/selected';
-import { branches, chain, childWith, gain, stepName, undecided } from './tree';
+import { sharesOf } from '../residual/meanCurves';
+import { selected } from '../residual/regionSamples';
+import { branches, chain, childWith, gain, stepName, undecided } from './versionTree';
 import { barsOf, lossesOf, markOf, topOf } from './waterfall';
 
 const version = (id: number, parent: number | null, effects: string[], held: number, added: string[] = []): Model =>

@@ -1,0 +1,41 @@
+import type { Bins } from '../residual/bins';
+import type { ResidualMap } from '../residual/map';
+import { type Place, middle, place } from '../residual/axisScale';
+
+export const MARGIN = { left: 58, right: 6, top: 6, bottom: 38 };
+export const PALETTE = ['--map-lowest', '--map-low', '--map-mid', '--map-high', '--map-highest'];
+
+export function axesOf(map: ResidualMap, width: number, height: number): { x: Place; y: Place } {
+	return {
+		x: place(map.x, MARGIN.left, width - MARGIN.right, map.x.levels ? 14 : 8),
+		y: place(map.y, height - MARGIN.bottom, MARGIN.top, map.y.levels ? 9 : 5),
+	};
+}
+
+export const where = (bins: Bins, scale: Place, tick: number): number => (bins.levels ? middle(bins, scale, bins.levels.indexOf(tick)) : scale.at(tick));
+
+/** Both ends in order, with a visible minimum distance. */
+export function widened([a = 0, b = 0]: number[]): [number, number] {
+	const [low, high] = [Math.min(a, b), Math.max(a, b)];
+	const lack = Math.max(0, 8 - (high - low)) / 2;
+	return [low - lack, high + lack];
+}
+
+interface Box {
+	x: number;
+	y: number;
+	width: number;
+	height: number;
+}
+
+export const boxed = ({ x, y, width, height }: Box): string => `M${x} ${y}h${width}v${height}h${-width}Z`;
+
+/** Hatching of a cell with too few points. */
+export function hatch({ x, y, width, height }: Box): string {
+	let strokes = '';
+	for (let from = Math.floor((x - height) / 6) * 6; from < x + width; from += 6) {
+		const [left, right] = [Math.max(from, x), Math.min(from + height, x + width)];
+		if (right > left) strokes += `M${left} ${y + height - left + from}L${right} ${y + height - right + from}`;
+	}
+	return strokes;
+}
