@@ -1,7 +1,7 @@
 import type { Problem } from './types';
 
 /** The error that a page shows for a failed request: the daemon's problem document, or the reason why there is none. */
-export class Refusal extends Error {
+export class ApiError extends Error {
 	readonly status: number;
 	readonly title: string;
 	readonly line: number | null;
@@ -21,10 +21,10 @@ export class Refusal extends Error {
 	}
 }
 
-export function asRefusal(error: unknown): Refusal {
-	if (error instanceof Refusal) return error;
+export function toApiError(error: unknown): ApiError {
+	if (error instanceof ApiError) return error;
 	if (error instanceof TypeError) {
-		return new Refusal({ title: 'No contact', detail: 'The daemon does not answer. Is `jointbench serve` still running?' });
+		return new ApiError({ title: 'No contact', detail: 'The daemon does not answer. Is `jointbench serve` still running?' });
 	}
-	return new Refusal({ title: 'Not understood', detail: error instanceof Error ? error.message : String(error), status: 500 });
+	return new ApiError({ title: 'Not understood', detail: error instanceof Error ? error.message : String(error), status: 500 });
 }

@@ -1,6 +1,6 @@
 import type { paths } from '../../gen/schema';
-import { Refusal, asRefusal } from './apiError';
-import { entry } from '../state/tokenRequest.svelte';
+import { ApiError, toApiError } from './apiError';
+import { tokenRequest } from '../state/tokenRequest.svelte';
 import { role } from '../state/role.svelte';
 import { authorization } from './token';
 
@@ -18,7 +18,7 @@ interface Loose {
 }
 
 /** One documented operation of the REST interface, with the types of the API document. */
-export async function ask<P extends keyof paths, M extends Method>(method: M, address: P, given: Given<Operation<P, M>>, signal?: AbortSignal): Promise<Answer<Operation<P, M>>> {
+export async function callApi<P extends keyof paths, M extends Method>(method: M, address: P, given: Given<Operation<P, M>>, signal?: AbortSignal): Promise<Answer<Operation<P, M>>> {
 	const { path = {}, query = {}, body } = given as Loose;
 	const search = Object.entries(query).flatMap(([name, value]) => (value == null ? [] : [`${name}=${encodeURIComponent(value)}`]));
 	const href = [address.replace(/\{(\w+)\}/g, (_all, name: string) => encodeURIComponent(path[name]!)), ...(search.length ? [search.join('&')] : [])].join('?');
@@ -29,22 +29,22 @@ export async function ask<P extends keyof paths, M extends Method>(method: M, ad
 
 /** Sends a request with the user's token. Throws a refusal that a page can show. */
 export async function request(href: string, { headers, ...rest }: RequestInit = {}): Promise<Response> {
-	if (role.observing && rest.method && rest.method !== 'GET' && !/\/(stop|preview|check|diagnoses)$/.test(href)) {
-		throw new Refusal({ title: 'Not by an observer', detail: role.barred, status: 403 });
+	if (role.isObserver && rest.method && rest.method !== 'GET' && !/\/(stop|preview|check|diagnoses)$/.test(href)) {
+		throw new ApiError({ title: 'Not by an observer', detail: role.observerReason, status: 403 });
 	}
 	try {
 		const send = () => fetch(href, { ...rest, headers: { ...headers, ...authorization() } });
 		let answer = await send();
 		// The request is repeated with the new token. A delayed stop is useless, so a stop is not repeated.
 		while (answer.status === 401 && rest.method && rest.method !== 'GET' && !href.endsWith('/stop')) {
-			await entry.ask();
+			await tokenRequest.request();
 			answer = await send();
 		}
 		if (answer.ok) return answer;
-		throw new Refusal({ title: answer.statusText || 'Refused', ...problemOf(await answer.text()), status: answer.status });
+		throw new ApiError({ title: answer.statusText || 'Refused', ...problemOf(await answer.text()), status: answer.status });
 	} catch (failure) {
 		if (failure instanceof DOMException && failure.name === 'AbortError') throw failure;
-		throw asRefusal(failure);
+		throw toApiError(failure);
 	}
 }
 

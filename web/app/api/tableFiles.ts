@@ -3,7 +3,7 @@ import { request } from './request';
 import type { Table } from './types';
 
 /** Menu items that save a displayed table. The daemon writes the files, because it has a writer for both formats. */
-export function tableItems(name: string, shown: () => Table | Promise<Table>, what = '') {
+export function tableFileItems(name: string, shown: () => Table | Promise<Table>, what = '') {
 	const take = async (format: string) => {
 		const asked = { method: 'POST', body: JSON.stringify(await shown()), headers: { 'content-type': 'application/json' } };
 		save(await (await request(`/api/v1/tables?format=${format}`, asked)).blob(), `${name}.${format}`);

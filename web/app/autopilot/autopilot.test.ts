@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { Autopilot, AutopilotStep } from '../api/types';
-import { asked, fall, home, running, told } from './autopilot';
+import { requestedDiagnosis, errorReduction, workbenchRun, running, displayedSteps } from './autopilot';
 
 const step = (action: AutopilotStep['action'], more: Partial<AutopilotStep> = {}): AutopilotStep => ({ sequence: 1, at: '', action, text: action, ...more });
 const why = { procedure: 'strokes', parameters: {}, why: 'to see the load' };
@@ -13,13 +13,13 @@ it('knows the run that is on', () => {
 });
 
 it('finds the models of an experiment under the run that asked for it, not under its own', () => {
-	expect([asked(flight({ diagnosis: 7 }, [])), home(flight({ diagnosis: 7 }, []))]).toEqual([7, null]);
-	expect([asked(flight({}, [])), home(flight({}, []))]).toEqual([null, 4]);
+	expect([requestedDiagnosis(flight({ diagnosis: 7 }, [])), workbenchRun(flight({ diagnosis: 7 }, []))]).toEqual([7, null]);
+	expect([requestedDiagnosis(flight({}, [])), workbenchRun(flight({}, []))]).toEqual([null, 4]);
 });
 
 it('tells start and end of a run once, with its reason', () => {
 	const steps = [step('measure', { run: 4, experiment: why }), step('measured', { run: 4 }), step('fit'), step('measure', { run: 5 })];
-	expect(told(steps).map((one) => [one.action, one.experiment?.why])).toEqual([
+	expect(displayedSteps(steps).map((one) => [one.action, one.experiment?.why])).toEqual([
 		['measured', 'to see the load'],
 		['fit', undefined],
 		['measure', undefined],
@@ -27,6 +27,6 @@ it('tells start and end of a run once, with its reason', () => {
 });
 
 it('compares errors only on the same data', () => {
-	expect(fall(step('add', { before_rms: 4, after_rms: 1 }))).toBe(0.75);
-	expect(fall(step('fit', { before_rms: 4, after_rms: 1 }))).toBeNull();
+	expect(errorReduction(step('add', { before_rms: 4, after_rms: 1 }))).toBe(0.75);
+	expect(errorReduction(step('fit', { before_rms: 4, after_rms: 1 }))).toBeNull();
 });

@@ -5,7 +5,7 @@
 
 import { escaped } from '../plot/svg';
 
-interface Ink {
+interface DrawnShape {
 	/** Path data, or empty for a text. */
 	d: string;
 	text: string;
@@ -42,13 +42,13 @@ function dataOf(shape: Element): string {
 }
 
 /** `rgb(…)` combined with a separate opacity. */
-const faded = (colour: string, opacity: string) =>
+const withOpacity = (colour: string, opacity: string) =>
 	colour === 'none' || opacity === '1' ? colour : colour.replace(/^rgb\((.+)\)$/, (_all, parts: string) => `rgba(${parts}, ${opacity})`);
 
 /** From the coordinates of a shape to those of the figure. */
 const within = (host: Element) => new DOMMatrix().translate(-host.getBoundingClientRect().left, -host.getBoundingClientRect().top);
 
-function shapesOf(host: Element): Ink[] {
+function shapesOf(host: Element): DrawnShape[] {
 	return [...host.querySelectorAll<SVGGraphicsElement>(':is(path, line, rect, circle, text):not(clipPath *)')].map((shape) => {
 		const style = getComputedStyle(shape);
 		const isText = shape.tagName === 'text';
@@ -57,8 +57,8 @@ function shapesOf(host: Element): Ink[] {
 			d: dataOf(shape),
 			text: isText ? (shape.textContent ?? '') : '',
 			matrix: isText ? place.translate(Number(shape.getAttribute('x') ?? 0), Number(shape.getAttribute('y') ?? 0)) : place,
-			fill: faded(style.fill, style.fillOpacity),
-			stroke: faded(style.stroke, style.strokeOpacity),
+			fill: withOpacity(style.fill, style.fillOpacity),
+			stroke: withOpacity(style.stroke, style.strokeOpacity),
 			width: Number.parseFloat(style.strokeWidth),
 			dash: style.strokeDasharray === 'none' ? [] : style.strokeDasharray.split(/[ ,]+/).map(Number.parseFloat),
 			clip: shape.closest('[clip-path]') ? dataOf(host.querySelector('clipPath > rect')!) : undefined,
@@ -71,8 +71,8 @@ function shapesOf(host: Element): Ink[] {
 const fontOf = (style: CSSStyleDeclaration) => `${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
 
 /** The texts around the drawings, each at its position. */
-function wordsOf(host: Element): Ink[] {
-	const inks: Ink[] = [];
+function textsOf(host: Element): DrawnShape[] {
+	const shapes: DrawnShape[] = [];
 	const texts = document.createTreeWalker(host, NodeFilter.SHOW_TEXT);
 	const range = document.createRange();
 	for (let node = texts.nextNode(); node; node = texts.nextNode()) {
@@ -83,24 +83,24 @@ function wordsOf(host: Element): Ink[] {
 			range.setStart(node, index);
 			range.setEnd(node, index + text.length);
 			const box = range.getBoundingClientRect();
-			inks.push({ d: '', text, matrix: within(host).translate(box.left, box.bottom - 0.22 * box.height), fill: style.color, stroke: 'none', width: 0, dash: [], font: fontOf(style), anchor: 'left' });
+			shapes.push({ d: '', text, matrix: within(host).translate(box.left, box.bottom - 0.22 * box.height), fill: style.color, stroke: 'none', width: 0, dash: [], font: fontOf(style), anchor: 'left' });
 		}
 	}
-	return inks;
+	return shapes;
 }
 
-interface Sheet {
+interface DrawnFigure {
 	width: number;
 	height: number;
 	paper: string;
-	inks: Ink[];
+	inks: DrawnShape[];
 }
 
 /** The figure with its title above and a margin around it. */
-function sheetOf(host: Element, title: string): Sheet {
+function drawnFigure(host: Element, title: string): DrawnFigure {
 	const root = getComputedStyle(document.documentElement);
-	const inks = [...shapesOf(host), ...wordsOf(host)].map((ink) => ({ ...ink, matrix: new DOMMatrix().translate(MARGIN, TITLE + MARGIN).multiply(ink.matrix) }));
-	const head: Ink = {
+	const inks = [...shapesOf(host), ...textsOf(host)].map((ink) => ({ ...ink, matrix: new DOMMatrix().translate(MARGIN, TITLE + MARGIN).multiply(ink.matrix) }));
+	const head: DrawnShape = {
 		d: '',
 		text: title,
 		matrix: new DOMMatrix().translate(MARGIN, MARGIN + 12),
@@ -120,7 +120,7 @@ function sheetOf(host: Element, title: string): Sheet {
 }
 
 export function svgFile(host: Element, title: string): Blob {
-	const { width, height, paper, inks } = sheetOf(host, title);
+	const { width, height, paper, inks } = drawnFigure(host, title);
 	const anchors: Partial<Record<CanvasTextAlign, string>> = { center: 'middle', right: 'end' };
 	const body = inks.map((ink) => {
 		const common = `transform="${ink.matrix.toString()}" fill="${ink.fill}" stroke="${ink.stroke}" stroke-width="${ink.width}"`;
@@ -132,19 +132,19 @@ export function svgFile(host: Element, title: string): Blob {
 }
 
 /** Twice the resolution of the screen, for slides and papers. */
-const FINE = 2;
+const RESOLUTION = 2;
 
 export async function pngFile(host: Element, title: string): Promise<Blob> {
-	const { width, height, paper, inks } = sheetOf(host, title);
-	const canvas = new OffscreenCanvas(width * FINE, height * FINE);
+	const { width, height, paper, inks } = drawnFigure(host, title);
+	const canvas = new OffscreenCanvas(width * RESOLUTION, height * RESOLUTION);
 	const ctx = canvas.getContext('2d')!;
-	ctx.scale(FINE, FINE);
+	ctx.scale(RESOLUTION, RESOLUTION);
 	ctx.fillStyle = paper;
 	ctx.fillRect(0, 0, width, height);
 	for (const ink of inks) {
 		ctx.restore();
 		ctx.save();
-		ctx.setTransform(new DOMMatrix().scale(FINE).multiply(ink.matrix));
+		ctx.setTransform(new DOMMatrix().scale(RESOLUTION).multiply(ink.matrix));
 		if (ink.clip) ctx.clip(new Path2D(ink.clip));
 		ctx.lineWidth = ink.width;
 		ctx.setLineDash(ink.dash);

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { type Node, pieces, typeset } from './parseFormula';
+import { type Node, splitAtWords, parseFormula } from './parseFormula';
 
 /** Converts the nodes back to one line that marks how the text was parsed. */
 function say(nodes: readonly Node[]): string {
@@ -27,13 +27,13 @@ it.each([
 	['dT/dω', 'dT/dω'],
 	['β₀·sign ω', 'β_{0}·\\sign ω'],
 	['k_m·|−x|', 'k_{m}·|−x|'],
-])('%s', (text, said) => expect(say(typeset(text))).toBe(said));
+])('%s', (text, said) => expect(say(parseFormula(text))).toBe(said));
 
 it('ends on whatever is written', () => {
-	for (const text of ['', '(', '|', ')|(', 'a^', '_', '^^', '|a', 'exp(']) expect(say(typeset(text)).length).toBeLessThan(20);
+	for (const text of ['', '(', '|', ')|(', 'a^', '_', '^^', '|a', 'exp(']) expect(say(parseFormula(text)).length).toBeLessThan(20);
 });
 
 it('may be broken at words and after commas', () => {
-	const said = pieces(typeset('s·τ³, that is k_m falls by s·τ² (Dahl); or a stop, dz')).map((piece) => ('words' in piece ? piece.words : say(piece.nodes)));
+	const said = splitAtWords(parseFormula('s·τ³, that is k_m falls by s·τ² (Dahl); or a stop, dz')).map((piece) => ('words' in piece ? piece.words : say(piece.nodes)));
 	expect(said).toEqual(['s·τ^{3},', 'that is', 'k_{m}', 'falls by', 's·τ^{2}', '(Dahl);', 'or a stop,', 'dz']);
 });

@@ -28,7 +28,7 @@ function tokensOf(text: string): string[] {
 /** Two or more Latin letters, but not `dz`. */
 const isWord = (text: string) => /^[A-Za-z]{2,}$/.test(text) && !/^d[A-Za-z]$/.test(text);
 
-export function typeset(text: string): Node[] {
+export function parseFormula(text: string): Node[] {
 	const tokens = tokensOf(text);
 	let at = 0;
 	const word = (i: number) => isWord(tokens[i] ?? '') && !FUNCTIONS.has(tokens[i]!);
@@ -86,7 +86,7 @@ export function typeset(text: string): Node[] {
 }
 
 /** A piece that stays on one line: words, or a formula up to its comma. */
-export type Piece = { words: string } | { nodes: Node[] };
+export type FormulaPart = { words: string } | { nodes: Node[] };
 
 /** Words, also in brackets. */
 function wordsOf(node: Node): string | null {
@@ -96,8 +96,8 @@ function wordsOf(node: Node): string | null {
 }
 
 /** A formula may be broken at its words, and after a comma or a semicolon. */
-export function pieces(nodes: readonly Node[]): Piece[] {
-	const list: Piece[] = [];
+export function splitAtWords(nodes: readonly Node[]): FormulaPart[] {
+	const list: FormulaPart[] = [];
 	let open: Node[] | null = null;
 	for (const node of nodes) {
 		const words = wordsOf(node);

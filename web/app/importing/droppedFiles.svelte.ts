@@ -5,20 +5,20 @@ import { filesOf } from './unpack';
  * Files that were dropped on any page. Small targets are easy to miss, and a browser would leave the dashboard for a
  * missed file.
  */
-class Dropped {
+class DroppedFiles {
 	files: File[] = $state.raw([]);
 
 	/** Files are dragged over the page. */
 	over = $state(false);
-	private gone: ReturnType<typeof setTimeout> | undefined;
+	private leaveTimer: ReturnType<typeof setTimeout> | undefined;
 
 	hold(event: DragEvent): void {
 		if (!event.dataTransfer?.types.includes('Files')) return;
 		event.preventDefault();
 		// This event repeats while files are dragged, but no event reliably marks the end.
 		this.over = true;
-		clearTimeout(this.gone);
-		this.gone = setTimeout(() => (this.over = false), 300);
+		clearTimeout(this.leaveTimer);
+		this.leaveTimer = setTimeout(() => (this.over = false), 300);
 	}
 
 	drop(event: DragEvent): void {
@@ -44,4 +44,4 @@ class Dropped {
 	}
 }
 
-export const dropped = new Dropped();
+export const droppedFiles = new DroppedFiles();

@@ -1,4 +1,4 @@
-import type { Choices } from '../api/upload';
+import type { ImportOptions } from '../api/upload';
 import type { ImportPreview } from '../api/types';
 import type { Mapping } from './columns';
 
@@ -20,8 +20,8 @@ export function parseOption(text: string): [part: string, value: string][] {
 }
 
 /** Adds an option. It replaces an option for the same part and column. */
-export function withOption(choices: Choices, text: string): Choices {
-	const next = { ...choices };
+export function withOption(options: ImportOptions, text: string): ImportOptions {
+	const next = { ...options };
 	for (const [part, value] of parseOption(text)) {
 		const of = (one: string) => one.slice(0, one.lastIndexOf('='));
 		const others = (next[part] ?? []).filter((one) => !SINGLE.has(part) && one !== value && (!value.includes('=') || of(one) !== of(value)));
@@ -31,33 +31,33 @@ export function withOption(choices: Choices, text: string): Choices {
 }
 
 /** Removes one value of a part. */
-export function without(choices: Choices, part: string, value: string): Choices {
-	const rest = (choices[part] ?? []).filter((one) => one !== value);
-	const { [part]: _gone, ...others } = choices;
+export function withoutOption(options: ImportOptions, part: string, value: string): ImportOptions {
+	const rest = (options[part] ?? []).filter((one) => one !== value);
+	const { [part]: _gone, ...others } = options;
 	return rest.length ? { ...others, [part]: rest } : others;
 }
 
 /** Whether a proposal can be applied unchanged: `--rate HZ` lacks its number, and names are chosen in the table. */
-export const isWhole = (option: string) => parseOption(option).every(([part, value]) => (part !== 'rate' || Number.isFinite(+value)) && part !== 'names' && !value.includes('counts/N'));
+export const isComplete = (option: string) => parseOption(option).every(([part, value]) => (part !== 'rate' || Number.isFinite(+value)) && part !== 'names' && !value.includes('counts/N'));
 
 /** The source of the time of a table. */
-export type Timing = 'column' | 'rate' | 'spread_time' | 'operating_points';
-const TIMINGS = ['rate', 'time_from_rate', 'spread_time', 'operating_points'];
+export type TimeSource = 'column' | 'rate' | 'spread_time' | 'operating_points';
+const TIME_SOURCES = ['rate', 'time_from_rate', 'spread_time', 'operating_points'];
 
-export function timingOf(choices: Choices): Timing {
-	const part = TIMINGS.find((one) => choices[one]);
-	return part === 'time_from_rate' ? 'rate' : ((part as Timing | undefined) ?? 'column');
+export function timeSourceOf(options: ImportOptions): TimeSource {
+	const part = TIME_SOURCES.find((one) => options[one]);
+	return part === 'time_from_rate' ? 'rate' : ((part as TimeSource | undefined) ?? 'column');
 }
 
 /** Selects another source of the time. `rate`: rows per second, which replace the time of the file if it `hasTime`. */
-export function withTiming(choices: Choices, timing: Timing, rate: string, hasTime: boolean): Choices {
-	const others = Object.fromEntries(Object.entries(choices).filter(([part]) => !TIMINGS.includes(part)));
-	if (timing === 'column' || (timing === 'rate' && !rate.trim())) return others;
-	return { ...others, ...(timing === 'rate' ? { [hasTime ? 'time_from_rate' : 'rate']: [rate] } : { [timing]: ['true'] }) };
+export function withTimeSource(options: ImportOptions, source: TimeSource, rate: string, hasTime: boolean): ImportOptions {
+	const others = Object.fromEntries(Object.entries(options).filter(([part]) => !TIME_SOURCES.includes(part)));
+	if (source === 'column' || (source === 'rate' && !rate.trim())) return others;
+	return { ...others, ...(source === 'rate' ? { [hasTime ? 'time_from_rate' : 'rate']: [rate] } : { [source]: ['true'] }) };
 }
 
 /** A choice in words, for buttons and for the list of choices. */
-export function inWords(part: string, value: string): string {
+export function optionValueText(part: string, value: string): string {
 	const [column, what = ''] = value.includes('=') ? [value.slice(0, value.lastIndexOf('=')), value.slice(value.lastIndexOf('=') + 1)] : [value];
 	switch (part) {
 		case 'map':
@@ -91,40 +91,40 @@ export function inWords(part: string, value: string): string {
 }
 
 /** A proposed option in words. */
-export const optionInWords = (option: string) =>
+export const optionText = (option: string) =>
 	parseOption(option)
-		.map(([part, value]) => inWords(part, value))
+		.map(([part, value]) => optionValueText(part, value))
 		.join(', ');
 
 /** Choices for a file that are offered again for the next file with the same columns. */
-export interface Remembered {
+export interface SavedMapping {
 	kind: string;
 	mapping: Mapping;
 	facts: Record<string, string>;
 	left: string[];
-	choices: Choices;
+	choices: ImportOptions;
 }
 
 const KEY = 'jointbench.imports';
 /** Number of stored column sets; the oldest are deleted first. */
-const MOST = 30;
+const MAX_SAVED = 30;
 
 /** Files with the same column names have the same shape. */
 const shapeOf = (preview: ImportPreview) => preview.columns.map(({ name }) => name).join('\n');
 
-function kept(storage: Storage): [shape: string, what: Remembered][] {
+function savedMappings(storage: Storage): [shape: string, what: SavedMapping][] {
 	try {
 		const found: unknown = JSON.parse(storage.getItem(KEY) ?? '[]');
-		return Array.isArray(found) ? (found as [string, Remembered][]) : [];
+		return Array.isArray(found) ? (found as [string, SavedMapping][]) : [];
 	} catch {
 		return [];
 	}
 }
 
-export const recall = (preview: ImportPreview, storage: Storage): Remembered | null => kept(storage).find(([shape]) => shape === shapeOf(preview))?.[1] ?? null;
+export const loadMapping = (preview: ImportPreview, storage: Storage): SavedMapping | null => savedMappings(storage).find(([shape]) => shape === shapeOf(preview))?.[1] ?? null;
 
-export function remember(preview: ImportPreview, what: Remembered, storage: Storage): void {
+export function saveMapping(preview: ImportPreview, what: SavedMapping, storage: Storage): void {
 	const shape = shapeOf(preview);
-	const others = kept(storage).filter(([one]) => one !== shape);
-	storage.setItem(KEY, JSON.stringify([...others, [shape, what]].slice(-MOST)));
+	const others = savedMappings(storage).filter(([one]) => one !== shape);
+	storage.setItem(KEY, JSON.stringify([...others, [shape, what]].slice(-MAX_SAVED)));
 }

@@ -1,14 +1,14 @@
-import { figure } from '../format/number';
+import { formatNumber } from '../format/number';
 import type { ProcedureParameter } from '../api/types';
 
-export interface Parsed {
+export interface ParsedValue {
 	value: number;
 	/** Why the text cannot be sent. */
 	error: string | null;
 }
 
 /** Converts the user's text to the number of the procedure. A decimal comma is accepted. */
-export function parse({ type, min, max }: ProcedureParameter, text: string): Parsed {
+export function parseValue({ type, min, max }: ProcedureParameter, text: string): ParsedValue {
 	const plain = text.trim().replace(',', '.');
 	const value = plain === '' ? Number.NaN : Number(plain);
 	return { value, error: wrong() };
@@ -16,19 +16,19 @@ export function parse({ type, min, max }: ProcedureParameter, text: string): Par
 	function wrong(): string | null {
 		if (!Number.isFinite(value)) return 'a number';
 		if (type === 'integer' && !Number.isInteger(value)) return 'a whole number';
-		if (value < min) return `at least ${figure(min)}`;
-		return value > max ? `at most ${figure(max)}` : null;
+		if (value < min) return `at least ${formatNumber(min)}`;
+		return value > max ? `at most ${formatNumber(max)}` : null;
 	}
 }
 
 /** A value as the text of its field. */
-export function asText(value: unknown): string {
+export function valueText(value: unknown): string {
 	if (value === null || value === undefined) return '';
 	return Array.isArray(value) ? value.join(', ') : String(value);
 }
 
 /** The bench page with a procedure and its settings filled in; it starts nothing. */
-export function planAddress(procedure: string, parameters: Record<string, unknown>): string {
-	const settings = Object.entries(parameters).map(([name, value]) => [`p.${name}`, asText(value)]);
+export function planHref(procedure: string, parameters: Record<string, unknown>): string {
+	const settings = Object.entries(parameters).map(([name, value]) => [`p.${name}`, valueText(value)]);
 	return `/?${new URLSearchParams([['procedure', procedure], ...settings] as [string, string][]).toString()}`;
 }

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { Procedure } from '../api/types';
-import { offers } from './procedureGroups';
+import { procedureGroups } from './procedureGroups';
 
 it('offers first what the bench can make', () => {
 	const offered = (...possible: string[]) => {
@@ -10,7 +10,7 @@ it('offers first what the bench can make', () => {
 			['brake_hysteresis', 'brake'],
 			['encoder_delay', 'encoder'],
 		].map(([id, kind]) => ({ id, kind, refused: possible.includes(id!) ? undefined : 'no such instrument' }) as Procedure);
-		return offers(all).map((one) => [one.title, one.procedures.map(({ id }) => id).join()]);
+		return procedureGroups(all).map((one) => [one.title, one.procedures.map(({ id }) => id).join()]);
 	};
 	expect(offered('friction', 'brake_hysteresis')).toEqual([
 		['friction', 'friction'],

@@ -2,7 +2,7 @@ import type uPlot from 'uplot';
 
 /** Positions of the two measuring cursors along x, in any order. */
 export type Cursors = readonly [a: number, b: number];
-export type Moved = (cursors: Cursors) => void;
+export type OnCursors = (cursors: Cursors) => void;
 
 export function readCursors(text: string | null): Cursors | null {
 	const [a = Number.NaN, b = Number.NaN] = text?.split(':').map(Number) ?? [];
@@ -12,10 +12,10 @@ export function readCursors(text: string | null): Cursors | null {
 export const writeCursors = (cursors: Cursors): string => cursors.map((at) => Number(at.toPrecision(9))).join(':');
 
 /** Initial positions of the cursors: a third of the view from each end. */
-export const within = ([from, to]: readonly [number, number]): Cursors => [from + (to - from) / 3, to - (to - from) / 3];
+export const initialCursors = ([from, to]: readonly [number, number]): Cursors => [from + (to - from) / 3, to - (to - from) / 3];
 
 /** Index of the row nearest to `at`; `null` without rows. */
-export function nearest(x: ArrayLike<number>, at: number): number | null {
+export function nearestRow(x: ArrayLike<number>, at: number): number | null {
 	let best: number | null = null;
 	for (let i = 0; i < x.length; i++) {
 		if (best === null || Math.abs(x[i]! - at) < Math.abs(x[best]! - at)) best = i;
@@ -23,14 +23,14 @@ export function nearest(x: ArrayLike<number>, at: number): number | null {
 	return best;
 }
 
-export interface Rulers {
+export interface CursorLines {
 	put: (cursors: Cursors | null) => void;
 	/** Called after every painting, because the scale may have changed. */
 	place: () => void;
 }
 
 /** Two lines over a plot. They are dragged, or moved by the arrow keys: one pixel per key stroke, ten with Shift. */
-export function rulers(u: uPlot, title: string, moved: Moved, reachable: boolean): Rulers {
+export function cursorLines(u: uPlot, title: string, moved: OnCursors, reachable: boolean): CursorLines {
 	let now: Cursors | null = null;
 	const lines = (['A', 'B'] as const).map((name, which) => {
 		const line = document.createElement('div');

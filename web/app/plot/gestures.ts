@@ -1,18 +1,18 @@
 import type uPlot from 'uplot';
-import { touch } from './touch';
+import { touchGestures } from './touch';
 
 export type View = [from: number, to: number];
 /**
  * The gesture that asked for a view: a live plot continues to follow after a zoom, but not after the other gestures.
  */
-export type Hand = 'zoom' | 'box' | 'pan' | 'all' | 'back';
-export type Asked = (view: View | null, hand: Hand) => void;
+export type Gesture = 'zoom' | 'box' | 'pan' | 'all' | 'back';
+export type OnView = (view: View | null, hand: Gesture) => void;
 
 /**
  * Gestures on a plot: the wheel zooms around the pointer, a drag selects a range, a shift-drag moves, a double click
  * returns. The chart stores no zoom; it only reports the requested view.
  */
-export function gestures(asked: Asked): Pick<uPlot.Options, 'cursor' | 'hooks'> {
+export function gestures(asked: OnView): Pick<uPlot.Options, 'cursor' | 'hooks'> {
 	return {
 		cursor: {
 			drag: { x: true, y: false, setScale: false, dist: 4 },
@@ -36,13 +36,13 @@ export function gestures(asked: Asked): Pick<uPlot.Options, 'cursor' | 'hooks'> 
 					u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
 				},
 			],
-			ready: [(u) => u.over.addEventListener('wheel', (event) => zoom(u, event, asked), { passive: false }), (u) => touch(u, asked), (u) => keyed(u, asked)],
+			ready: [(u) => u.over.addEventListener('wheel', (event) => zoom(u, event, asked), { passive: false }), (u) => touchGestures(u, asked), (u) => keyboardGestures(u, asked)],
 		},
 	};
 }
 
 /** Movement of both ends of the view per key, as fractions of its width. */
-const MOVES: Partial<Record<string, [from: number, to: number, Hand]>> = {
+const MOVES: Partial<Record<string, [from: number, to: number, Gesture]>> = {
 	ArrowLeft: [-0.1, -0.1, 'pan'],
 	ArrowRight: [0.1, 0.1, 'pan'],
 	'+': [0.15, -0.15, 'zoom'],
@@ -50,7 +50,7 @@ const MOVES: Partial<Record<string, [from: number, to: number, Hand]>> = {
 };
 
 /** The same by keyboard; Home shows all. */
-function keyed(u: uPlot, asked: Asked): void {
+function keyboardGestures(u: uPlot, asked: OnView): void {
 	u.root.tabIndex = 0;
 	u.root.addEventListener('keydown', (event) => {
 		const { min, max } = u.scales.x!;
@@ -62,7 +62,7 @@ function keyed(u: uPlot, asked: Asked): void {
 	});
 }
 
-function zoom(u: uPlot, event: WheelEvent, asked: Asked): void {
+function zoom(u: uPlot, event: WheelEvent, asked: OnView): void {
 	event.preventDefault();
 	const { min, max } = u.scales.x!;
 	if (min == null || max == null) return;
@@ -71,7 +71,7 @@ function zoom(u: uPlot, event: WheelEvent, asked: Asked): void {
 	asked([at - (at - min) * factor, at + (max - at) * factor], 'zoom');
 }
 
-function pan(u: uPlot, begin: MouseEvent, asked: Asked): void {
+function pan(u: uPlot, begin: MouseEvent, asked: OnView): void {
 	const { min, max } = u.scales.x!;
 	if (min == null || max == null) return;
 	const each = (max - min) / u.over.clientWidth;

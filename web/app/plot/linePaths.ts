@@ -11,7 +11,7 @@ const STEP = 2;
  * pixel column, one pixel wide: without a graphics card, wide or dashed lines of noise cost ten times as much. A dashed
  * line becomes the filled middle of that range, because dashes along noise are unreadable.
  */
-export function trace(dash: readonly number[] | undefined, gaps: () => readonly (readonly [number, number])[]): uPlot.Series.PathBuilder {
+export function linePaths(dash: readonly number[] | undefined, gaps: () => readonly (readonly [number, number])[]): uPlot.Series.PathBuilder {
 	return (u, index, from, to) => {
 		const sparse = to - from <= SPARSE;
 		const series = u.series[index]!;
@@ -42,7 +42,7 @@ function pieces(x: ArrayLike<number>, from: number, to: number, gaps: readonly (
  * Conversion from data units to canvas pixels. It must be fast: a plot of ten channels needs a million positions per
  * second.
  */
-export interface Places {
+export interface PixelScale {
 	left: number;
 	top: number;
 	/** Smallest displayed x, largest displayed y, and pixels per unit. */
@@ -52,7 +52,7 @@ export interface Places {
 	ky: number;
 }
 
-export function placesOf(u: uPlot): Places {
+export function pixelScale(u: uPlot): PixelScale {
 	const { left, top, width, height } = u.bbox;
 	const [{ min: x0 = 0, max: x1 = 1 }, { min: y0 = 0, max: y1 = 1 }] = [u.scales.x!, u.scales.y!];
 	return { left, top, x0, y1, kx: width / (x1 - x0), ky: height / (y1 - y0) };
@@ -60,7 +60,7 @@ export function placesOf(u: uPlot): Places {
 
 function line(u: uPlot, index: number, from: number, to: number, sparse: boolean, band: Path2D | null, path: Path2D): void {
 	const [x, y] = [u.data[0]!, u.data[index]!];
-	const { left, top, x0, y1, kx, ky } = placesOf(u);
+	const { left, top, x0, y1, kx, ky } = pixelScale(u);
 	let column = Number.NaN;
 	let [low, high] = [0, 0];
 	let joined = false;
@@ -71,7 +71,7 @@ function line(u: uPlot, index: number, from: number, to: number, sparse: boolean
 		else path.moveTo(px, py);
 		joined = true;
 	};
-	const settle = () => {
+	const flushMiddle = () => {
 		if (middles.length) put((begun + ended) / 2, middles.reduce((sum, one) => sum + one, 0) / middles.length);
 		middles = [];
 	};
@@ -80,7 +80,7 @@ function line(u: uPlot, index: number, from: number, to: number, sparse: boolean
 		const [under, over] = [top + (y1 - low) * ky, top + (y1 - high) * ky];
 		if (band) {
 			band.rect(column, over, 1, under - over);
-			if (column - begun >= STEP * devicePixelRatio) settle();
+			if (column - begun >= STEP * devicePixelRatio) flushMiddle();
 			if (middles.push((under + over) / 2) === 1) begun = column;
 			ended = column;
 		} else {
@@ -92,7 +92,7 @@ function line(u: uPlot, index: number, from: number, to: number, sparse: boolean
 		const value = y[i];
 		if (value == null || value !== value) {
 			flush();
-			settle();
+			flushMiddle();
 			column = Number.NaN;
 			joined = false;
 			continue;
@@ -112,5 +112,5 @@ function line(u: uPlot, index: number, from: number, to: number, sparse: boolean
 		}
 	}
 	flush();
-	settle();
+	flushMiddle();
 }

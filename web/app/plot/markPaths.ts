@@ -1,5 +1,5 @@
 import type uPlot from 'uplot';
-import { placesOf } from './linePaths';
+import { pixelScale } from './linePaths';
 
 /** Above this number, points are drawn as squares, one per position, so that the cost depends on the visible area. */
 const MANY = 1500;
@@ -12,7 +12,7 @@ const HALF = 5;
  * the first.
  */
 function each(u: uPlot, index: number, from: number, to: number, cell: readonly [number, number] | null, put: (x: number, y: number, value: number) => void): void {
-	const { left, top, x0, y1, kx, ky } = placesOf(u);
+	const { left, top, x0, y1, kx, ky } = pixelScale(u);
 	const [xs, ys] = [u.data[0]!, u.data[index]!];
 	const { width, height } = u.bbox;
 	// During layout a page may be narrower than the axis.
@@ -34,7 +34,7 @@ function each(u: uPlot, index: number, from: number, to: number, cell: readonly 
 }
 
 /** Each point separately: circles, or squares if there are many. A single point is visible in both cases. */
-export function points(u: uPlot, index: number, from: number, to: number, filled: boolean, aside: number): uPlot.Series.Paths {
+export function pointPaths(u: uPlot, index: number, from: number, to: number, filled: boolean, aside: number): uPlot.Series.Paths {
 	const path = new Path2D();
 	const ratio = devicePixelRatio;
 	if (to - from > MANY) {
@@ -51,10 +51,10 @@ export function points(u: uPlot, index: number, from: number, to: number, filled
 }
 
 /** A short horizontal line at each point for the value of the model, and a box for the scatter of repeats. */
-export function dashes(u: uPlot, index: number, from: number, to: number, spread: number, aside: number): uPlot.Series.Paths {
+export function dashPaths(u: uPlot, index: number, from: number, to: number, spread: number, aside: number): uPlot.Series.Paths {
 	const [path, boxes] = [new Path2D(), new Path2D()];
 	const half = HALF * devicePixelRatio;
-	const { ky } = placesOf(u);
+	const { ky } = pixelScale(u);
 	const cell = to - from > MANY ? ([half, devicePixelRatio] as const) : null;
 	each(u, index, from, to, cell, (x, y) => {
 		path.moveTo(x + aside - half, y);

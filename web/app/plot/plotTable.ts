@@ -2,12 +2,12 @@
 import type { Curve } from './chart';
 import type { View } from './gestures';
 
-export type Cells = (number | null)[];
+export type TableRow = (number | null)[];
 
 /** Rows within the view, x first; `null` for a missing value. */
-export function rowsIn(view: View | null, curves: readonly Curve[], data: readonly ArrayLike<number | null>[]): Cells[] {
+export function visibleRows(view: View | null, curves: readonly Curve[], data: readonly ArrayLike<number | null>[]): TableRow[] {
 	const x = data[0] ?? [];
-	const rows: Cells[] = [];
+	const rows: TableRow[] = [];
 	for (let i = 0; i < x.length; i++) {
 		const at = x[i];
 		if (at == null || (view && (at < view[0] || at > view[1]))) continue;
@@ -16,6 +16,6 @@ export function rowsIn(view: View | null, curves: readonly Curve[], data: readon
 	return rows;
 }
 
-export const headOf = (xTitle: string, curves: readonly Curve[]): string[] => [xTitle, ...curves.map(({ label, unit }) => (unit ? `${label} [${unit}]` : label))];
+export const tableHead = (xTitle: string, curves: readonly Curve[]): string[] => [xTitle, ...curves.map(({ label, unit }) => (unit ? `${label} [${unit}]` : label))];
 
 const finite = (value: number | null | undefined) => (value == null || Number.isNaN(value) ? null : value);

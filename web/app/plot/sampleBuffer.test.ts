@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { Tape } from './sampleBuffer';
+import { SampleBuffer } from './sampleBuffer';
 
 /** `rows` samples at 100 Hz of a channel that counts. */
 function frame(sequence: number, t0_s: number, rows: number, dropped = 0) {
@@ -9,7 +9,7 @@ function frame(sequence: number, t0_s: number, rows: number, dropped = 0) {
 }
 
 it('is one contiguous window over many frames', () => {
-	const tape = new Tape(['time_s', 'x']);
+	const tape = new SampleBuffer(['time_s', 'x']);
 	tape.push(frame(1, 0, 10));
 	tape.push(frame(2, 0.1, 10));
 	expect(tape.gaps).toEqual([]);
@@ -20,7 +20,7 @@ it('is one contiguous window over many frames', () => {
 });
 
 it('keeps a missing stretch as a gap', () => {
-	const tape = new Tape(['time_s', 'x']);
+	const tape = new SampleBuffer(['time_s', 'x']);
 	tape.push(frame(1, 0, 10));
 	tape.push(frame(9, 3, 10, 7));
 	expect(tape.gaps).toHaveLength(1);
@@ -29,7 +29,7 @@ it('keeps a missing stretch as a gap', () => {
 });
 
 it('forgets the oldest, never the newest, and takes nothing twice', () => {
-	const tape = new Tape(['time_s', 'x'], 100);
+	const tape = new SampleBuffer(['time_s', 'x'], 100);
 	for (let i = 0; i < 60; i++) tape.push(frame(i, i * 0.1, 10));
 	tape.push(frame(59, 5.9, 10));
 	expect(tape.rows).toBeLessThanOrEqual(200);

@@ -2,7 +2,7 @@
  * The newest samples of a run in memory, as contiguous columns, so that a window needs no copy. Missing ranges are
  * stored as intervals; the plot keeps them blank.
  */
-export class Tape {
+export class SampleBuffer {
 	private readonly capacity: number;
 	private time: Float64Array;
 	private columns: Float32Array[];
@@ -47,7 +47,7 @@ export class Tape {
 		const begins_s = frame.t0_s + relative[0]!;
 		const last_s = this.last_s;
 		if (last_s !== null && begins_s <= last_s) return;
-		if (this.length + frame.rows > 2 * this.capacity) this.forget();
+		if (this.length + frame.rows > 2 * this.capacity) this.dropOldest();
 		if (last_s !== null && this.lost(frame, begins_s - last_s)) this.gaps.push([last_s, begins_s]);
 		const room = Math.min(frame.rows, 2 * this.capacity - this.length);
 		for (let i = 0; i < room; i++) this.time[this.length + i] = frame.t0_s + relative[i]!;
@@ -82,7 +82,7 @@ export class Tape {
 		return low;
 	}
 
-	private forget(): void {
+	private dropOldest(): void {
 		const keep = Math.min(this.capacity, this.length);
 		const from = this.length - keep;
 		this.time.copyWithin(0, from, this.length);

@@ -1,7 +1,7 @@
 /** Delay behind the newest sample: frames arrive irregularly, but the plot must scroll smoothly. */
-const BEHIND_MS = 100;
+const DELAY_MS = 100;
 /** [s] Distance below which the end of the stream is reached. */
-const THERE_S = 1e-4;
+const END_S = 1e-4;
 
 /**
  * End time of live plots, `passed_ms` after they ended at `shown_s`. It follows the newest sample smoothly at any rate
@@ -9,6 +9,6 @@ const THERE_S = 1e-4;
  */
 export function smoothFollow(shown_s: number | null, newest_s: number, passed_ms: number): number {
 	if (shown_s === null) return newest_s;
-	const left_s = (newest_s - shown_s) * Math.exp(-passed_ms / BEHIND_MS);
-	return left_s > THERE_S ? newest_s - left_s : newest_s;
+	const left_s = (newest_s - shown_s) * Math.exp(-passed_ms / DELAY_MS);
+	return left_s > END_S ? newest_s - left_s : newest_s;
 }

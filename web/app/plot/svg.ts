@@ -1,5 +1,5 @@
 /** A plot as a vector drawing with the content of the canvas, to scale and edit. */
-import { type Backdrop, everyOther } from './backdrop';
+import { type Backdrop, alternateSteps } from './backdrop';
 import type { Curve } from './chart';
 import type { View } from './gestures';
 import { powerText, tickText, ticks } from './ticks';
@@ -42,7 +42,7 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 	const lineOf = ({ levels, x: xs, y: ys }: Backdrop['lines'][number]) =>
 		levels.map((level) => `M${LEFT} ${short(y(level))}H${right}`).join('') + xs.map((at, i) => `${i ? 'L' : 'M'}${short(x(at))} ${short(y(ys[i]!))}`).join('');
 	const behind = [
-		...everyOther(backdrop.steps, drawing.x, right - LEFT).map(([begin, end]) => `<rect x="${short(x(begin))}" y="${HEAD}" width="${short(x(end) - x(begin))}" height="${foot - HEAD}" fill="${ink('--step')}"/>`),
+		...alternateSteps(backdrop.steps, drawing.x, right - LEFT).map(([begin, end]) => `<rect x="${short(x(begin))}" y="${HEAD}" width="${short(x(end) - x(begin))}" height="${foot - HEAD}" fill="${ink('--step')}"/>`),
 		backdrop.region && `<rect x="${short(x(backdrop.region[0]))}" y="${HEAD}" width="${short(Math.max(2, x(backdrop.region[1]) - x(backdrop.region[0])))}" height="${foot - HEAD}" fill="${ink('--accent-wash')}"/>`,
 		backdrop.band !== null && `<rect x="${LEFT}" y="${short(y(backdrop.band))}" width="${right - LEFT}" height="${short(y(-backdrop.band) - y(backdrop.band))}" fill="${ink('--sunk')}"/>`,
 		...backdrop.lines.map((line) => path(lineOf(line), line.stroke, `stroke-dasharray="${line.dash.join(' ')}"`)),
@@ -69,7 +69,7 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 		return curve.mark === 'dot' ? `<path d="${dots}" fill="${ink(curve.stroke)}"/>` : path(dots, curve.stroke);
 	});
 	let from = LEFT;
-	const lines = backdrop.lines.map(({ label, said, stroke, dash }) => ({ label: `${label} ${said}`.trim(), stroke, dash, mark: 'line' as const }));
+	const lines = backdrop.lines.map(({ label, valueText: said, stroke, dash }) => ({ label: `${label} ${said}`.trim(), stroke, dash, mark: 'line' as const }));
 	const legend = [...curves, ...lines].map(({ label, stroke, mark, dash }) => {
 		const d = mark === 'dot' || mark === 'ring' ? `M${from + 7.5} 13a2.5 2.5 0 1 0 5 0a2.5 2.5 0 1 0 -5 0` : `M${from} 13h20`;
 		const entry = path(d, stroke, `stroke-width="2" stroke-dasharray="${dash?.join(' ') || 'none'}"`) + text([from + 26, 17], label);

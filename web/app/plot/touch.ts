@@ -1,11 +1,11 @@
 import type uPlot from 'uplot';
-import type { Asked } from './gestures';
+import type { OnView } from './gestures';
 
 /**
  * Touch gestures on a plot (uPlot issue 13): one finger along x selects a range, two fingers zoom and move. Vertical
  * movement scrolls the page.
  */
-export function touch(u: uPlot, asked: Asked): void {
+export function touchGestures(u: uPlot, asked: OnView): void {
 	const { over } = u;
 	const fingers = new Map<number, number>();
 	let pinch: { span: number; at: number; min: number; max: number } | null = null;

@@ -2,15 +2,15 @@ import { tickText, ticks } from '../plot/ticks';
 import { type Bins, binOf } from './bins';
 
 /** Converts a value to its pixel position, and back. Set-points have equal widths; other axes are linear. */
-export interface Place {
+export interface AxisScale {
 	at: (value: number) => number;
 	value: (px: number) => number;
 	ticks: number[];
 	/** A tick as text. */
-	say: (tick: number) => string;
+	text: (tick: number) => string;
 }
 
-export function place({ edges, levels, factor = 1 }: Bins, from: number, to: number, count: number): Place {
+export function axisScale({ edges, setPoints: levels, factor = 1 }: Bins, from: number, to: number, count: number): AxisScale {
 	const low = edges[0] ?? 0;
 	const high = edges.at(-1) ?? 1;
 	if (!levels) {
@@ -19,7 +19,7 @@ export function place({ edges, levels, factor = 1 }: Bins, from: number, to: num
 			at: (value) => from + ((value - low) / span) * (to - from),
 			value: (px) => low + ((px - from) / (to - from)) * span,
 			ticks: ticks(low * factor, high * factor, count).map((tick) => tick / factor),
-			say: (tick) => tickText(tick * factor),
+			text: (tick) => tickText(tick * factor),
 		};
 	}
 	const n = levels.length;
@@ -38,11 +38,11 @@ export function place({ edges, levels, factor = 1 }: Bins, from: number, to: num
 		},
 		ticks: levels.filter((_, i) => i % each === Math.floor(((n - 1) % each) / 2)),
 		// Set-points are measured values. More digits than three of the largest one do not help to identify them.
-		say: (tick) => tickText(Number((tick * factor).toFixed(decimals)) || 0),
+		text: (tick) => tickText(Number((tick * factor).toFixed(decimals)) || 0),
 	};
 }
 
 /** Position of a bin's value: a set-point is in the middle of its column. */
-export function middle({ edges, levels }: Bins, scale: Place, bin: number): number {
+export function binMiddle({ edges, setPoints: levels }: Bins, scale: AxisScale, bin: number): number {
 	return levels ? (scale.at(edges[bin]!) + scale.at(edges[bin + 1]!)) / 2 : scale.at((edges[bin]! + edges[bin + 1]!) / 2);
 }

@@ -1,18 +1,18 @@
 /** Mean residual and its standard error of a group of points. */
-export interface Tally {
+export interface BlockMean {
 	n: number;
 	mean: number;
 	/** Standard error of the mean, over blocks of the run if there are enough; infinite for fewer than two points. */
 	se: number;
 	/** Number of blocks of the run in this group. */
-	pieces: number;
+	blocks: number;
 }
 
 /** Smallest number of blocks for a standard error over blocks. */
-const FEWEST = 3;
+const MIN_BLOCKS = 3;
 
 /** Points of a cell in the order of the run, with the block of each. */
-export class Sums {
+export class BlockSums {
 	private n = 0;
 	private sum = 0;
 	private squares = 0;
@@ -42,42 +42,42 @@ export class Sums {
 	}
 
 	/** `noise`: known scatter of one point. The standard error of a small group must not be lower than that. */
-	tally(noise = 0): Tally {
+	mean(noise = 0): BlockMean {
 		this.close();
 		const { n, pieces } = this;
-		if (n === 0) return { n, mean: Number.NaN, se: Number.POSITIVE_INFINITY, pieces };
+		if (n === 0) return { n, mean: Number.NaN, se: Number.POSITIVE_INFINITY, blocks: pieces };
 		const mean = this.sum / n;
 		// A block counts as one observation, independent of its number of points.
 		const [ss, sn, nn] = this.over;
-		const enough = pieces >= FEWEST;
+		const enough = pieces >= MIN_BLOCKS;
 		const spread = enough ? ((ss - 2 * mean * sn + mean * mean * nn) * pieces) / (pieces - 1) : n > 1 ? ((this.squares - n * mean * mean) * n) / (n - 1) : 0;
 		const se = Math.max(Math.sqrt(Math.max(0, spread)) / n, noise / Math.sqrt(n));
-		return { n, mean, se: n > 1 || noise > 0 ? se : Number.POSITIVE_INFINITY, pieces };
+		return { n, mean, se: n > 1 || noise > 0 ? se : Number.POSITIVE_INFINITY, blocks: pieces };
 	}
 }
 
 /**
  * Half width of a 95 % band that holds for `together` means simultaneously (Bonferroni); `null` with too few blocks.
  */
-export function half({ se, pieces }: Tally, together: number): number | null {
-	return pieces < FEWEST ? null : se * quantile(0.05 / Math.max(1, together), pieces - 1);
+export function bandHalfWidth({ se, blocks: pieces }: BlockMean, together: number): number | null {
+	return pieces < MIN_BLOCKS ? null : se * quantile(0.05 / Math.max(1, together), pieces - 1);
 }
 
 /** Number of cells with a band. */
-export const judged = (cells: readonly Tally[]): number => cells.filter((cell) => score(cell) !== null && cell.pieces >= FEWEST).length;
+export const testedCells = (cells: readonly BlockMean[]): number => cells.filter((cell) => score(cell) !== null && cell.blocks >= MIN_BLOCKS).length;
 
 /** The mean is significant, given the number of tested cells. */
-export function beyond(cell: Tally, together: number): boolean {
-	const band = score(cell) === null ? null : half(cell, together);
+export function isSignificant(cell: BlockMean, together: number): boolean {
+	const band = score(cell) === null ? null : bandHalfWidth(cell, together);
 	return band !== null && Math.abs(cell.mean) > band;
 }
 
-const known = new Map<string, number>();
+const quantiles = new Map<string, number>();
 
 /** Quantile of Student's t for the probability `p` of both tails together. */
 export function quantile(p: number, freedom: number): number {
 	const key = `${p} ${freedom}`;
-	const found = known.get(key);
+	const found = quantiles.get(key);
 	if (found !== undefined) return found;
 	let [low, high] = [0, 1e4];
 	for (let i = 0; i < 60; i++) {
@@ -85,7 +85,7 @@ export function quantile(p: number, freedom: number): number {
 		if (tails(middle, freedom) > p) low = middle;
 		else high = middle;
 	}
-	known.set(key, high);
+	quantiles.set(key, high);
 	return high;
 }
 
@@ -107,13 +107,13 @@ function tails(t: number, freedom: number): number {
 }
 
 /** Fewer points than this get no colour. */
-export const ENOUGH = 10;
+export const MIN_POINTS = 10;
 /** Score of a cell without scatter, in standard errors. */
-const EXACT = 10;
+const EXACT_SCORE = 10;
 
 /** Mean in standard errors; `null` with too few points. */
-export function score(tally: Tally): number | null {
-	if (tally.n < ENOUGH || !Number.isFinite(tally.se)) return null;
-	if (tally.se === 0) return tally.mean === 0 ? 0 : Math.sign(tally.mean) * EXACT;
+export function score(tally: BlockMean): number | null {
+	if (tally.n < MIN_POINTS || !Number.isFinite(tally.se)) return null;
+	if (tally.se === 0) return tally.mean === 0 ? 0 : Math.sign(tally.mean) * EXACT_SCORE;
 	return tally.mean / tally.se;
 }

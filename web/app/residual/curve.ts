@@ -1,18 +1,18 @@
 import { binOf } from './bins';
-import { Sums, type Tally } from './blockMeans';
+import { BlockSums, type BlockMean } from './blockMeans';
 
-export interface Point extends Tally {
+export interface Point extends BlockMean {
 	from: number;
 	to: number;
 }
 
 /** Mean residual along one axis. */
 export function curve(values: readonly number[], edges: number[], residual: readonly number[], kept: Uint8Array, noise: number, piece: readonly number[]): Point[] {
-	const sums = edges.slice(1).map(() => new Sums());
+	const sums = edges.slice(1).map(() => new BlockSums());
 	for (let i = 0; i < residual.length; i++) {
 		if (kept[i]) sums[binOf(edges, values[i]!)]?.add(residual[i]!, piece[i]!);
 	}
-	return sums.map((s, i) => ({ ...s.tally(noise), from: edges[i]!, to: edges[i + 1]! }));
+	return sums.map((s, i) => ({ ...s.mean(noise), from: edges[i]!, to: edges[i + 1]! }));
 }
 
 /**

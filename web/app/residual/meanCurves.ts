@@ -1,38 +1,38 @@
 import { type Bins, binOf } from './bins';
 import type { Point } from './curve';
-import { type Place, middle } from './axisScale';
-import { ENOUGH } from './blockMeans';
+import { type AxisScale, binMiddle } from './axisScale';
+import { MIN_POINTS } from './blockMeans';
 
 /** One curve of means, with its style. */
-export interface Line {
+export interface MeanCurve {
 	points: Point[];
 	stroke: string;
 	dash: string;
 	/** Without points and bands. */
-	bare?: boolean;
+	lineOnly?: boolean;
 	wide?: boolean;
 }
 
 /** Points of a curve with enough samples, with their positions. */
-export function seen(points: readonly Point[], bins: Bins, scale: Place): (Point & { at: number })[] {
-	return points.flatMap((p, i) => (says(p) ? [{ ...p, at: middle(bins, scale, i) }] : []));
+export function visiblePoints(points: readonly Point[], bins: Bins, scale: AxisScale): (Point & { at: number })[] {
+	return points.flatMap((p, i) => (hasEnoughSamples(p) ? [{ ...p, at: binMiddle(bins, scale, i) }] : []));
 }
 
 /** There are enough samples for a mean. */
-export const says = (p: Point) => p.n >= ENOUGH && Number.isFinite(p.se);
+export const hasEnoughSamples = (p: Point) => p.n >= MIN_POINTS && Number.isFinite(p.se);
 
 /**
  * Half height of an axis for all these curves. Large standard errors of a few means must not reduce the scale of the
  * others.
  */
-export function reach(curves: readonly (readonly Point[])[]): number {
-	const points = curves.flatMap((curve) => curve.filter(says));
+export function axisLimit(curves: readonly (readonly Point[])[]): number {
+	const points = curves.flatMap((curve) => curve.filter(hasEnoughSamples));
 	const usual = points.map((p) => p.se).sort((a, b) => a - b)[points.length >> 1] ?? 0;
 	return Math.max(1e-12, ...points.map((p) => Math.abs(p.mean) + Math.min(2 * p.se, 2 * usual))) * 1.1;
 }
 
 /** Fraction of selected points per bin. */
-export function sharesOf(values: readonly number[], { edges }: Bins, kept: Uint8Array, chosen: Uint8Array | null): number[] | null {
+export function selectedShares(values: readonly number[], { edges }: Bins, kept: Uint8Array, chosen: Uint8Array | null): number[] | null {
 	if (!chosen) return null;
 	const bins = edges.slice(1).map(() => ({ all: 0, chosen: 0 }));
 	for (let i = 0; i < values.length; i++) {

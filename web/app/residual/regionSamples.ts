@@ -1,19 +1,19 @@
 import type { ResidualSet } from '../api/types';
 import type { Region } from '../workbench/region';
-import { type Side, keep } from './points';
+import { type DirectionFilter, pointMask } from './points';
 
 /** Quantities for selection in addition to the axes: the values of the point itself. */
-export function valuesOf(set: ResidualSet, name: string): readonly number[] | undefined {
+export function axisValues(set: ResidualSet, name: string): readonly number[] | undefined {
 	if (name === 'measured' || name === 'predicted') return set[name];
 	return name === 'residual' ? set.error : set.axes.find((axis) => axis.name === name)?.values;
 }
 
 /** The samples of a region, one flag each; `null` without a selection, or if the run has no such axis. */
-export function selected(set: ResidualSet, region: Region | null, side: Side, ramps: boolean): Uint8Array | null {
+export function regionSamples(set: ResidualSet, region: Region | null, side: DirectionFilter, ramps: boolean): Uint8Array | null {
 	if (!region) return null;
-	const kept = keep(set, side, ramps);
+	const kept = pointMask(set, side, ramps);
 	for (const { axis, from, to } of region) {
-		const values = valuesOf(set, axis);
+		const values = axisValues(set, axis);
 		if (!values) return null;
 		for (let i = 0; i < kept.length; i++) {
 			if (!(values[i]! >= from && values[i]! <= to)) kept[i] = 0;

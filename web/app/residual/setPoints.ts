@@ -1,27 +1,27 @@
 /** Largest number of set-points. An axis with more values is not a commanded quantity. */
-const MOST = 40;
+const MAX_SET_POINTS = 40;
 /** Set-points that are closer than this fraction of the span, of their own value, or than their scatter, are merged. */
-const APART = 0.002;
-const ALIKE = 0.05;
+const MERGE_SPAN = 0.002;
+const MERGE_RELATIVE = 0.05;
 /** A segment that moves over more than this fraction of the span is not at a set-point. */
-const STILL = 0.03;
+const MAX_SCATTER = 0.03;
 
 /** The set-points of an axis in rising order, or `null` if the run does not stay at any. */
-export function levelsOf(points: readonly { value: number; segment: number }[], span: number): number[] | null {
-	const segments = [...summaries(points)].filter((each) => each.scatter <= STILL * span);
-	const still = segments.reduce((n, each) => n + each.n, 0);
-	if (still < 0.7 * points.length) return null;
+export function detectSetPoints(points: readonly { value: number; segment: number }[], span: number): number[] | null {
+	const segments = [...summaries(points)].filter((each) => each.scatter <= MAX_SCATTER * span);
+	const atSetPoint = segments.reduce((n, each) => n + each.n, 0);
+	if (atSetPoint < 0.7 * points.length) return null;
 	segments.sort((a, b) => a.mean - b.mean);
-	const scatter = Math.sqrt(segments.reduce((sum, each) => sum + each.n * each.scatter ** 2, 0) / still);
-	const apart = Math.max(APART * span, 3 * scatter);
+	const scatter = Math.sqrt(segments.reduce((sum, each) => sum + each.n * each.scatter ** 2, 0) / atSetPoint);
+	const apart = Math.max(MERGE_SPAN * span, 3 * scatter);
 	const groups: { n: number; sum: number; last: number }[] = [];
 	for (const { n, mean } of segments) {
 		const group = groups.at(-1);
-		if (group && mean - group.last <= Math.max(apart, ALIKE * Math.abs(mean))) Object.assign(group, { n: group.n + n, sum: group.sum + n * mean, last: mean });
+		if (group && mean - group.last <= Math.max(apart, MERGE_RELATIVE * Math.abs(mean))) Object.assign(group, { n: group.n + n, sum: group.sum + n * mean, last: mean });
 		else groups.push({ n, sum: n * mean, last: mean });
 	}
-	const chained = groups.some((group) => group.last - group.sum / group.n > 4 * Math.max(apart, STILL * span));
-	if (chained || groups.length < 2 || groups.length > MOST) return null;
+	const chained = groups.some((group) => group.last - group.sum / group.n > 4 * Math.max(apart, MAX_SCATTER * span));
+	if (chained || groups.length < 2 || groups.length > MAX_SET_POINTS) return null;
 	return groups.map((group) => group.sum / group.n);
 }
 

@@ -1,7 +1,7 @@
 import type { ResidualSet } from '../api/types';
 
 /** Autocorrelation of the residuals, lag 1 first, and the 95 % band of white noise. */
-export interface Dependence {
+export interface Autocorrelation {
 	lags: number[];
 	band: number;
 	/** Number of points. */
@@ -9,7 +9,7 @@ export interface Dependence {
 }
 
 /** Distribution of the residuals. */
-export interface Shape {
+export interface Distribution {
 	skewness: number;
 	/** Excess over the normal distribution. */
 	kurtosis: number;
@@ -18,12 +18,12 @@ export interface Shape {
 
 const LAGS = 20;
 /** Fewer points are not sufficient. */
-const ENOUGH = 30;
+const MIN_POINTS = 30;
 /** 95 % point of χ² with two degrees of freedom. */
 const CHI2_2 = 5.991;
 
 /** The residuals of the points that count, in the order of measurement. */
-export function inOrder(set: ResidualSet, kept: Uint8Array): number[] {
+export function inTimeOrder(set: ResidualSet, kept: Uint8Array): number[] {
 	const time = set.axes.find((axis) => axis.name === 'time_s')?.values;
 	const places = set.error.flatMap((_, i) => (kept[i] ? [i] : []));
 	if (time) places.sort((a, b) => time[a]! - time[b]!);
@@ -34,9 +34,9 @@ export function inOrder(set: ResidualSet, kept: Uint8Array): number[] {
  * Autocorrelation with the band of white residuals (Ljung, System Identification, 1999, section 16.6); `null` with too
  * few points.
  */
-export function dependence(residual: readonly number[]): Dependence | null {
+export function autocorrelation(residual: readonly number[]): Autocorrelation | null {
 	const n = residual.length;
-	if (n < ENOUGH) return null;
+	if (n < MIN_POINTS) return null;
 	const [centred, power] = centre(residual);
 	if (power === 0) return null;
 	const lags = Array.from({ length: Math.min(LAGS, Math.floor(n / 4)) }, (_, k) => {
@@ -48,7 +48,7 @@ export function dependence(residual: readonly number[]): Dependence | null {
 }
 
 /** Whether all lags together agree with white noise at 95 % (Ljung and Box, 1978). */
-export function isWhite({ lags, n }: Dependence): boolean {
+export function isWhite({ lags, n }: Autocorrelation): boolean {
 	const h = lags.length;
 	const q = n * (n + 2) * lags.reduce((sum, one, k) => sum + one ** 2 / (n - k - 1), 0);
 	// The 95 % point of χ² (Wilson and Hilferty, 1931).
@@ -60,9 +60,9 @@ export function isWhite({ lags, n }: Dependence): boolean {
  * Skewness and kurtosis compared with those of the normal distribution (Jarque and Bera, 1987); `null` with too few
  * points.
  */
-export function shape(residual: readonly number[]): Shape | null {
+export function distribution(residual: readonly number[]): Distribution | null {
 	const n = residual.length;
-	if (n < ENOUGH) return null;
+	if (n < MIN_POINTS) return null;
 	const [centred, power] = centre(residual);
 	if (power === 0) return null;
 	const sigma = Math.sqrt(power / n);

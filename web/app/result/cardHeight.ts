@@ -4,8 +4,8 @@ const heights = (): Record<string, number> => JSON.parse(localStorage.getItem(KE
 const keyOf = (what: string) => `${what} ${Math.round(innerWidth / 60)}`;
 
 /** Height [px] of a card when it was last drawn. */
-export const placeOf = (what: string): number | undefined => heights()[keyOf(what)];
+export const cardHeight = (what: string): number | undefined => heights()[keyOf(what)];
 
-export function keepPlace(what: string, height_px: number): void {
+export function saveCardHeight(what: string, height_px: number): void {
 	localStorage.setItem(KEPT, JSON.stringify({ ...heights(), [keyOf(what)]: Math.round(height_px) }));
 }

@@ -1,29 +1,29 @@
 import type { Earlier, IdentifiedQuantity } from '../api/types';
-import { type Scale, quantity as sized } from '../format/number';
-import { moment } from '../format/time';
-import { differ } from '../runs/differences';
-import { sayQuantity } from './presentation';
+import { type Scale, formatQuantity as sized } from '../format/number';
+import { formatDateTime } from '../format/time';
+import { estimatesDiffer } from '../runs/differences';
+import { formatResult } from './presentation';
 
 /**
  * A quantity of this run after those of earlier runs, oldest first; heights from 0, the lowest end of any interval, to
  * 1.
  */
-export interface Trend {
+export interface QuantityTrend {
 	of: IdentifiedQuantity;
 	dots: { run: number; at: number; ends: readonly [number, number] }[];
 	/** Every dot in words. */
-	said: string;
+	text: string;
 	/**
 	 * Change relative to the run that is applied to the bench, else to the run before, if that has the quantity too.
 	 */
 	change: string;
-	apart: boolean | null;
+	differs: boolean | null;
 }
 
 /** The reference of changes. */
-export const against = (earlier: readonly Earlier[]): Earlier | undefined => earlier.find(({ holds }) => holds) ?? earlier[0];
+export const referenceRun = (earlier: readonly Earlier[]): Earlier | undefined => earlier.find(({ holds }) => holds) ?? earlier[0];
 
-export function trends(run: number, quantities: readonly IdentifiedQuantity[], earlier: readonly Earlier[], scale: (unit: string) => Scale): Trend[] {
+export function quantityTrends(run: number, quantities: readonly IdentifiedQuantity[], earlier: readonly Earlier[], scale: (unit: string) => Scale): QuantityTrend[] {
 	return quantities.flatMap((of) => {
 		const named = ({ name }: IdentifiedQuantity) => name === of.name;
 		const known = earlier.flatMap((one) => one.quantities.filter(named).map((quantity) => ({ ...one, quantity }))).reverse();
@@ -34,13 +34,13 @@ export function trends(run: number, quantities: readonly IdentifiedQuantity[], e
 		const span = Math.max(...reach) - low;
 		const height = (value: number) => (span > 0 ? (value - low) / span : 0.5);
 		const shown = scale(of.unit);
-		const said = all.map(({ run, created_at, quantity }) => {
-			const { value, interval, unit } = sayQuantity(quantity, shown);
-			return `#${run} ${created_at && moment(created_at)} ${value} ${interval} ${unit}`.replace(/ +/g, ' ').trim();
+		const texts = all.map(({ run, created_at, quantity }) => {
+			const { value, interval, unit } = formatResult(quantity, shown);
+			return `#${run} ${created_at && formatDateTime(created_at)} ${value} ${interval} ${unit}`.replace(/ +/g, ' ').trim();
 		});
-		const before = against(earlier)!.quantities.find(named);
+		const before = referenceRun(earlier)!.quantities.find(named);
 		const dots = all.map(({ run, quantity: { value, ci95 } }) => ({ run, at: height(value), ends: [height(ci95?.[0] ?? value), height(ci95?.[1] ?? value)] as const }));
 		const change = before ? of.value - before.value : 0;
-		return [{ of, dots, said: said.join('\n'), change: before ? `${change < 0 ? '' : '+'}${sized(change * shown.factor, shown.unit, 2)}` : '', apart: before ? differ([before, of]) : null }];
+		return [{ of, dots, text: texts.join('\n'), change: before ? `${change < 0 ? '' : '+'}${sized(change * shown.factor, shown.unit, 2)}` : '', differs: before ? estimatesDiffer([before, of]) : null }];
 	});
 }

@@ -4,7 +4,7 @@ import type { Curve } from '../plot/chart';
 import { curveStyle } from '../plot/colour';
 
 /** Channels with the same unit share a plot. */
-export interface Group {
+export interface ChannelGroup {
 	unit: string;
 	title: string;
 	names: string[];
@@ -17,7 +17,7 @@ export const COUNTERS = new Set(['time_s', 'segment', 'repeat']);
  * link torque, so it has its own plot.
  */
 export const MODEL = 'model';
-export const TOLD = ['motor_torque_nm', 'model_torque_nm'];
+export const MOTOR_TORQUES = ['motor_torque_nm', 'model_torque_nm'];
 /** Angles of a stage: a few mrad, which the rotation of a shaft would reduce to flat lines. */
 const STAGE = 'stage';
 /** The quantity of a unit, in the usual order of interest. */
@@ -36,18 +36,18 @@ const QUANTITIES = new Map([
 const ORDER = [...QUANTITIES.keys()];
 
 /** `shown`: the displayed unit of a unit; the group keeps the unit of its channels. `model`: name of the model. */
-export function groupsOf(channels: readonly Channel[], shown = (unit: string) => unit, model = MODEL): Group[] {
+export function channelGroups(channels: readonly Channel[], shown = (unit: string) => unit, model = MODEL): ChannelGroup[] {
 	const byUnit = new Map<string, string[]>();
 	for (const channel of channels) {
 		if (COUNTERS.has(channel.name)) continue;
-		const unit = TOLD.includes(channel.name) ? MODEL : /^stage_.*_rad$/.test(channel.name) ? STAGE : label(channel.name, channel.unit).unit;
+		const unit = MOTOR_TORQUES.includes(channel.name) ? MODEL : /^stage_.*_rad$/.test(channel.name) ? STAGE : label(channel.name, channel.unit).unit;
 		byUnit.set(unit, [...(byUnit.get(unit) ?? []), channel.name]);
 	}
 	const place = (unit: string) => (ORDER.includes(unit) ? ORDER.indexOf(unit) : ORDER.length);
 	return [...byUnit].map(([unit, names]) => makeGroup(unit, names, shown, model)).sort((a, b) => place(a.unit) - place(b.unit));
 }
 
-function makeGroup(unit: string, names: string[], read: (unit: string) => string, model: string): Group {
+function makeGroup(unit: string, names: string[], read: (unit: string) => string, model: string): ChannelGroup {
 	const titles = unit === MODEL ? ['measured', model] : names.map((name) => label(name).title);
 	// The title of the shifts of a stage lists its axes.
 	const title = (names[0]?.startsWith('stage_') && unit !== STAGE ? null : QUANTITIES.get(unit)) ?? titles.join(', ');

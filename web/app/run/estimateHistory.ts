@@ -1,7 +1,7 @@
 import type { IdentifiedQuantity } from '../api/types';
 
 /** Preliminary results at one time of the run. */
-export interface Said {
+export interface EstimateSnapshot {
 	at_s: number;
 	quantities: readonly IdentifiedQuantity[];
 }
@@ -11,7 +11,7 @@ const WIDER = 1.5;
 const width = ({ ci95 }: IdentifiedQuantity) => ci95![1]! - ci95![0]!;
 
 /** The last change of the identified quantities, with its time: a quantity was added, lost, or became less certain. */
-export function changed(story: readonly Said[]): string | null {
+export function lastChange(story: readonly EstimateSnapshot[]): string | null {
 	const known = story.map(({ quantities }) => quantities.filter((one) => one.ci95));
 	for (let i = story.length - 1; i > 0 && known[i - 1]!.length > 0; i--) {
 		const [before, now] = [known[i - 1]!, known[i]!];
@@ -25,7 +25,7 @@ export function changed(story: readonly Said[]): string | null {
 }
 
 /** The interval of a quantity over time: lower and upper end as fractions of the height, 0 at the top. */
-export interface Funnel {
+export interface IntervalPoint {
 	x: number;
 	low: number;
 	high: number;
@@ -35,7 +35,7 @@ export interface Funnel {
  * The intervals of one quantity over the run so far. The scale fits their second half, because the first intervals are
  * very wide.
  */
-export function funnel(story: readonly Said[], name: string): Funnel[] {
+export function intervalHistory(story: readonly EstimateSnapshot[], name: string): IntervalPoint[] {
 	const points = story.flatMap(({ at_s, quantities }) => {
 		const ends = quantities.find((one) => one.name === name)?.ci95;
 		return ends && ends[0] != null && ends[1] != null ? [{ at_s, low: ends[0], high: ends[1] }] : [];

@@ -1,12 +1,12 @@
 import type { Preview, Run, RunEvent } from '../api/types';
-import { signed } from '../format/label';
+import { withMinusSigns } from '../format/label';
 import { tickText } from '../plot/ticks';
 import type { Scale } from '../format/number';
-import type { BackLine } from '../plot/backdrop';
+import type { BackdropLine } from '../plot/backdrop';
 import type { View } from '../plot/gestures';
 
 /** A step as executed in the run. */
-export interface StepMade {
+export interface ExecutedStep {
 	/** Its position in the plan, from 0. */
 	step: number;
 	label: string;
@@ -16,11 +16,11 @@ export interface StepMade {
 }
 
 /** The steps of a run in the order of their start; a step that was repeated after a pause occurs twice. */
-export function stepsOf(events: readonly Pick<RunEvent, 'kind' | 'at_s' | 'data'>[], end_s: number): StepMade[] {
+export function executedSteps(events: readonly Pick<RunEvent, 'kind' | 'at_s' | 'data'>[], end_s: number): ExecutedStep[] {
 	const begun = events.filter(({ kind }) => kind === 'step_started');
 	return begun.map(({ at_s, data }, i) => ({
 		step: Number(data['step'] ?? i),
-		label: signed(String(data['label'] ?? '')),
+		label: withMinusSigns(String(data['label'] ?? '')),
 		at_s,
 		to_s: begun[i + 1]?.at_s ?? Math.max(at_s, end_s),
 	}));
@@ -34,20 +34,20 @@ const MARGIN = 0.05;
 /** Time range around a time of the run. */
 export const aroundMoment = (at_s: number): View => [at_s - AROUND_S, at_s + AROUND_S];
 
-export function aroundStep({ at_s, to_s }: Pick<StepMade, 'at_s' | 'to_s'>): View {
+export function aroundStep({ at_s, to_s }: Pick<ExecutedStep, 'at_s' | 'to_s'>): View {
 	const more = MARGIN * (to_s - at_s) || AROUND_S;
 	return [at_s - more, to_s + more];
 }
 
-type Course = { x: number[]; y: number[] };
+type SetPointCurve = { x: number[]; y: number[] };
 
 /**
  * A planned set-point on the clock of the run: each step from its actual start. A step lasts for its planned time, or
  * until the start of the next one.
  */
-export function onRunClock(plan: Pick<Preview, 'steps'>, time_s: readonly number[], values: readonly number[], made: readonly StepMade[]): Course {
+export function setPointCurve(plan: Pick<Preview, 'steps'>, time_s: readonly number[], values: readonly number[], made: readonly ExecutedStep[]): SetPointCurve {
 	const begins = plan.steps.reduce<number[]>((list, { duration_s }) => [...list, list.at(-1)! + duration_s], [0]);
-	const course: Course = { x: [], y: [] };
+	const course: SetPointCurve = { x: [], y: [] };
 	for (const { step, at_s, to_s } of made) {
 		const [from, to] = [begins[step], begins[step + 1]];
 		if (from === undefined || to === undefined) continue;
@@ -76,7 +76,7 @@ function valueAt(time_s: readonly number[], values: readonly number[], at: numbe
  * Quantities with a set-point in the plan, each with the channel that records its command. If a run has that channel,
  * the plan adds nothing.
  */
-const SET = [
+const PLANNED = [
 	['motor_velocity_rad_s', 'velocity_setpoint_rad_s'],
 	['brake_current_a', 'brake_current_command_a'],
 ] as const;
@@ -84,12 +84,12 @@ const SET = [
 export const SET_POINT = 'set point';
 
 /** Set-points of the plan for these channels, in the displayed unit. */
-export function setPointsOf(plan: Preview | undefined, made: readonly StepMade[], names: readonly string[], { factor }: Scale): BackLine[] {
+export function setPointLines(plan: Preview | undefined, made: readonly ExecutedStep[], names: readonly string[], { factor }: Scale): BackdropLine[] {
 	if (!plan || made.length === 0) return [];
-	return SET.filter(([name, kept]) => names.includes(name) && !names.includes(kept)).flatMap(([name]) => {
-		const { x, y } = onRunClock(plan, plan.setpoints.time_s, plan.setpoints[name], made);
+	return PLANNED.filter(([name, kept]) => names.includes(name) && !names.includes(kept)).flatMap(([name]) => {
+		const { x, y } = setPointCurve(plan, plan.setpoints.time_s, plan.setpoints[name], made);
 		if (y.every((value) => value === 0)) return [];
-		return [{ label: SET_POINT, said: '', stroke: '--soft', dash: [2, 2], levels: [], x, y: y.map((value) => value * factor) }];
+		return [{ label: SET_POINT, valueText: '', stroke: '--soft', dash: [2, 2], levels: [], x, y: y.map((value) => value * factor) }];
 	});
 }
 
@@ -97,7 +97,7 @@ export function setPointsOf(plan: Preview | undefined, made: readonly StepMade[]
  * Limits of the bench at the time of the run for these channels, each once. They apply to magnitudes; a temperature has
  * only an upper limit.
  */
-export function limitsOf({ provenance }: Pick<Run, 'provenance'>, names: readonly string[], { factor, unit }: Scale): BackLine[] {
+export function limitLines({ provenance }: Pick<Run, 'provenance'>, names: readonly string[], { factor, unit }: Scale): BackdropLine[] {
 	const limits = (provenance['limits'] ?? {}) as Record<string, unknown>;
 	return names.flatMap((name) => {
 		const limit = limits[name];
@@ -105,6 +105,6 @@ export function limitsOf({ provenance }: Pick<Run, 'provenance'>, names: readonl
 		const level = limit * factor;
 		const oneSided = name.endsWith('_c');
 		const title = names.filter((one) => typeof limits[one] === 'number').length > 1 ? `limit, ${name.split('_')[0]}` : 'limit';
-		return [{ label: title, said: `${oneSided ? '' : '± '}${tickText(level)} ${unit}`, stroke: '--bad', dash: [8, 3], levels: oneSided ? [level] : [level, -level], x: [], y: [] }];
+		return [{ label: title, valueText: `${oneSided ? '' : '± '}${tickText(level)} ${unit}`, stroke: '--bad', dash: [8, 3], levels: oneSided ? [level] : [level, -level], x: [], y: [] }];
 	});
 }

@@ -1,30 +1,30 @@
-import type { Hand, View } from '../plot/gestures';
+import type { Gesture, View } from '../plot/gestures';
 
 /** Time range of a live plot: the newest `width_s` seconds (all if infinite), or a fixed range. */
-export type Look = { follow: true; width_s: number } | { follow: false; view: View | null };
+export type PlotRange = { follow: true; width_s: number } | { follow: false; view: View | null };
 
 /**
  * The range after a gesture on the plot. A zoom continues to follow with a new width; the other gestures fix the range.
  */
-export function afterHand(look: Look, asked: View | null, hand: Hand): Look {
+export function afterGesture(look: PlotRange, asked: View | null, hand: Gesture): PlotRange {
 	if (asked === null) return { follow: false, view: null };
 	if (look.follow && hand === 'zoom') return { follow: true, width_s: Math.max(0.05, asked[1] - asked[0]) };
 	return { follow: false, view: asked };
 }
 
-export function viewOf(look: Look, newest_s: number): View | null {
+export function rangeView(look: PlotRange, newest_s: number): View | null {
 	if (!look.follow) return look.view;
 	if (look.width_s < Infinity) return [newest_s - look.width_s, newest_s];
 	return newest_s > 0 ? [0, newest_s] : null;
 }
 
 /** `follow:10` or `from:to`, for the address. */
-export function writeLook(look: Look): string {
+export function writeRange(look: PlotRange): string {
 	if (look.follow && look.width_s < Infinity) return `follow:${Number(look.width_s.toPrecision(4))}`;
 	return !look.follow && look.view ? look.view.map((edge) => Number(edge.toPrecision(7))).join(':') : 'all';
 }
 
-export function readLook(text: string | null, live: boolean): Look {
+export function readRange(text: string | null, live: boolean): PlotRange {
 	if (text === null) return live ? { follow: true, width_s: 10 } : { follow: false, view: null };
 	if (text === 'all' && live) return { follow: true, width_s: Infinity };
 	const [first = '', second = ''] = text.split(':');
@@ -35,16 +35,16 @@ export function readLook(text: string | null, live: boolean): Look {
 }
 
 /** `Nm:3:5,A:all`: ranges of plots with their own zoom, by unit. */
-export const writeOwns = (owns: ReadonlyMap<string, string>): string => [...owns].map(([unit, look]) => `${unit}:${look}`).join();
+export const writeOwnRanges = (owns: ReadonlyMap<string, string>): string => [...owns].map(([unit, look]) => `${unit}:${look}`).join();
 
-export function readOwns(text: string | null): Map<string, string> {
+export function readOwnRanges(text: string | null): Map<string, string> {
 	return new Map(Array.from((text ?? '').matchAll(/([^:,]*):([^,]+)/g), ([, unit = '', look = '']) => [unit, look]));
 }
 
 /** `Nm:link torque:limit;A:brake current`: hidden curves and lines of the plots, by unit. Names may contain commas. */
-export const writeOffs = (offs: ReadonlyMap<string, readonly string[]>): string => [...offs].flatMap(([unit, names]) => (names.length > 0 ? [[unit, ...names].join(':')] : [])).join(';');
+export const writeHiddenCurves = (offs: ReadonlyMap<string, readonly string[]>): string => [...offs].flatMap(([unit, names]) => (names.length > 0 ? [[unit, ...names].join(':')] : [])).join(';');
 
-export function readOffs(text: string | null): Map<string, string[]> {
+export function readHiddenCurves(text: string | null): Map<string, string[]> {
 	return new Map((text ?? '').split(';').flatMap((part) => {
 		const [unit, ...names] = part.split(':');
 		return unit !== undefined && names.length > 0 ? [[unit, names] as const] : [];

@@ -1,11 +1,11 @@
 import { api } from '../api/client';
 import type { Run } from '../api/types';
-import { settle } from '../state/debounced.svelte';
-import { envelope, follow } from '../plot/envelope';
+import { debounced } from '../state/debounced.svelte';
+import { envelope, joinColumns } from '../plot/envelope';
 import type { View } from '../plot/gestures';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
-import { type Look, viewOf } from './plotRange';
+import { type PlotRange, rangeView } from './plotRange';
 
 const PIXELS = 1600;
 /** The daemon stores a run every two seconds. */
@@ -17,12 +17,12 @@ const HOLE_S = 0.1;
  * The time range of a run's plots and its samples: from memory during the run, else from the store. Call during
  * component initialization.
  */
-export function stretchOf(run: () => Run, live: () => boolean, look: () => Look) {
-	const here = $derived(live() && lab.liveRun === run().id && lab.tape !== null);
-	const view: View | null = $derived(viewOf(look(), (here && look().follow ? lab.shown_s : null) ?? 0));
+export function sampleRange(run: () => Run, live: () => boolean, look: () => PlotRange) {
+	const isLive = $derived(live() && lab.liveRun === run().id && lab.samples !== null);
+	const view: View | null = $derived(rangeView(look(), (isLive && look().follow ? lab.shown_s : null) ?? 0));
 	/** A range that is no longer in memory, or a finished run, is read from the store. */
-	const stored = $derived(!here || (!look().follow && (lab.tape?.first_s ?? Infinity) > (view?.[0] ?? -Infinity) + 0.05));
-	const asked = settle(() => (stored ? JSON.stringify([run().id, look(), live()]) : null), 90);
+	const stored = $derived(!isLive || (!look().follow && (lab.samples?.first_s ?? Infinity) > (view?.[0] ?? -Infinity) + 0.05));
+	const asked = debounced(() => (stored ? JSON.stringify([run().id, look(), live()]) : null), 90);
 	const load = async (from_s: number | undefined, to_s: number | undefined, signal: AbortSignal) => {
 		const samples = await api.samples(run().id, { from_s, to_s, px: PIXELS }, signal);
 		return { ...envelope(samples), names: samples.channels.map((channel) => channel.name) };
@@ -34,11 +34,11 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 	/** Samples before the page connected. The store has the last of them two seconds later. */
 	const missed = $derived.by(() => {
 		const now = look();
-		const first_s = here && now.follow ? (lab.tape?.first_s ?? 0) : 0;
+		const first_s = isLive && now.follow ? (lab.samples?.first_s ?? 0) : 0;
 		const from_s = now.follow ? Math.max(0, first_s - now.width_s) : 0;
 		return first_s > Math.max(0, view?.[0] ?? 0) + HOLE_S ? `${from_s}:${first_s}` : null;
 	});
-	const wanted = settle(() => missed, COMMITTED_MS);
+	const wanted = debounced(() => missed, COMMITTED_MS);
 	const before = resource(
 		() => missed && wanted.value,
 		(key, signal) => {
@@ -47,8 +47,8 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 		},
 	);
 	return {
-		get here() {
-			return here;
+		get isLive() {
+			return isLive;
 		},
 		get view() {
 			return view;
@@ -57,7 +57,7 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 		get seen(): View | null {
 			if (view) return view;
 			void lab.frames;
-			const [first, last] = stored ? [history.data?.time[0], history.data?.time.at(-1)] : [lab.tape?.first_s, lab.tape?.last_s];
+			const [first, last] = stored ? [history.data?.time[0], history.data?.time.at(-1)] : [lab.samples?.first_s, lab.samples?.last_s];
 			return first != null && last != null && first < last ? [first, last] : null;
 		},
 		/** Why there is nothing to show. */
@@ -66,18 +66,18 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 		},
 		get gaps() {
 			if (stored) return history.data?.gaps ?? [];
-			const [first_s, last_s] = [lab.tape?.first_s, before.data?.time.at(-1)];
+			const [first_s, last_s] = [lab.samples?.first_s, before.data?.time.at(-1)];
 			const hole: [number, number][] = first_s != null && last_s !== undefined && first_s - last_s > HOLE_S ? [[last_s, first_s]] : [];
-			return [...(before.data?.gaps ?? []), ...hole, ...(lab.tape?.gaps ?? [])];
+			return [...(before.data?.gaps ?? []), ...hole, ...(lab.samples?.gaps ?? [])];
 		},
 		reload: history.reload,
 		/** Time, then one column per name. */
 		columns(names: readonly string[]): ArrayLike<number | null>[] {
 			void lab.frames;
-			if (!stored && lab.tape) {
-				const { time, columns } = lab.tape.window(...(view ?? ([-Infinity, Infinity] as const)));
-				const seen = [time, ...names.map((name) => columns[lab.tape!.names.indexOf(name)] ?? [])];
-				return before.data ? follow(named(before.data, names), seen) : seen;
+			if (!stored && lab.samples) {
+				const { time, columns } = lab.samples.window(...(view ?? ([-Infinity, Infinity] as const)));
+				const seen = [time, ...names.map((name) => columns[lab.samples!.names.indexOf(name)] ?? [])];
+				return before.data ? joinColumns(named(before.data, names), seen) : seen;
 			}
 			return named(history.data, names);
 		},
@@ -92,4 +92,4 @@ interface Named {
 
 const named = (of: Named | undefined, names: readonly string[]) => [of?.time ?? [], ...names.map((name) => of?.columns[of.names.indexOf(name)] ?? [])];
 
-export type Stretch = ReturnType<typeof stretchOf>;
+export type SampleRange = ReturnType<typeof sampleRange>;

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { RunSummary } from '../api/types';
-import { nextSort, ofView, readBase, readHidden, readViews, runsTable, sorted, toggleBase, toggleColumn, toggleView, viewName, viewOf } from './listView';
+import { nextSort, readListView, readBase, readHidden, readSavedViews, runsTable, sortOrder, toggleBase, toggleColumn, toggleSavedView, listViewText, writeListView } from './listView';
 
 function storage() {
 	const kept = new Map<string, string>();
@@ -20,21 +20,21 @@ it('remembers the columns, and lets the address have the last word', () => {
 it('keeps views and forgets them again', () => {
 	const kept = storage();
 	kept.setItem('jointbench.runs.views', 'tag:oil -state:failed');
-	const [old] = readViews(kept);
-	expect(ofView(old!)).toEqual({ search: 'tag:oil -state:failed', sort: null, base: 'none', hide: 'none' });
-	const view = viewOf('rows>1000', '-error', 180, ['bench', 'safe']);
-	toggleView(view, kept);
-	expect(readViews(kept)).toEqual([old, view]);
-	expect(readViews(kept).map(viewName)).toEqual(['tag:oil -state:failed', 'rows>1000 · by error, largest first · against #180 · without bench, safe']);
-	expect(ofView(view)).toEqual({ search: 'rows>1000', sort: '-error', base: '180', hide: 'bench,safe' });
-	toggleView(old!, kept);
-	expect(readViews(kept)).toEqual([view]);
+	const [old] = readSavedViews(kept);
+	expect(readListView(old!)).toEqual({ search: 'tag:oil -state:failed', sort: null, base: 'none', hide: 'none' });
+	const view = writeListView('rows>1000', '-error', 180, ['bench', 'safe']);
+	toggleSavedView(view, kept);
+	expect(readSavedViews(kept)).toEqual([old, view]);
+	expect(readSavedViews(kept).map(listViewText)).toEqual(['tag:oil -state:failed', 'rows>1000 · by error, largest first · against #180 · without bench, safe']);
+	expect(readListView(view)).toEqual({ search: 'rows>1000', sort: '-error', base: '180', hide: 'bench,safe' });
+	toggleSavedView(old!, kept);
+	expect(readSavedViews(kept)).toEqual([view]);
 });
 
 it('orders by a column, the other way round, and no longer', () => {
 	expect([null, '-error', 'error'].map((sort) => nextSort(sort, 'error'))).toEqual(['-error', 'error', null]);
 	expect([null, 'bench', '-bench'].map((sort) => nextSort(sort, 'bench'))).toEqual(['bench', '-bench', null]);
-	expect([sorted('-error', 'error'), sorted('error', 'error'), sorted('error', 'rows'), sorted(null, 'note')]).toEqual(['descending', 'ascending', 'none', null]);
+	expect([sortOrder('-error', 'error'), sortOrder('error', 'error'), sortOrder('error', 'rows'), sortOrder(null, 'note')]).toEqual(['descending', 'ascending', 'none', null]);
 });
 
 it('remembers the base, and lets the address have the last word', () => {

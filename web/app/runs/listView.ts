@@ -40,34 +40,34 @@ export function toggleBase(base: number | null, id: number, kept: Pick<Storage, 
 
 /** Sort keys of the list under the daemon's names; numbers start with the largest. */
 const SORTS: Partial<Record<Column | 'state', string>> = { state: 'state', procedure: 'procedure', bench: 'bench', started: 'started', duration: '-duration', rows: '-rows', safe: 'safe', error: '-error', Coulomb: '-coulomb' };
-const turned = (sort: string) => (sort.startsWith('-') ? sort.slice(1) : `-${sort}`);
+const reversed = (sort: string) => (sort.startsWith('-') ? sort.slice(1) : `-${sort}`);
 
 /** Present sort order of a column; `null` if it cannot be sorted. */
-export function sorted(sort: string | null, column: Column | 'state'): 'ascending' | 'descending' | 'none' | null {
+export function sortOrder(sort: string | null, column: Column | 'state'): 'ascending' | 'descending' | 'none' | null {
 	const own = SORTS[column];
 	if (own === undefined) return null;
-	return sort === own || sort === turned(own) ? (sort.startsWith('-') ? 'descending' : 'ascending') : 'none';
+	return sort === own || sort === reversed(own) ? (sort.startsWith('-') ? 'descending' : 'ascending') : 'none';
 }
 
 /** Order after another click on a column: its own order, then reversed, then newest first. */
 export function nextSort(sort: string | null, column: Column | 'state'): string | null {
 	const own = SORTS[column]!;
-	return sort === own ? turned(own) : sort === turned(own) ? null : own;
+	return sort === own ? reversed(own) : sort === reversed(own) ? null : own;
 }
 
 /** A view of the list as an address: search, order, base run and columns. */
-export const viewOf = (search: string, sort: string | null, base: number | null, hidden: readonly Column[]): string =>
+export const writeListView = (search: string, sort: string | null, base: number | null, hidden: readonly Column[]): string =>
 	withQuery(new URLSearchParams(), { search, sort, base: base ?? 'none', hide: hidden.join(',') || 'none' });
 
 /** All settings of a view's address, for the router. */
-export function ofView(view: string): Record<string, string | null> {
+export function readListView(view: string): Record<string, string | null> {
 	const query = new URLSearchParams(view);
 	return Object.fromEntries(['search', 'sort', 'base', 'hide'].map((key) => [key, query.get(key)]));
 }
 
 /** A view in words. */
-export function viewName(view: string): string {
-	const { search, sort, base, hide } = ofView(view);
+export function listViewText(view: string): string {
+	const { search, sort, base, hide } = readListView(view);
 	const hidden = readHidden(hide ?? 'none', { getItem: () => null });
 	return [
 		search || 'all runs',
@@ -78,11 +78,11 @@ export function viewName(view: string): string {
 }
 
 /** Saved views, in the order of saving. Earlier versions saved only the search. */
-export const readViews = (kept: Pick<Storage, 'getItem'>): string[] =>
-	(kept.getItem(VIEWS) ?? '').split('\n').filter(Boolean).map((line) => (line.startsWith('?') ? line : viewOf(line, null, null, [])));
+export const readSavedViews = (kept: Pick<Storage, 'getItem'>): string[] =>
+	(kept.getItem(VIEWS) ?? '').split('\n').filter(Boolean).map((line) => (line.startsWith('?') ? line : writeListView(line, null, null, [])));
 
-export function toggleView(view: string, kept: Pick<Storage, 'getItem' | 'setItem'>): void {
-	const views = readViews(kept);
+export function toggleSavedView(view: string, kept: Pick<Storage, 'getItem' | 'setItem'>): void {
+	const views = readSavedViews(kept);
 	kept.setItem(VIEWS, (views.includes(view) ? views.filter((one) => one !== view) : [...views, view]).join('\n'));
 }
 

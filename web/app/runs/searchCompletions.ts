@@ -2,7 +2,7 @@
 const TERMS = ['bench:', 'procedure:', 'kind:', 'state:', 'safe:', 'tag:', 'note:', 'simulated:yes', 'simulated:no', 'after:', 'before:', 'id>', 'rows>', 'duration>'];
 
 /** Possible completions of the last search term; `values`: known values of a key. Each completion is the whole text. */
-export function completions(text: string, values: Record<string, readonly string[]>): string[] {
+export function searchCompletions(text: string, values: Record<string, readonly string[]>): string[] {
 	const head = text.slice(0, text.lastIndexOf(' ') + 1);
 	const last = text.slice(head.length);
 	const not = last.startsWith('-') ? '-' : '';

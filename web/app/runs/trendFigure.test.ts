@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { Trends } from '../api/types';
-import { quantitiesOf, trendFigure } from './trendFigure';
+import { trendQuantities, trendFigure } from './trendFigure';
 
 const quantity = (name: string, value: number, ci95: [number, number] | null = null) => ({ name, symbol: '', title: name.toUpperCase(), unit: 'Nm', value, ci95 });
 const run = (id: number, minute: number, more: object) => ({ run: id, created_at: `2026-11-26T10:${String(minute).padStart(2, '0')}:00Z`, bench: 'a', procedure: 'friction', tags: [], temperature_c: null, quantities: [], ...more });
@@ -16,7 +16,7 @@ const trends = {
 const same = (unit: string) => ({ factor: 1, unit });
 
 it('offers every quantity, the most frequent first', () => {
-	expect(quantitiesOf(trends).map(({ name, n }) => [name, n])).toEqual([['tau_c', 3], ['b', 1]]);
+	expect(trendQuantities(trends).map(({ name, n }) => [name, n])).toEqual([['tau_c', 3], ['b', 1]]);
 });
 
 it('lays a quantity over runs with its intervals, each bench by itself', () => {

@@ -1,7 +1,7 @@
 import type { Trends } from '../api/types';
 import type { Figure, Series } from '../figure/figure';
 import type { Scale } from '../format/number';
-import { moment } from '../format/time';
+import { formatDateTime } from '../format/time';
 
 export const AXES = ['run', 'time', 'temperature', 'bench', 'tag'] as const;
 export type TrendAxis = (typeof AXES)[number];
@@ -10,7 +10,7 @@ type TrendRun = Trends['runs'][number];
 /** Largest number of runs that can be named along an axis. */
 const NAMED = 30;
 
-export interface Trended {
+export interface TrendQuantity {
 	name: string;
 	title: string;
 	unit: string;
@@ -19,8 +19,8 @@ export interface Trended {
 }
 
 /** Every quantity of at least one run, the most frequent first. */
-export function quantitiesOf({ runs }: Trends): Trended[] {
-	const found = new Map<string, Trended>();
+export function trendQuantities({ runs }: Trends): TrendQuantity[] {
+	const found = new Map<string, TrendQuantity>();
 	for (const { quantities } of runs) {
 		for (const { name, title, unit } of quantities) found.set(name, { name, title, unit, n: (found.get(name)?.n ?? 0) + 1 });
 	}
@@ -30,7 +30,7 @@ export function quantitiesOf({ runs }: Trends): Trended[] {
 const UNITS: [string, number][] = [['d', 86_400], ['h', 3600], ['min', 60]];
 const seconds = (one: TrendRun) => Date.parse(one.created_at) / 1000;
 
-interface Along {
+interface TrendPositions {
 	label: string;
 	unit: string;
 	names?: string[];
@@ -38,8 +38,8 @@ interface Along {
 	at: (one: TrendRun, i: number) => number | null;
 }
 
-function along(axis: TrendAxis, runs: readonly TrendRun[]): Along {
-	const named = (label: string, of: (one: TrendRun) => string): Along => {
+function trendPositions(axis: TrendAxis, runs: readonly TrendRun[]): TrendPositions {
+	const named = (label: string, of: (one: TrendRun) => string): TrendPositions => {
 		const names = [...new Set(runs.map(of))];
 		return { label, unit: '', names, at: (one) => names.indexOf(of(one)) };
 	};
@@ -50,7 +50,7 @@ function along(axis: TrendAxis, runs: readonly TrendRun[]): Along {
 	const first = runs[0] ? seconds(runs[0]) : 0;
 	const span = runs.length > 0 ? seconds(runs.at(-1)!) - first : 0;
 	const [unit, size] = UNITS.find(([, size]) => span >= 2 * size) ?? ['s', 1];
-	return { label: `time since ${runs[0] ? moment(runs[0].created_at) : ''}`, unit, at: (one) => (seconds(one) - first) / size };
+	return { label: `time since ${runs[0] ? formatDateTime(runs[0].created_at) : ''}`, unit, at: (one) => (seconds(one) - first) / size };
 }
 
 /**
@@ -58,15 +58,15 @@ function along(axis: TrendAxis, runs: readonly TrendRun[]): Along {
  */
 export function trendFigure({ runs: all }: Trends, quantity: string, axis: TrendAxis, scale: (unit: string) => Scale): Figure | null {
 	const runs = all.filter(({ quantities }) => quantities.some(({ name }) => name === quantity));
-	const { at, ...x } = along(axis, runs);
+	const { at, ...x } = trendPositions(axis, runs);
 	const series = new Map<string, Series & { band: number[][] }>();
-	let told: Trended | undefined;
+	let shown: TrendQuantity | undefined;
 	runs.forEach((one, i) => {
 		const found = one.quantities.find(({ name }) => name === quantity)!;
 		const place = at(one, i);
 		if (place === null) return;
 		const { factor, unit } = scale(found.unit);
-		told ??= { name: quantity, title: found.title, unit, n: runs.length };
+		shown ??= { name: quantity, title: found.title, unit, n: runs.length };
 		const own = series.get(one.bench) ?? { label: one.bench, mark: 'points' as const, x: [], y: [], band: [] };
 		series.set(one.bench, own);
 		const value = found.value * factor;
@@ -74,5 +74,5 @@ export function trendFigure({ runs: all }: Trends, quantity: string, axis: Trend
 		own.y.push(value);
 		own.band.push((found.ci95 ?? [found.value, found.value]).map((end) => end * factor));
 	});
-	return told ? { name: `trend-${quantity}`, title: told.title, form: 'cartesian', x, y: { label: told.title, unit: told.unit }, series: [...series.values()] } : null;
+	return shown ? { name: `trend-${quantity}`, title: shown.title, form: 'cartesian', x, y: { label: shown.title, unit: shown.unit }, series: [...series.values()] } : null;
 }

@@ -1,9 +1,9 @@
-import { type Refusal, asRefusal } from '../api/apiError';
+import { type ApiError, toApiError } from '../api/apiError';
 
 /** An action of the user: one at a time, with the reason of the last refusal. */
 export function action() {
 	let busy = $state(false);
-	let error: Refusal | null = $state.raw(null);
+	let error: ApiError | null = $state.raw(null);
 	return {
 		get busy() {
 			return busy;
@@ -11,14 +11,14 @@ export function action() {
 		get error() {
 			return error;
 		},
-		async act(work: () => Promise<unknown>): Promise<void> {
+		async run(work: () => Promise<unknown>): Promise<void> {
 			if (busy) return;
 			busy = true;
 			error = null;
 			try {
 				await work();
 			} catch (failure) {
-				error = asRefusal(failure);
+				error = toApiError(failure);
 			}
 			busy = false;
 		},

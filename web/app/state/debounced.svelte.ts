@@ -1,7 +1,7 @@
 /**
  * A value that follows another after it has been constant for a while, so that not every key stroke sends a request.
  */
-export function settle<T>(source: () => T, wait_ms: number): { readonly value: T } {
+export function debounced<T>(source: () => T, wait_ms: number): { readonly value: T } {
 	let value: T = $state.raw(source());
 	$effect(() => {
 		const next = source();

@@ -1,30 +1,30 @@
-import { type Angle, angleScale, readAngle } from '../format/angle';
+import { type Angle, angleScale, parseAngle } from '../format/angle';
 import { axisTitle, label } from '../format/label';
-import { speedScale, spokenSpeeds } from '../format/speed';
+import { speedScale, withDisplayedSpeeds } from '../format/speed';
 import type { Scale } from '../format/number';
 import { router } from './router.svelte';
 
-const KEPT = 'jointbench.speed';
-const ANGLE = 'jointbench.angle';
+const SPEED_KEY = 'jointbench.speed';
+const ANGLE_KEY = 'jointbench.angle';
 
 /**
  * Display units of speeds and angles: from the address, or from this browser. Sent and stored values stay in rad/s and
  * rad.
  */
-class Speed {
-	private kept = $state(localStorage.getItem(KEPT));
-	rpm = $derived((router.query.get('speed') ?? this.kept) === 'rpm');
+class DisplayUnits {
+	private storedSpeed = $state(localStorage.getItem(SPEED_KEY));
+	rpm = $derived((router.query.get('speed') ?? this.storedSpeed) === 'rpm');
 
-	toggle(): void {
-		localStorage.setItem(KEPT, (this.kept = this.rpm ? 'rad/s' : 'rpm'));
-		router.set({ speed: this.kept });
+	toggleSpeed(): void {
+		localStorage.setItem(SPEED_KEY, (this.storedSpeed = this.rpm ? 'rad/s' : 'rpm'));
+		router.set({ speed: this.storedSpeed });
 	}
 
-	private keptAngle = $state(localStorage.getItem(ANGLE));
-	angle: Angle = $derived(readAngle(router.query.get('angle') ?? this.keptAngle));
+	private storedAngle = $state(localStorage.getItem(ANGLE_KEY));
+	angle: Angle = $derived(parseAngle(router.query.get('angle') ?? this.storedAngle));
 
 	setAngle(angle: Angle): void {
-		localStorage.setItem(ANGLE, (this.keptAngle = angle));
+		localStorage.setItem(ANGLE_KEY, (this.storedAngle = angle));
 		router.set({ angle });
 	}
 
@@ -33,8 +33,8 @@ class Speed {
 	}
 
 	/** A sentence with its speeds in the displayed unit. */
-	said(sentence: string): string {
-		return spokenSpeeds(sentence, this.rpm);
+	withSpeeds(sentence: string): string {
+		return withDisplayedSpeeds(sentence, this.rpm);
 	}
 
 	/** The title of an axis in the displayed unit. */
@@ -43,4 +43,4 @@ class Speed {
 	}
 }
 
-export const speed = new Speed();
+export const displayUnits = new DisplayUnits();

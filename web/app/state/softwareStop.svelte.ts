@@ -1,8 +1,8 @@
 import { api } from '../api/client';
-import { asRefusal } from '../api/apiError';
+import { toApiError } from '../api/apiError';
 
 /** If a software stop is not acknowledged within this time, the page refers users to the hardware stop. */
-export const PATIENCE_MS = 300;
+export const ACKNOWLEDGE_LIMIT_MS = 300;
 const AGAIN_MS = 400;
 
 class SoftwareStop {
@@ -19,7 +19,7 @@ class SoftwareStop {
 		this.acknowledged_ms = null;
 		this.fault = null;
 		this.pressed = true;
-		const late = setTimeout(() => (this.overdue = true), PATIENCE_MS);
+		const late = setTimeout(() => (this.overdue = true), ACKNOWLEDGE_LIMIT_MS);
 		while (this.pressed) {
 			try {
 				await api.stopBench(bench);
@@ -28,9 +28,9 @@ class SoftwareStop {
 				const end = answer instanceof PerformanceResourceTiming ? answer.responseEnd : performance.now();
 				this.acknowledged_ms = end - begin;
 				this.pressed = false;
-				if (this.acknowledged_ms <= PATIENCE_MS) this.overdue = false;
+				if (this.acknowledged_ms <= ACKNOWLEDGE_LIMIT_MS) this.overdue = false;
 			} catch (failure) {
-				this.fault = asRefusal(failure).message;
+				this.fault = toApiError(failure).message;
 				await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
 			}
 		}
@@ -38,7 +38,7 @@ class SoftwareStop {
 	}
 
 	/** No daemon or bench can receive the stop. */
-	refuse(why: string): void {
+	cannotSend(why: string): void {
 		this.fault = why;
 		this.acknowledged_ms = null;
 		this.overdue = true;

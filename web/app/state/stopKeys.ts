@@ -1,5 +1,5 @@
 /** Longest time between two presses of Esc. */
-export const TWICE_MS = 900;
+export const DOUBLE_PRESS_MS = 900;
 
 /** Meaning of a key: stop, a request for a second Esc, or none. */
 export type StopKey = 'stop' | 'again' | null;
@@ -21,7 +21,7 @@ export class StopKeys {
 			this.#first_ms = -Infinity;
 			return null;
 		}
-		const twice = event.timeStamp - this.#first_ms < TWICE_MS;
+		const twice = event.timeStamp - this.#first_ms < DOUBLE_PRESS_MS;
 		this.#first_ms = twice ? -Infinity : event.timeStamp;
 		return twice ? 'stop' : 'again';
 	}

@@ -1,37 +1,37 @@
 import type { Component } from 'svelte';
-import { type Refusal, asRefusal } from '../api/apiError';
+import { type ApiError, toApiError } from '../api/apiError';
 
-export interface Later<P extends Record<string, unknown>> {
-	readonly part: Component<P> | null;
+export interface Lazy<P extends Record<string, unknown>> {
+	readonly component: Component<P> | null;
 	/** Why loading failed; `reload` tries again. */
-	readonly error: Refusal | null;
+	readonly error: ApiError | null;
 	reload: () => void;
 	/** Loads it, if it is not loaded. */
-	want: () => void;
+	request: () => void;
 }
 
 /** A part of the dashboard whose script is loaded on demand. Call once for each part, outside of components. */
-export function later<P extends Record<string, unknown>>(load: () => Promise<{ default: Component<P> }>): Later<P> {
-	let came: Component<P> | null = $state.raw(null);
-	let refused: Refusal | null = $state.raw(null);
-	const want = async () => {
+export function lazy<P extends Record<string, unknown>>(load: () => Promise<{ default: Component<P> }>): Lazy<P> {
+	let loaded: Component<P> | null = $state.raw(null);
+	let refused: ApiError | null = $state.raw(null);
+	const request = async () => {
 		refused = null;
 		try {
-			came = (await load()).default;
+			loaded = (await load()).default;
 		} catch (failure) {
-			refused = asRefusal(failure);
+			refused = toApiError(failure);
 		}
 	};
 	return {
-		get part() {
-			return came;
+		get component() {
+			return loaded;
 		},
 		get error() {
 			return refused;
 		},
-		reload: () => void want(),
-		want: () => {
-			if (!came) void want();
+		reload: () => void request(),
+		request: () => {
+			if (!loaded) void request();
 		},
 	};
 }

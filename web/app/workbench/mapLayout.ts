@@ -1,18 +1,18 @@
 import type { Bins } from '../residual/bins';
 import type { ResidualMap } from '../residual/map';
-import { type Place, middle, place } from '../residual/axisScale';
+import { type AxisScale, binMiddle, axisScale } from '../residual/axisScale';
 
 export const MARGIN = { left: 58, right: 6, top: 6, bottom: 38 };
 export const PALETTE = ['--map-lowest', '--map-low', '--map-mid', '--map-high', '--map-highest'];
 
-export function axesOf(map: ResidualMap, width: number, height: number): { x: Place; y: Place } {
+export function axesOf(map: ResidualMap, width: number, height: number): { x: AxisScale; y: AxisScale } {
 	return {
-		x: place(map.x, MARGIN.left, width - MARGIN.right, map.x.levels ? 14 : 8),
-		y: place(map.y, height - MARGIN.bottom, MARGIN.top, map.y.levels ? 9 : 5),
+		x: axisScale(map.x, MARGIN.left, width - MARGIN.right, map.x.setPoints ? 14 : 8),
+		y: axisScale(map.y, height - MARGIN.bottom, MARGIN.top, map.y.setPoints ? 9 : 5),
 	};
 }
 
-export const where = (bins: Bins, scale: Place, tick: number): number => (bins.levels ? middle(bins, scale, bins.levels.indexOf(tick)) : scale.at(tick));
+export const where = (bins: Bins, scale: AxisScale, tick: number): number => (bins.setPoints ? binMiddle(bins, scale, bins.setPoints.indexOf(tick)) : scale.at(tick));
 
 /** Both ends in order, with a visible minimum distance. */
 export function widened([a = 0, b = 0]: number[]): [number, number] {

@@ -1,5 +1,5 @@
 import type { ResidualSet } from '../api/types';
-import { valuesOf } from '../residual/regionSamples';
+import { axisValues } from '../residual/regionSamples';
 
 /** The run that visits a region again: `strokes` at its speeds, under its load. */
 export interface Visit {
@@ -21,7 +21,7 @@ const SPEEDS_PER_DECADE = 4;
 
 /** `null` if the region contains no sample in motion. */
 export function visit(set: ResidualSet, chosen: Uint8Array, run: { parameters: Record<string, unknown>; meta: Record<string, unknown>; provenance: Record<string, unknown> }): Visit | null {
-	const inside = (name: string) => valuesOf(set, name)?.filter((value, i) => chosen[i] && Number.isFinite(value)) ?? [];
+	const inside = (name: string) => axisValues(set, name)?.filter((value, i) => chosen[i] && Number.isFinite(value)) ?? [];
 	const speeds = inside(VELOCITY).map(Math.abs).filter((speed) => speed > 0).sort((a, b) => a - b);
 	if (speeds.length === 0) return null;
 	// A few samples at the edges are ripple of another set-point.

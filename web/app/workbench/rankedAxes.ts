@@ -1,7 +1,7 @@
 import type { ResidualSet } from '../api/types';
 import { type Bins, binOf, binsFor } from '../residual/bins';
 import { type Point, curve, explainedShare } from '../residual/curve';
-import { type Side, directionOf, keep, usefulAxes } from '../residual/points';
+import { type DirectionFilter, directionOf, pointMask, usefulAxes } from '../residual/points';
 
 /** One axis with the residual along it. */
 export interface Ranked {
@@ -34,9 +34,9 @@ export function usualAxes(set: ResidualSet, kind: string | undefined): string[] 
 }
 
 /** Every axis with the curve of a quantity of the points, the axis with the largest explained fraction first. */
-export function rankAxes(set: ResidualSet, figure: readonly number[], side: Side, ramps: boolean, noise: number, shown: (unit: string) => { factor: number } = () => ({ factor: 1 })): Ranked[] {
-	const kept = keep(set, side, ramps);
-	const sides = { positive: keep(set, 'positive', ramps), negative: keep(set, 'negative', ramps) };
+export function rankAxes(set: ResidualSet, figure: readonly number[], side: DirectionFilter, ramps: boolean, noise: number, shown: (unit: string) => { factor: number } = () => ({ factor: 1 })): Ranked[] {
+	const kept = pointMask(set, side, ramps);
+	const sides = { positive: pointMask(set, 'positive', ramps), negative: pointMask(set, 'negative', ramps) };
 	const way = side === 'both' ? directionOf(set) : null;
 	const turned = way ? explainedShare(way, [-Infinity, 0, Infinity], figure, kept) : 0;
 	return usefulAxes(set, kept)

@@ -1,5 +1,5 @@
 import type { Model } from '../api/types';
-import { words } from '../format/label';
+import { idText } from '../format/label';
 
 /** The versions from the root of the tree to a version, as the waterfall shows them. */
 export function chain(models: readonly Model[], id: number): Model[] {
@@ -32,7 +32,7 @@ export function sameData(one: Model, other: Model): boolean {
 export const isAside = ({ tried, idle }: Model): boolean => tried || idle;
 
 /** The change from the parent to this version, in a few words. */
-export function stepName(model: Model, before?: Model, titleOf = words): string {
+export function stepName(model: Model, before?: Model, titleOf = idText): string {
 	if (model.parent == null) return 'start';
 	const parts = [...model.added.map((id) => `+ ${titleOf(id)}`), ...model.removed.map((id) => `− ${titleOf(id)}`)];
 	if (parts.length > 0) return parts.join(', ');

@@ -1,5 +1,5 @@
 import type { Model, Suggestion, Worth } from '../api/types';
-import { words } from '../format/label';
+import { idText } from '../format/label';
 import { sameData, stepName } from './versionTree';
 
 export interface Bar {
@@ -15,7 +15,7 @@ export interface Bar {
 }
 
 /** One bar per version of the path, and a last one for the suggested effect. */
-export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' | 'validation_rms'> | null, titleOf = words): Bar[] {
+export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' | 'validation_rms'> | null, titleOf = idText): Bar[] {
 	const bars: Bar[] = path.map((model, i) => {
 		const before = path[i - 1];
 		return {

@@ -1,18 +1,18 @@
 import { untrack } from 'svelte';
 import { api } from '../api/client';
-import { type Refusal, asRefusal } from '../api/apiError';
+import { type ApiError, toApiError } from '../api/apiError';
 import type { Exclusion, Model, Run } from '../api/types';
-import { change, quantity } from '../format/number';
-import { words } from '../format/label';
+import { formatChange, formatQuantity } from '../format/number';
+import { idText } from '../format/label';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
-import { readMarked } from '../runs/comparedRuns';
+import { readComparedRuns } from '../runs/comparedRuns';
 import { role } from '../state/role.svelte';
 import { router } from '../state/router.svelte';
 import { reveal } from '../ui/reveal';
 import { isFinal } from '../ui/states';
-import { type Side, inOneTurn, withMore } from '../residual/points';
-import { selected } from '../residual/regionSamples';
+import { type DirectionFilter, foldPositions, withDerivedAxes } from '../residual/points';
+import { regionSamples } from '../residual/regionSamples';
 import { usualAxes } from './rankedAxes';
 import { readRegion } from './region';
 import { WORTH, childWith, gain, isAside, sameData, undecided, worded } from './versionTree';
@@ -21,15 +21,15 @@ import { WORTH, childWith, gain, isAside, sameData, undecided, worded } from './
 export function openWorkbench(id: number) {
 	let busy: string | null = $state(null);
 	let notice: { text: string; good: boolean } | null = $state.raw(null);
-	let refused: Refusal | null = $state.raw(null);
+	let refused: ApiError | null = $state.raw(null);
 	let undone: number[] = $state.raw([]);
 
 	const run = resource(
-		() => `${id} ${lab.runStates[id] ?? ''} ${lab.line}`,
+		() => `${id} ${lab.runStates[id] ?? ''} ${lab.connected}`,
 		(_key, signal) => api.run(id, signal),
 	);
 	const models = resource(
-		() => `${id} ${lab.models} ${lab.line}`,
+		() => `${id} ${lab.models} ${lab.connected}`,
 		(_key, signal) => api.models(id, signal),
 	);
 	const effects = resource(
@@ -63,15 +63,15 @@ export function openWorkbench(id: number) {
 	const other: Model | null = $derived(
 		versions.find((one) => String(one.id) === router.query.get('with') && one.id !== model?.id) ?? null,
 	);
-	const load = async (version: number, signal: AbortSignal) => ({ version, set: inOneTurn(withMore(await api.residuals(version, signal))) });
+	const load = async (version: number, signal: AbortSignal) => ({ version, set: foldPositions(withDerivedAxes(await api.residuals(version, signal))) });
 	const residuals = resource(() => model?.id ?? null, load);
 	const otherResiduals = resource(() => other?.id ?? null, load);
-	const side = $derived((router.query.get('side') ?? 'both') as Side);
+	const side = $derived((router.query.get('side') ?? 'both') as DirectionFilter);
 	const ramps = $derived(router.query.has('ramps'));
 	/** Text first: a zoom changes the address too, and must not cause a new selection. */
 	const regionText = $derived(router.query.get('region'));
 	const region = $derived(readRegion(regionText));
-	const chosen = $derived(residuals.data ? selected(residuals.data.set, region, side, ramps) : null);
+	const chosen = $derived(residuals.data ? regionSamples(residuals.data.set, region, side, ramps) : null);
 	const usual = $derived(residuals.data ? usualAxes(residuals.data.set, run.data?.kind) : []);
 	const diagnosis = resource(
 		() => (model ? `${model.id} ${lab.effects}` : null),
@@ -84,7 +84,7 @@ export function openWorkbench(id: number) {
 		laid ||= model !== null && [run, effects, residuals, diagnosis, alike].every((one) => one.data ?? one.error);
 	});
 
-	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? words(effect);
+	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? idText(effect);
 
 	/** One fit at a time; its result is a version. */
 	async function fitted(what: string, fit: () => Promise<Model>): Promise<Model | null> {
@@ -96,7 +96,7 @@ export function openWorkbench(id: number) {
 			models.put([...versions.filter((one) => one.id !== made.id), made]);
 			return made;
 		} catch (failure) {
-			refused = asRefusal(failure);
+			refused = toApiError(failure);
 			return null;
 		} finally {
 			busy = null;
@@ -119,7 +119,7 @@ export function openWorkbench(id: number) {
 	}
 
 	async function show(next: Model, parent: Model | null): Promise<void> {
-		if (isAside(next) && !role.observing && !(await fitted('Keeping', () => api.keepModel(next.id)))) return;
+		if (isAside(next) && !role.isObserver && !(await fitted('Keeping', () => api.keepModel(next.id)))) return;
 		router.set({ model: next.id, with: null, region: null, side: null, zoom: null }, parent === null ? 'replace' : 'push');
 		undone = [];
 		notice = parent ? told(parent, next) : null;
@@ -158,8 +158,8 @@ export function openWorkbench(id: number) {
 		const open = share > WORTH ? undecided(before, after) : [];
 		if (!kept && open.length === 0) return null;
 		const stays = after.added.length === 0 && Math.abs(share) <= WORTH;
-		const [was, is] = [before, after].map((one) => quantity(one.validation_rms, one.fit.unit));
-		const said = `Validation error ${was} → ${is}: ${stays ? '≈ as before' : worded(share)} (${change(-share)})`;
+		const [was, is] = [before, after].map((one) => formatQuantity(one.validation_rms, one.fit.unit));
+		const said = `Validation error ${was} → ${is}: ${stays ? '≈ as before' : worded(share)} (${formatChange(-share)})`;
 		if (open.length > 0) return { text: `${said}, but this data does not decide ${open.join(', ')}: ${kept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
 		const good = stays || share > WORTH;
 		return { text: `${said}.${good ? '' : ' Undo with z.'}`, good };
@@ -184,7 +184,7 @@ export function openWorkbench(id: number) {
 	}
 	const others = $derived(model?.more_runs ?? []);
 	/** Additional runs in the address: used once, afterwards the address names the version. */
-	const wanted = () => readMarked(router.query.get('more')).filter((one) => one !== id);
+	const wanted = () => readComparedRuns(router.query.get('more')).filter((one) => one !== id);
 	const together = (more: number[]) => `Fitting run #${[id, ...more].join(' and #')} together`;
 	$effect(() => {
 		const more = wanted();
@@ -355,4 +355,4 @@ function baselineOf(run: Run | undefined): string[] {
 	return Array.isArray(given) ? given.map(String) : [];
 }
 
-export type Bench = ReturnType<typeof openWorkbench>;
+export type Workbench = ReturnType<typeof openWorkbench>;

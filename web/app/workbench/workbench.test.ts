@@ -5,8 +5,8 @@ import { overlay } from './overlay';
 import { rankAxes } from './rankedAxes';
 import { readView, writeView } from './zoom';
 import { readRegion, strength, writeRegion, writeStretch } from './region';
-import { sharesOf } from '../residual/meanCurves';
-import { selected } from '../residual/regionSamples';
+import { selectedShares } from '../residual/meanCurves';
+import { regionSamples } from '../residual/regionSamples';
 import { branches, chain, childWith, gain, stepName, undecided } from './versionTree';
 import { barsOf, lossesOf, markOf, topOf } from './waterfall';
 
@@ -124,11 +124,11 @@ describe('regions', () => {
 			{ axis: 'load', from: 4, to: 6 },
 			{ axis: 'measured', from: 1.5, to: 3 },
 		];
-		expect([...selected(set, region, 'both', false)!]).toEqual([0, 1, 1, 0]);
-		expect([...selected(set, region, 'negative', false)!]).toEqual([0, 0, 1, 0]);
-		expect(selected(set, [{ axis: 'absent', from: 0, to: 1 }], 'both', false)).toBeNull();
-		const bins = { edges: [0, 4, 10], levels: null };
-		expect(sharesOf(set.axes[1]!.values, bins, new Uint8Array([1, 1, 1, 1]), new Uint8Array([0, 1, 1, 0]))).toEqual([0, 0.5]);
+		expect([...regionSamples(set, region, 'both', false)!]).toEqual([0, 1, 1, 0]);
+		expect([...regionSamples(set, region, 'negative', false)!]).toEqual([0, 0, 1, 0]);
+		expect(regionSamples(set, [{ axis: 'absent', from: 0, to: 1 }], 'both', false)).toBeNull();
+		const bins = { edges: [0, 4, 10], setPoints: null };
+		expect(selectedShares(set.axes[1]!.values, bins, new Uint8Array([1, 1, 1, 1]), new Uint8Array([0, 1, 1, 0]))).toEqual([0, 0.5]);
 	});
 
 	it('are seen in the overlay, whatever its axis', () => {
@@ -143,7 +143,7 @@ describe('regions', () => {
 			held_out: [false, true, false],
 			excluded: [],
 		} as unknown as ResidualSet;
-		const chosen = selected(set, [{ axis: 'load', from: 4, to: 6 }], 'both', true);
+		const chosen = regionSamples(set, [{ axis: 'load', from: 4, to: 6 }], 'both', true);
 		const times = set.axes[0]!.values;
 		const drawn = overlay(set, times, chosen, 1000, true);
 		expect(drawn.x).toEqual([1, 2, 3]);
