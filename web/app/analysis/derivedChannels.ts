@@ -2,7 +2,7 @@ import type { Channel } from '../api/types';
 import { label } from '../format/label';
 
 /** A channel that a formula derives from channels of the run. */
-export interface Derived {
+export interface DerivedChannel {
 	formula: string;
 	/** The user's title, else the formula itself. */
 	title: string;
@@ -11,7 +11,7 @@ export interface Derived {
 }
 
 /** `drive power [W] = motor_torque_nm * motor_velocity_rad_s`, or only the formula. The daemon parses the formula. */
-export function derivedOf(text: string): Derived {
+export function parseDerived(text: string): DerivedChannel {
 	const equals = text.indexOf('=');
 	const formula = text.slice(equals + 1).trim();
 	if (equals < 0) return { formula, title: formula, unit: null };
@@ -24,12 +24,12 @@ export const readDerived = (text: string | null): string[] => (text ?? '').split
 export const writeDerived = (list: readonly string[]): string | null => [...new Set(list)].join(';') || null;
 
 /** Two channels or formulas, the first over the second: `y;x`. */
-export function readOver(text: string | null): { y: string; x: string } | null {
+export function readAxes(text: string | null): { y: string; x: string } | null {
 	const [y = '', x = ''] = readDerived(text);
 	return y && x ? { y, x } : null;
 }
 
-export interface Choice {
+export interface Signal {
 	/** The formula for the request to the daemon. */
 	formula: string;
 	title: string;
@@ -37,9 +37,9 @@ export interface Choice {
 }
 
 /** Everything that can be drawn: channels of the run and derived channels. */
-export const choicesOf = (channels: readonly Channel[], derived: readonly string[]): Choice[] => [
+export const signalsOf = (channels: readonly Channel[], derived: readonly string[]): Signal[] => [
 	...channels.filter(({ name }) => !/^(segment|repeat)$/.test(name)).map(({ name, unit }) => ({ formula: name, ...label(name, unit) })),
-	...derived.map(derivedOf),
+	...derived.map(parseDerived),
 ];
 
-export const titled = (title: string, unit: string | null | undefined): string => (unit && unit !== '1' ? `${title} [${unit}]` : title);
+export const withUnit = (title: string, unit: string | null | undefined): string => (unit && unit !== '1' ? `${title} [${unit}]` : title);

@@ -2,13 +2,13 @@
  * Points of one channel over another, in the order of x as a plot needs it. The directions of motion are separated if
  * they are known.
  */
-export interface Pairs {
+export interface XyPoints {
 	x: number[];
 	/** Positive direction (or all points), then negative direction. */
 	columns: (number | null)[][];
 }
 
-export function pairsOf(x: readonly (number | null)[], y: readonly (number | null)[], velocity: readonly (number | null)[] | null): Pairs {
+export function xyPoints(x: readonly (number | null)[], y: readonly (number | null)[], velocity: readonly (number | null)[] | null): XyPoints {
 	const points = x.flatMap((at, i) => {
 		const value = y[i];
 		return at == null || value == null ? [] : [{ at, value, back: (velocity?.[i] ?? 0) < 0 }];

@@ -162,8 +162,8 @@ export function rowsOf(figure: Figure): Row[] {
 	);
 }
 
-const titled = (label: string, unit: string) => (unit ? `${label} [${unit}]` : label);
-export const axisName = (axis: Axis) => titled(axis.label, axis.unit);
+const withUnit = (label: string, unit: string) => (unit ? `${label} [${unit}]` : label);
+export const axisName = (axis: Axis) => withUnit(axis.label, axis.unit);
 
 export function tableOf(figure: Figure): Table {
 	const y = axisName(figure.y);

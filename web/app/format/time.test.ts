@@ -1,8 +1,12 @@
 import { expect, it } from 'vitest';
-import { formatCountdown, formatDuration, formatDateTime } from './time';
+import { formatCountdown, formatDateTime, formatDuration, formatShortDuration } from './time';
 
 it('says durations', () => {
 	expect([0.44, 43.2, 380, 7500, null].map(formatDuration)).toEqual(['0.4 s', '43 s', '6 min 20 s', '2 h 5 min', '–']);
+});
+
+it('shortens durations to their largest unit', () => {
+	expect([0.44, 43.2, 59.7, 60, 380, 7500, Infinity].map(formatShortDuration)).toEqual(['0.4 s', '43 s', '1 min', '1 min', '6 min', '2 h', '–']);
 });
 
 it('counts down', () => {

@@ -11,6 +11,14 @@ export function formatDuration(seconds: number | null | undefined): string {
 	return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
+/** The largest unit only: `6 min`, `2 h`, `43 s`. */
+export function formatShortDuration(seconds: number): string {
+	const whole = Math.round(seconds);
+	if (!Number.isFinite(seconds) || whole < 60) return formatDuration(seconds);
+	const minutes = Math.floor(whole / 60);
+	return minutes < 60 ? `${minutes} min` : `${Math.floor(minutes / 60)} h`;
+}
+
 /** `3:51`, in the style of a count-down. */
 export function formatCountdown(seconds: number): string {
 	const whole = Math.max(0, Math.round(seconds));

@@ -10,7 +10,7 @@ export interface MeanCurve {
 	dash: string;
 	/** Without points and bands. */
 	lineOnly?: boolean;
-	wide?: boolean;
+	isWide?: boolean;
 }
 
 /** Points of a curve with enough samples, with their positions. */

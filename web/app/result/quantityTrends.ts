@@ -36,7 +36,7 @@ export function quantityTrends(run: number, quantities: readonly IdentifiedQuant
 		const shown = scale(of.unit);
 		const texts = all.map(({ run, created_at, quantity }) => {
 			const { value, interval, unit } = formatResult(quantity, shown);
-			return `#${run} ${created_at && formatDateTime(created_at)} ${value} ${interval} ${unit}`.replace(/ +/g, ' ').trim();
+			return [`#${run}`, created_at && formatDateTime(created_at), value, interval, unit].filter(Boolean).join(' ');
 		});
 		const before = referenceRun(earlier)!.quantities.find(named);
 		const dots = all.map(({ run, quantity: { value, ci95 } }) => ({ run, at: height(value), ends: [height(ci95?.[0] ?? value), height(ci95?.[1] ?? value)] as const }));

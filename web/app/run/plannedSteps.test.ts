@@ -39,7 +39,7 @@ it('gives set points only to the channels that follow them', () => {
 
 it('draws a limit on both sides, and that of a temperature once', () => {
 	const run = { provenance: { limits: { motor_velocity_rad_s: 20, temperature_c: 80 } } };
-	expect(limitLines(run, ['motor_velocity_rad_s', 'other'], ONE)[0]).toMatchObject({ said: '± 20 rad/s', levels: [20, -20] });
-	expect(limitLines(run, ['temperature_c'], { factor: 1, unit: '°C' })[0]).toMatchObject({ said: '80 °C', levels: [80] });
+	expect(limitLines(run, ['motor_velocity_rad_s', 'other'], ONE)[0]).toMatchObject({ valueText: '± 20 rad/s', levels: [20, -20] });
+	expect(limitLines(run, ['temperature_c'], { factor: 1, unit: '°C' })[0]).toMatchObject({ valueText: '80 °C', levels: [80] });
 	expect(limitLines({ provenance: {} }, ['temperature_c'], ONE)).toEqual([]);
 });

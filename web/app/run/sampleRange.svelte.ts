@@ -11,7 +11,7 @@ const PIXELS = 1600;
 /** The daemon stores a run every two seconds. */
 const COMMITTED_MS = 2500;
 /** [s] A shorter gap is ignored. */
-const HOLE_S = 0.1;
+const MIN_GAP_S = 0.1;
 
 /**
  * The time range of a run's plots and its samples: from memory during the run, else from the store. Call during
@@ -32,15 +32,15 @@ export function sampleRange(run: () => Run, live: () => boolean, look: () => Plo
 		(_key, signal) => load(view?.[0], view?.[1], signal),
 	);
 	/** Samples before the page connected. The store has the last of them two seconds later. */
-	const missed = $derived.by(() => {
+	const missingRange = $derived.by(() => {
 		const now = look();
 		const first_s = isLive && now.follow ? (lab.samples?.first_s ?? 0) : 0;
 		const from_s = now.follow ? Math.max(0, first_s - now.width_s) : 0;
-		return first_s > Math.max(0, view?.[0] ?? 0) + HOLE_S ? `${from_s}:${first_s}` : null;
+		return first_s > Math.max(0, view?.[0] ?? 0) + MIN_GAP_S ? `${from_s}:${first_s}` : null;
 	});
-	const wanted = debounced(() => missed, COMMITTED_MS);
+	const wanted = debounced(() => missingRange, COMMITTED_MS);
 	const before = resource(
-		() => missed && wanted.value,
+		() => missingRange && wanted.value,
 		(key, signal) => {
 			const [from_s, to_s] = key.split(':').map(Number);
 			return load(from_s, to_s, signal);
@@ -54,7 +54,7 @@ export function sampleRange(run: () => Run, live: () => boolean, look: () => Plo
 			return view;
 		},
 		/** The visible time range, as soon as there is one: before that, cursors have no position. */
-		get seen(): View | null {
+		get visible(): View | null {
 			if (view) return view;
 			void lab.frames;
 			const [first, last] = stored ? [history.data?.time[0], history.data?.time.at(-1)] : [lab.samples?.first_s, lab.samples?.last_s];
@@ -67,7 +67,7 @@ export function sampleRange(run: () => Run, live: () => boolean, look: () => Plo
 		get gaps() {
 			if (stored) return history.data?.gaps ?? [];
 			const [first_s, last_s] = [lab.samples?.first_s, before.data?.time.at(-1)];
-			const hole: [number, number][] = first_s != null && last_s !== undefined && first_s - last_s > HOLE_S ? [[last_s, first_s]] : [];
+			const hole: [number, number][] = first_s != null && last_s !== undefined && first_s - last_s > MIN_GAP_S ? [[last_s, first_s]] : [];
 			return [...(before.data?.gaps ?? []), ...hole, ...(lab.samples?.gaps ?? [])];
 		},
 		reload: history.reload,

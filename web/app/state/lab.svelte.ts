@@ -129,12 +129,12 @@ class LabState {
 				this.progress[message.run] = message.progress;
 				break;
 			case 'event':
-				this.follow(message.run);
+				this.resetForRun(message.run);
 				if (this.events.some((event) => event.sequence === message.event.sequence)) break;
 				this.events = [...this.events, message.event];
 				break;
 			case 'channels':
-				this.follow(message.run);
+				this.resetForRun(message.run);
 				this.channels = message.channels;
 				if (this.samples?.names.join() !== message.channels.map((c) => c.name).join()) {
 					this.samples = new SampleBuffer(message.channels.map((channel) => channel.name));
@@ -153,7 +153,7 @@ class LabState {
 		}
 	}
 
-	private follow(run: number): void {
+	private resetForRun(run: number): void {
 		if (run === this.liveRun) return;
 		this.liveRun = run;
 		this.events = [];

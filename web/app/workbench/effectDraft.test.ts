@@ -1,12 +1,12 @@
 import { describe, expect, it } from 'vitest';
-import { cut, definitionOf, draftOf, faultOf, idOf, parameterDraft, unknownName } from './effectDraft';
+import { splitAtError, definitionOf, draftOf, draftError, effectId, parameterDraft, unknownName } from './effectDraft';
 
 const draft = { title: 'My load term', sentence: '', formula: 'tau = a * tanh(velocity / w0)', parameters: [{ name: 'a', unit: '', min: '', max: '1,5' }] };
 const place = (text: string, position: number, length: number) => ({ field: 'formula', text, position, length, message: 'wrong' });
 
 describe('an effect of one’s own', () => {
 	it('gets its id from its name', () => {
-		expect(idOf('  Übermäßig: load ² term! ')).toBe('berm_ig_load_term');
+		expect(effectId('  Übermäßig: load ² term! ')).toBe('berm_ig_load_term');
 		expect(definitionOf(draft, 'friction').id).toBe('my_load_term');
 	});
 
@@ -19,16 +19,16 @@ describe('an effect of one’s own', () => {
 	});
 
 	it('says what is missing before it asks', () => {
-		expect(faultOf(draft)).toBeNull();
-		expect(faultOf({ ...draft, formula: ' ' })).toMatch(/formula/);
-		expect(faultOf({ ...draft, title: '' })).toBeNull();
+		expect(draftError(draft)).toBeNull();
+		expect(draftError({ ...draft, formula: ' ' })).toMatch(/formula/);
+		expect(draftError({ ...draft, title: '' })).toBeNull();
 		expect(definitionOf({ ...draft, title: '' }, 'friction').id).toBe('unnamed');
-		expect(faultOf({ ...draft, parameters: [{ ...parameterDraft('a'), min: 'few' }] })).toMatch(/^a: /);
+		expect(draftError({ ...draft, parameters: [{ ...parameterDraft('a'), min: 'few' }] })).toMatch(/^a: /);
 	});
 
 	it('marks the mistake at its character, counted as people count', () => {
-		expect(cut(place('tau = 𝛼 + bb', 10, 2))).toEqual(['tau = 𝛼 + ', 'bb', '']);
-		expect(cut(place('tau = (', 7, 0))).toEqual(['tau = (', '', '']);
+		expect(splitAtError(place('tau = 𝛼 + bb', 10, 2))).toEqual(['tau = 𝛼 + ', 'bb', '']);
+		expect(splitAtError(place('tau = (', 7, 0))).toEqual(['tau = (', '', '']);
 	});
 
 	it('offers to make an unknown name a parameter, but no function and no sign', () => {

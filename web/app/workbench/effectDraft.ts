@@ -9,7 +9,7 @@ export interface ParameterDraft {
 }
 
 /** A user's effect as typed by the user. */
-export interface Draft {
+export interface EffectDraft {
 	title: string;
 	sentence: string;
 	formula: string;
@@ -19,7 +19,7 @@ export interface Draft {
 export const parameterDraft = (name = ''): ParameterDraft => ({ name, unit: '', min: '', max: '' });
 
 /** The id of an effect from its name: `My load term` → `my_load_term`. */
-export function idOf(title: string): string {
+export function effectId(title: string): string {
 	return title
 		.toLowerCase()
 		.replace(/[^a-z0-9]+/g, '_')
@@ -33,7 +33,7 @@ function bound(text: string): number | null {
 }
 
 /** The first error that the page finds itself, before a request to the daemon. */
-export function faultOf(draft: Draft): string | null {
+export function draftError(draft: EffectDraft): string | null {
 	if (draft.formula.trim() === '') return 'Write the formula.';
 	for (const p of draft.parameters) {
 		const [min, max] = [bound(p.min), bound(p.max)];
@@ -43,9 +43,9 @@ export function faultOf(draft: Draft): string | null {
 }
 
 /** An effect without a name is checked and tried under the name `unnamed`. */
-export function definitionOf(draft: Draft, kind: string): EffectDefinition {
+export function definitionOf(draft: EffectDraft, kind: string): EffectDefinition {
 	return {
-		id: idOf(draft.title) || 'unnamed',
+		id: effectId(draft.title) || 'unnamed',
 		kind,
 		title: draft.title.trim() || 'unnamed',
 		sentence: draft.sentence.trim(),
@@ -54,7 +54,7 @@ export function definitionOf(draft: Draft, kind: string): EffectDefinition {
 	};
 }
 
-export function draftOf(definition: EffectDefinition): Draft {
+export function draftOf(definition: EffectDefinition): EffectDraft {
 	const text = (value: number | null | undefined) => (value == null ? '' : String(value));
 	return {
 		title: definition.title || definition.id.replaceAll('_', ' '),
@@ -65,16 +65,16 @@ export function draftOf(definition: EffectDefinition): Draft {
 }
 
 /** Splits a text into three parts: before, at and after the error. Positions count characters, not code units. */
-export function cut({ text, position, length }: Place): [string, string, string] {
+export function splitAtError({ text, position, length }: Place): [string, string, string] {
 	const letters = [...text];
 	const part = (from: number, to?: number) => letters.slice(from, to).join('');
 	return [part(0, position), part(position, position + length), part(position + length)];
 }
 
 /** An unknown name in the formula may become a parameter. */
-export function unknownName(place: Place | null, draft: Draft): string | null {
+export function unknownName(place: Place | null, draft: EffectDraft): string | null {
 	if (place?.field !== 'formula') return null;
-	const [, name, rest] = cut(place);
+	const [, name, rest] = splitAtError(place);
 	const isCall = /^\s*\(/.test(rest);
 	return /^[a-z]\w*$/i.test(name) && !isCall && !draft.parameters.some((p) => p.name === name) ? name : null;
 }

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { ResidualSet } from '../api/types';
-import { reasonsOf, stretchesOf } from './exclusions';
+import { exclusionReasons, excludedStretches } from './exclusions';
 
 const set = (time: number[]): ResidualSet => ({
 	residual: 'plateau_mean',
@@ -17,7 +17,7 @@ const set = (time: number[]): ResidualSet => ({
 });
 
 it('joins chosen points that follow each other, whatever their order in the list', () => {
-	const found = stretchesOf(set([3, 1, 2, 5, 4, 9]), Uint8Array.from([1, 1, 1, 1, 0, 1]), 1);
+	const found = excludedStretches(set([3, 1, 2, 5, 4, 9]), Uint8Array.from([1, 1, 1, 1, 0, 1]), 1);
 	expect(found).toEqual([
 		{ from_s: 0.5, to_s: 3.5, points: 3 },
 		{ from_s: 4.5, to_s: 5.5, points: 1 },
@@ -26,7 +26,7 @@ it('joins chosen points that follow each other, whatever their order in the list
 });
 
 it('does not reach over a pause of the run', () => {
-	expect(stretchesOf(set([1, 2, 60, 61]), Uint8Array.from([1, 1, 1, 1]), 1).map((one) => one.points)).toEqual([2, 2]);
+	expect(excludedStretches(set([1, 2, 60, 61]), Uint8Array.from([1, 1, 1, 1]), 1).map((one) => one.points)).toEqual([2, 2]);
 });
 
 it('sums up by reason', () => {
@@ -35,7 +35,7 @@ it('sums up by reason', () => {
 		{ from_s: 5, to_s: 6, reason: 'cable' },
 		{ from_s: 7, to_s: 8, reason: 'cold' },
 	];
-	expect(reasonsOf(excluded)).toEqual([
+	expect(exclusionReasons(excluded)).toEqual([
 		{ reason: 'cold', stretches: 2, seconds: 3 },
 		{ reason: 'cable', stretches: 1, seconds: 1 },
 	]);

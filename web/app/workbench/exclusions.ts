@@ -1,7 +1,7 @@
 import type { Exclusion, Model, ResidualSet } from '../api/types';
 
 /** Time ranges that contain the selected points and no others, since the first sample. */
-export function stretchesOf(set: ResidualSet, chosen: Uint8Array, each_s: number): { from_s: number; to_s: number; points: number }[] {
+export function excludedStretches(set: ResidualSet, chosen: Uint8Array, each_s: number): { from_s: number; to_s: number; points: number }[] {
 	const time = set.axes.find((axis) => axis.name === 'time_s')?.values ?? [];
 	const order = time.map((_, i) => i).sort((a, b) => time[a]! - time[b]!);
 	const stretches: { from_s: number; to_s: number; points: number }[] = [];
@@ -25,15 +25,15 @@ export function pointLength_s({ fit: { preparation } }: Model): number {
 	return preparation.chunk_s ?? preparation.decimation / preparation.sample_rate_hz;
 }
 
-export interface Reason {
+export interface ExclusionReason {
 	reason: string;
 	stretches: number;
 	seconds: number;
 }
 
 /** The exclusions, grouped by reason. */
-export function reasonsOf(excluded: readonly Exclusion[]): Reason[] {
-	const all = new Map<string, Reason>();
+export function exclusionReasons(excluded: readonly Exclusion[]): ExclusionReason[] {
+	const all = new Map<string, ExclusionReason>();
 	for (const { reason, from_s, to_s } of excluded) {
 		const { stretches, seconds } = all.get(reason) ?? { stretches: 0, seconds: 0 };
 		all.set(reason, { reason, stretches: stretches + 1, seconds: seconds + to_s - from_s });

@@ -5,17 +5,17 @@ import { type AxisScale, binMiddle, axisScale } from '../residual/axisScale';
 export const MARGIN = { left: 58, right: 6, top: 6, bottom: 38 };
 export const PALETTE = ['--map-lowest', '--map-low', '--map-mid', '--map-high', '--map-highest'];
 
-export function axesOf(map: ResidualMap, width: number, height: number): { x: AxisScale; y: AxisScale } {
+export function mapAxes(map: ResidualMap, width: number, height: number): { x: AxisScale; y: AxisScale } {
 	return {
 		x: axisScale(map.x, MARGIN.left, width - MARGIN.right, map.x.setPoints ? 14 : 8),
 		y: axisScale(map.y, height - MARGIN.bottom, MARGIN.top, map.y.setPoints ? 9 : 5),
 	};
 }
 
-export const where = (bins: Bins, scale: AxisScale, tick: number): number => (bins.setPoints ? binMiddle(bins, scale, bins.setPoints.indexOf(tick)) : scale.at(tick));
+export const tickPosition = (bins: Bins, scale: AxisScale, tick: number): number => (bins.setPoints ? binMiddle(bins, scale, bins.setPoints.indexOf(tick)) : scale.at(tick));
 
 /** Both ends in order, with a visible minimum distance. */
-export function widened([a = 0, b = 0]: number[]): [number, number] {
+export function withMinimumWidth([a = 0, b = 0]: number[]): [number, number] {
 	const [low, high] = [Math.min(a, b), Math.max(a, b)];
 	const lack = Math.max(0, 8 - (high - low)) / 2;
 	return [low - lack, high + lack];
@@ -28,10 +28,10 @@ interface Box {
 	height: number;
 }
 
-export const boxed = ({ x, y, width, height }: Box): string => `M${x} ${y}h${width}v${height}h${-width}Z`;
+export const rectanglePath = ({ x, y, width, height }: Box): string => `M${x} ${y}h${width}v${height}h${-width}Z`;
 
 /** Hatching of a cell with too few points. */
-export function hatch({ x, y, width, height }: Box): string {
+export function hatchPath({ x, y, width, height }: Box): string {
 	let strokes = '';
 	for (let from = Math.floor((x - height) / 6) * 6; from < x + width; from += 6) {
 		const [left, right] = [Math.max(from, x), Math.min(from + height, x + width)];

@@ -4,7 +4,7 @@ import { type Point, curve, explainedShare } from '../residual/curve';
 import { type DirectionFilter, directionOf, pointMask, usefulAxes } from '../residual/points';
 
 /** One axis with the residual along it. */
-export interface Ranked {
+export interface RankedAxis {
 	axis: ResidualSet['axes'][number];
 	bins: Bins;
 	/** Fraction of the residual's variance that depends on this axis. */
@@ -13,48 +13,48 @@ export interface Ranked {
 	 * The same per direction, without the part that the direction alone explains: a part that changes sign with the
 	 * direction averages out over both.
 	 */
-	split: number;
+	splitShare: number;
 	all: Point[];
 	positive: Point[];
 	negative: Point[];
 }
 
 /** Uncontrolled quantities: means of the segments are not set-points of these axes. */
-const RUNS_ALONG = /^time|^run_order$|^temperature|position|^motor_torque/;
+const UNCONTROLLED_AXES = /^time|^run_order$|^temperature|position|^motor_torque/;
 
 /** The usual axes of a friction run. */
-const FRICTION = ['motor_velocity_rad_s', 'link_torque_nm', 'link_position_rad', 'motor_position_rad', 'time_s'];
+const FRICTION_AXES = ['motor_velocity_rad_s', 'link_torque_nm', 'link_position_rad', 'motor_position_rad', 'time_s'];
 
 /**
  * Default axes: always the same in friction runs, so that versions are comparable. Other runs use the axes on which the
  * measured value depends most.
  */
-export function usualAxes(set: ResidualSet, kind: string | undefined): string[] {
-	return kind === 'friction' ? FRICTION : rankAxes(set, set.measured, 'both', false, 0).map((one) => one.axis.name);
+export function defaultAxes(set: ResidualSet, kind: string | undefined): string[] {
+	return kind === 'friction' ? FRICTION_AXES : rankAxes(set, set.measured, 'both', false, 0).map((one) => one.axis.name);
 }
 
 /** Every axis with the curve of a quantity of the points, the axis with the largest explained fraction first. */
-export function rankAxes(set: ResidualSet, figure: readonly number[], side: DirectionFilter, ramps: boolean, noise: number, shown: (unit: string) => { factor: number } = () => ({ factor: 1 })): Ranked[] {
-	const kept = pointMask(set, side, ramps);
+export function rankAxes(set: ResidualSet, figure: readonly number[], side: DirectionFilter, ramps: boolean, noise: number, shown: (unit: string) => { factor: number } = () => ({ factor: 1 })): RankedAxis[] {
+	const counted = pointMask(set, side, ramps);
 	const sides = { positive: pointMask(set, 'positive', ramps), negative: pointMask(set, 'negative', ramps) };
-	const way = side === 'both' ? directionOf(set) : null;
-	const turned = way ? explainedShare(way, [-Infinity, 0, Infinity], figure, kept) : 0;
-	return usefulAxes(set, kept)
+	const direction = side === 'both' ? directionOf(set) : null;
+	const directionShare = direction ? explainedShare(direction, [-Infinity, 0, Infinity], figure, counted) : 0;
+	return usefulAxes(set, counted)
 		.map((axis) => {
-			const bins = { ...binsFor(axis.values, RUNS_ALONG.test(axis.name) ? [] : set.segment, kept), factor: shown(axis.unit).factor };
+			const bins = { ...binsFor(axis.values, UNCONTROLLED_AXES.test(axis.name) ? [] : set.segment, counted), factor: shown(axis.unit).factor };
 			const { edges } = bins;
-			const over = (which: Uint8Array) => curve(axis.values, edges, figure, which, noise, set.piece);
-			const share = explainedShare(axis.values, edges, figure, kept);
-			const cells = way && axis.values.map((value, i) => 2 * binOf(edges, value) + (way[i]! < 0 ? 1 : 0));
+			const curveOf = (which: Uint8Array) => curve(axis.values, edges, figure, which, noise, set.piece);
+			const share = explainedShare(axis.values, edges, figure, counted);
+			const cells = direction && axis.values.map((value, i) => 2 * binOf(edges, value) + (direction[i]! < 0 ? 1 : 0));
 			return {
 				axis,
 				bins,
 				share,
-				split: cells ? Math.max(0, explainedShare(cells, Array.from({ length: 2 * edges.length - 1 }, (_, i) => i), figure, kept) - turned) : share,
-				all: over(kept),
-				positive: over(sides.positive),
-				negative: over(sides.negative),
+				splitShare: cells ? Math.max(0, explainedShare(cells, Array.from({ length: 2 * edges.length - 1 }, (_, i) => i), figure, counted) - directionShare) : share,
+				all: curveOf(counted),
+				positive: curveOf(sides.positive),
+				negative: curveOf(sides.negative),
 			};
 		})
-		.sort((a, b) => Math.max(b.share, b.split) - Math.max(a.share, a.split));
+		.sort((a, b) => Math.max(b.share, b.splitShare) - Math.max(a.share, a.splitShare));
 }

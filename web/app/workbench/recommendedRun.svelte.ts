@@ -9,50 +9,50 @@ import type { Workbench } from './workbench.svelte';
 /**
  * The recommended run of a diagnosis: starts it, follows it and shows its result. Call during component initialization.
  */
-export function measuring(workbench: Workbench) {
-	const begun = action();
+export function recommendedRun(workbench: Workbench) {
+	const startAction = action();
 	/** The autopilot that this page started, with the version that requested it. */
-	let mine: { flight: number; from: number } | null = $state.raw(null);
-	const flights = resource(
+	let started: { flight: number; from: number } | null = $state.raw(null);
+	const autopilots = resource(
 		() => `${lab.autopilots} ${lab.connected}`,
 		(_key, signal) => api.autopilots(signal),
 	);
 	/** The bench of the run, else the current bench. */
-	const where = $derived(lab.benches?.find((one) => one.name === workbench.run.data?.bench) ?? lab.bench);
-	const diagnosis = $derived(workbench.diagnosed ? (workbench.diagnosis.data?.id ?? null) : null);
-	const flight = $derived(diagnosis === null ? null : (flights.data?.find((one) => requestedDiagnosis(one) === diagnosis) ?? null));
+	const bench = $derived(lab.benches?.find((one) => one.name === workbench.run.data?.bench) ?? lab.bench);
+	const diagnosis = $derived(workbench.diagnosisIsCurrent ? (workbench.diagnosis.data?.id ?? null) : null);
+	const flight = $derived(diagnosis === null ? null : (autopilots.data?.find((one) => requestedDiagnosis(one) === diagnosis) ?? null));
 
 	/** The result is the same model on more data. It is displayed if the user still displays the original version. */
 	$effect(() => {
-		const ended = flights.data?.find((one) => one.id === mine?.flight && one.state !== 'running');
-		if (!ended || !mine) return;
-		const stayed = mine.from === untrack(() => workbench.model?.id);
-		mine = null;
-		if (ended.model != null && stayed) workbench.arrive(ended.model, 'The new run is measured: what the page says is of all runs together.');
+		const ended = autopilots.data?.find((one) => one.id === started?.flight && one.state !== 'running');
+		if (!ended || !started) return;
+		const stayed = started.from === untrack(() => workbench.model?.id);
+		started = null;
+		if (ended.model != null && stayed) workbench.showNewVersion(ended.model, 'The new run is measured: what the page says is of all runs together.');
 	});
 
 	async function start(): Promise<void> {
 		const from = workbench.model?.id;
-		if (diagnosis === null || !where || from === undefined) return;
-		await begun.run(async () => {
-			mine = { flight: (await api.experiment(diagnosis, where.name)).id, from };
+		if (diagnosis === null || !bench || from === undefined) return;
+		await startAction.run(async () => {
+			started = { flight: (await api.experiment(diagnosis, bench.name)).id, from };
 			lab.autopilots += 1;
 		});
 	}
 
 	return {
 		start,
-		get where() {
-			return where;
+		get bench() {
+			return bench;
 		},
 		get flight() {
 			return flight;
 		},
 		get starting() {
-			return begun.busy;
+			return startAction.busy;
 		},
 		get error() {
-			return begun.error;
+			return startAction.error;
 		},
 	};
 }

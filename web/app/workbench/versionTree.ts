@@ -2,7 +2,7 @@ import type { Model } from '../api/types';
 import { idText } from '../format/label';
 
 /** The versions from the root of the tree to a version, as the waterfall shows them. */
-export function chain(models: readonly Model[], id: number): Model[] {
+export function pathTo(models: readonly Model[], id: number): Model[] {
 	const byId = new Map(models.map((model) => [model.id, model]));
 	const path: Model[] = [];
 	for (let at = byId.get(id); at && !path.includes(at); at = at.parent == null ? undefined : byId.get(at.parent)) {
@@ -24,12 +24,12 @@ export function childWith(models: readonly Model[], parent: Model | null, effect
 
 /** Only errors on the same data are comparable. */
 export function sameData(one: Model, other: Model): boolean {
-	const away = ({ excluded }: Model) => excluded.map(({ from_s, to_s }) => `${from_s}:${to_s}`).join();
-	return one.run === other.run && one.more_runs.join() === other.more_runs.join() && away(one) === away(other);
+	const exclusionKey = ({ excluded }: Model) => excluded.map(({ from_s, to_s }) => `${from_s}:${to_s}`).join();
+	return one.run === other.run && one.more_runs.join() === other.more_runs.join() && exclusionKey(one) === exclusionKey(other);
 }
 
 /** Only tried or with almost no gain, and not kept: no page shows it as the model of the run. */
-export const isAside = ({ tried, idle }: Model): boolean => tried || idle;
+export const isTrial = ({ tried, idle }: Model): boolean => tried || idle;
 
 /** The change from the parent to this version, in a few words. */
 export function stepName(model: Model, before?: Model, titleOf = idText): string {
@@ -62,17 +62,17 @@ export function branches(models: readonly Model[]): Branch[] {
 		const parent = model.parent != null && known.has(model.parent) ? model.parent : null;
 		children.set(parent, [...(children.get(parent) ?? []), model]);
 	}
-	const list: Branch[] = [];
+	const branchList: Branch[] = [];
 	const walk = (parent: number | null, depth: number) => {
 		const here = children.get(parent) ?? [];
 		for (const model of here) {
 			const forks = parent !== null && model !== here.at(-1);
-			list.push({ model, depth: depth + Number(forks), forks, ends: !children.has(model.id) });
+			branchList.push({ model, depth: depth + Number(forks), forks, ends: !children.has(model.id) });
 			walk(model.id, depth + Number(forks));
 		}
 	};
 	walk(null, 0);
-	return list;
+	return branchList;
 }
 
 /**
@@ -89,13 +89,19 @@ export function undecided(before: Model, after: Model): string[] {
 }
 
 /** A smaller relative gain counts as none. */
-export const WORTH = 0.005;
+export const MIN_GAIN = 0.005;
+
+export type Gain = 'better' | 'worse' | 'none';
 
 /** `± within`: range of the gain by chance alone. */
-export function worded(share: number, within = 0): string {
-	const least = Math.max(WORTH, within);
-	return share > least ? '↓ better' : share < -least ? '↑ worse' : '≈ no gain';
+export function classifyGain(share: number, within = 0): Gain {
+	const least = Math.max(MIN_GAIN, within);
+	return share > least ? 'better' : share < -least ? 'worse' : 'none';
 }
+
+const GAIN_TEXTS: Record<Gain, string> = { better: '↓ better', worse: '↑ worse', none: '≈ no gain' };
+
+export const gainText = (share: number, within = 0): string => GAIN_TEXTS[classifyGain(share, within)];
 
 /** Relative reduction of the validation error from the parent to this version; negative if it increased. */
 export function gain(before: Model, after: Model): number {
