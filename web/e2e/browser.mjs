@@ -5,7 +5,7 @@ import { chromium } from 'playwright-core';
 const KNOWN = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 
 /** How long the walk waits for what has to come: a page, an answer, a commit of the daemon on a busy machine. */
-export const PATIENCE_MS = 60_000;
+export const TIMEOUT_MS = 60_000;
 
 export class Failed extends Error {}
 
@@ -49,7 +49,7 @@ function watch(page, base, faults) {
 }
 
 /** Runs the story; says in one line how it ended. */
-export async function tell(name, story) {
+export async function runStory(name, story) {
 	try {
 		await story();
 		console.log(`${name}: ok`);

@@ -1,18 +1,18 @@
 // What the pages say and show apart from the walk's own path.
 import { readFileSync } from 'node:fs';
 import { audit } from './audit.mjs';
-import { expect, PATIENCE_MS } from './browser.mjs';
+import { expect, TIMEOUT_MS } from './browser.mjs';
 import { dropFiles } from './files.mjs';
-import { jumpsOf, makeRun, readVersion } from './steps.mjs';
+import { layoutShiftOf, makeRun, readVersion } from './steps.mjs';
 
 /** Whether what a press has made is on the screen, and has the focus. */
-export async function inView(locator, what) {
-	await locator.waitFor({ timeout: PATIENCE_MS });
+export async function expectInView(locator, what) {
+	await locator.waitFor({ timeout: TIMEOUT_MS });
 	const seen = () => locator.evaluate((node) => {
 		const { top } = node.getBoundingClientRect();
 		return { onScreen: top >= 0 && top < innerHeight * 0.7, focused: document.activeElement === node };
 	});
-	const until = Date.now() + PATIENCE_MS;
+	const until = Date.now() + TIMEOUT_MS;
 	let found = await seen();
 	while (!(found.onScreen && found.focused) && Date.now() < until) {
 		await new Promise((ok) => setTimeout(ok, 100));
@@ -32,46 +32,46 @@ export async function zoomWhileFollowing(page, base) {
 	const { id } = await post('/runs', { bench, procedure: 'friction', parameters: { dwell_s: 4 } });
 	await page.goto(`${base}/runs/${id}`);
 	const plot = page.locator('main figure .u-over').first();
-	await plot.waitFor({ timeout: PATIENCE_MS });
+	await plot.waitFor({ timeout: TIMEOUT_MS });
 	await audit(page, 'the run that is on');
 	await plot.hover();
 	await page.mouse.wheel(0, -300);
-	await page.waitForURL(/view=follow:[\d.]+/, { timeout: PATIENCE_MS }).catch(() => expect(false, `a zoom ends the following: ${page.url()}`));
+	await page.waitForURL(/view=follow:[\d.]+/, { timeout: TIMEOUT_MS }).catch(() => expect(false, `a zoom ends the following: ${page.url()}`));
 	expect(Number(/view=follow:([\d.]+)/.exec(page.url())[1]) < 10, `the wheel does not shorten the stretch: ${page.url()}`);
 	const picture = () => page.locator('main figure canvas').first().evaluate((canvas) => canvas.toDataURL());
 	const before = await picture();
-	const until = Date.now() + PATIENCE_MS;
+	const until = Date.now() + TIMEOUT_MS;
 	while ((await picture()) === before && Date.now() < until) await page.waitForTimeout(100);
 	expect((await picture()) !== before, 'the plot stands still after a zoom, although the run goes on');
 	await page.keyboard.press('Space');
-	await page.waitForURL(/view=-?[\d.]+:[\d.]+/, { timeout: PATIENCE_MS }).catch(() => expect(false, `Space does not freeze the plots: ${page.url()}`));
+	await page.waitForURL(/view=-?[\d.]+:[\d.]+/, { timeout: TIMEOUT_MS }).catch(() => expect(false, `Space does not freeze the plots: ${page.url()}`));
 	await page.keyboard.press('Space');
-	await page.waitForURL(/view=follow:/, { timeout: PATIENCE_MS }).catch(() => expect(false, `Space does not go on: ${page.url()}`));
+	await page.waitForURL(/view=follow:/, { timeout: TIMEOUT_MS }).catch(() => expect(false, `Space does not go on: ${page.url()}`));
 	const focused = await page.evaluateHandle(() => document.activeElement);
 	await page.keyboard.press('n');
 	await page.keyboard.type('walked by');
 	await page.keyboard.press('Enter');
 	// The note is shown when it is durable; that takes as long as the disk does.
-	await page.locator('li', { hasText: 'walked by' }).waitFor({ timeout: PATIENCE_MS }).catch(async () => expect(false, `Enter does not keep a note: ${await page.getByRole('form', { name: 'Note' }).locator('xpath=../..').innerText()}`));
+	await page.locator('li', { hasText: 'walked by' }).waitFor({ timeout: TIMEOUT_MS }).catch(async () => expect(false, `Enter does not keep a note: ${await page.getByRole('form', { name: 'Note' }).locator('xpath=../..').innerText()}`));
 	// Back where it came from, or at the notes where it came from nowhere.
 	const returned = (from) => document.activeElement === (from === document.body ? document.querySelector('ol[aria-label=Notes]') : from);
-	await page.waitForFunction(returned, focused, { timeout: PATIENCE_MS }).catch(() => expect(false, 'Enter in a note loses the focus'));
+	await page.waitForFunction(returned, focused, { timeout: TIMEOUT_MS }).catch(() => expect(false, 'Enter in a note loses the focus'));
 	const box = await plot.boundingBox();
 	const followed = page.url();
 	await page.mouse.move(box.x + box.width * 0.3, box.y + 50);
 	await page.mouse.down();
 	await page.mouse.move(box.x + box.width * 0.7, box.y + 50, { steps: 4 });
 	await page.mouse.up();
-	await page.waitForURL(/view=-?[\d.]+:/, { timeout: PATIENCE_MS }).catch(() => expect(false, 'a drag chooses no stretch'));
+	await page.waitForURL(/view=-?[\d.]+:/, { timeout: TIMEOUT_MS }).catch(() => expect(false, 'a drag chooses no stretch'));
 	await plot.dblclick();
-	await page.waitForURL(followed, { timeout: PATIENCE_MS }).catch(() => expect(false, `one double click does not go back to what was followed: ${page.url()}`));
+	await page.waitForURL(followed, { timeout: TIMEOUT_MS }).catch(() => expect(false, `one double click does not go back to what was followed: ${page.url()}`));
 	await page.keyboard.press('0');
-	await page.waitForURL(/view=all/, { timeout: PATIENCE_MS });
+	await page.waitForURL(/view=all/, { timeout: TIMEOUT_MS });
 	const all = await picture();
-	await page.waitForFunction((before) => document.querySelector('main figure canvas').toDataURL() !== before, all, { timeout: PATIENCE_MS }).catch(() => expect(false, 'all of a run that is on does not grow'));
+	await page.waitForFunction((before) => document.querySelector('main figure canvas').toDataURL() !== before, all, { timeout: TIMEOUT_MS }).catch(() => expect(false, 'all of a run that is on does not grow'));
 	await page.goto(`${base}/?bench=${bench}`);
 	const health = page.locator('section', { has: page.getByRole('heading', { name: 'Channel health' }) });
-	await health.locator('tbody tr', { hasText: 'motor velocity' }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the channels of a run that is on are not told'));
+	await health.locator('tbody tr', { hasText: 'motor velocity' }).waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'the channels of a run that is on are not told'));
 	await page.goto(`${base}/runs/${id}`);
 	for (const name of [/^Abort/, 'Yes, abort']) await page.getByRole('button', { name }).press('Enter');
 	await page.locator('h1:focus').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the end of a run that is aborted loses the focus'));
@@ -82,42 +82,42 @@ export async function byKeyboard(page) {
 	const plot = page.locator('section', { has: page.getByRole('heading', { name: 'Measured against model' }) }).locator('.uplot').first();
 	await plot.focus();
 	await page.keyboard.press('+');
-	await page.waitForURL(/zoom=/, { timeout: PATIENCE_MS }).catch(() => expect(false, 'a plot cannot be zoomed by keyboard'));
+	await page.waitForURL(/zoom=/, { timeout: TIMEOUT_MS }).catch(() => expect(false, 'a plot cannot be zoomed by keyboard'));
 	await page.keyboard.press('ArrowRight');
 	await page.keyboard.press('Home');
-	await page.waitForURL((url) => !url.searchParams.has('zoom'), { timeout: PATIENCE_MS }).catch(() => expect(false, 'Home does not show all'));
+	await page.waitForURL((url) => !url.searchParams.has('zoom'), { timeout: TIMEOUT_MS }).catch(() => expect(false, 'Home does not show all'));
 	const map = page.getByRole('application');
 	await map.focus();
 	for (const key of ['ArrowRight', 'ArrowRight', 'ArrowUp', 'Shift+ArrowUp']) await page.keyboard.press(key);
-	const said = await page.locator('output', { hasText: 'n = ' }).or(page.locator('output', { hasText: 'never visited' })).first().innerText();
+	const text = await page.locator('output', { hasText: 'n = ' }).or(page.locator('output', { hasText: 'never visited' })).first().innerText();
 	await page.keyboard.press('Enter');
-	await page.waitForURL((url) => url.searchParams.get('region')?.split(',').length === 2, { timeout: PATIENCE_MS }).catch(() => expect(false, 'no cell can be chosen by keyboard'));
+	await page.waitForURL((url) => url.searchParams.get('region')?.split(',').length === 2, { timeout: TIMEOUT_MS }).catch(() => expect(false, 'no cell can be chosen by keyboard'));
 	await page.keyboard.press('c');
-	return said;
+	return text;
 }
 
 /** An address of a version that is not there: the page says so, and which one it shows. */
-export async function askForNone(page, base, run) {
+export async function openUnknownVersion(page, base, run) {
 	await page.goto(`${base}/workbench/${run}?model=987654`);
-	const said = page.getByText(`Run #${run} has no model 987654`);
-	await said.waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'nobody says that a version of the address is not there'));
-	return said.innerText();
+	const text = page.getByText(`Run #${run} has no model 987654`);
+	await text.waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'nobody says that a version of the address is not there'));
+	return text.innerText();
 }
 
 /** Saves the run as a table and opens its report, from its page. */
-export async function takeAway(page, base, run) {
+export async function exportRun(page, base, run) {
 	await page.goto(`${base}/runs/${run}`);
 	const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('link', { name: 'CSV', exact: true }).click()]);
 	const table = readFileSync(await file.path(), 'utf8');
 	const [report] = await Promise.all([page.waitForEvent('popup'), page.getByRole('link', { name: 'Report' }).click()]);
-	await report.locator('svg').first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the report has no figure'));
-	const said = await report.locator('body').innerText();
+	await report.locator('svg').first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'the report has no figure'));
+	const text = await report.locator('body').innerText();
 	await report.close();
-	return { name: file.suggestedFilename(), table, report: said };
+	return { name: file.suggestedFilename(), table, report: text };
 }
 
 /** The residual map as a file: its name, and how it begins. */
-export async function takeMap(page) {
+export async function exportMap(page) {
 	await page.getByLabel('Menu of Residual map').click();
 	const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Parquet' }).click()]);
 	return { name: file.suggestedFilename(), begins: readFileSync(await file.path(), 'latin1').slice(0, 4) };
@@ -126,11 +126,11 @@ export async function takeMap(page) {
 /** Goes back in the log until it tells of the first run. */
 export async function showEarlier(page, base) {
 	await page.goto(`${base}/log`);
-	await page.locator('main tbody tr').first().waitFor({ timeout: PATIENCE_MS });
+	await page.locator('main tbody tr').first().waitFor({ timeout: TIMEOUT_MS });
 	const first = page.getByRole('cell', { name: '#1', exact: true }).first();
 	expect(!(await first.isVisible()), 'the log begins with more than the newest runs');
 	for (let pages = 0; pages < 40 && !(await first.isVisible()); pages++) {
-		await page.getByRole('button', { name: 'Show earlier' }).click({ timeout: PATIENCE_MS });
+		await page.getByRole('button', { name: 'Show earlier' }).click({ timeout: TIMEOUT_MS });
 		await first.waitFor({ timeout: 1000 }).catch(() => {});
 	}
 	expect(await first.isVisible(), 'the log does not go back to the first run');
@@ -138,17 +138,17 @@ export async function showEarlier(page, base) {
 }
 
 /** Brings a run's own export in again, beside it the same with its current in milliampere and a file without a line; what the page says. */
-export async function bringBack(page, base, run, table) {
+export async function reimportRun(page, base, run, table) {
 	const meta = await (await fetch(`${base}/api/v1/runs/${run}/meta`)).text();
 	const [names, ...rows] = table.trim().split('\n').map((line) => line.split(','));
 	const current = names.indexOf('motor_current_a');
 	const milli = [names, ...rows.map((row) => row.with?.(current, 1000 * row[current]) ?? row)].map((row) => row.join(',')).join('\n');
 	await dropFiles(page, base, [['copy.csv', table], ['milli.csv', milli], ['none.csv', ''], ['meta.json', meta]]);
 	const card = page.getByRole('region', { name: 'Import' });
-	await card.getByText('the file is empty').waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'an empty file is not refused'));
-	const said = await card.innerText();
+	await card.getByText('the file is empty').waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'an empty file is not refused'));
+	const text = await card.innerText();
 	await card.getByRole('link', { name: 'open in the workbench' }).nth(1).click();
-	return { said, ...(await readVersion(page)) };
+	return { text, ...(await readVersion(page)) };
 }
 
 /** The distinct dashes of a comparison's lines, in its legend and as they were painted. */
@@ -163,19 +163,19 @@ export async function dashesOf(page, address) {
 	});
 	await page.goto(address);
 	const plot = page.locator('figure:has(.uplot)').first();
-	await plot.waitFor({ timeout: PATIENCE_MS });
-	await page.locator('[data-figure=difference]').waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the difference of the runs is not drawn'));
+	await plot.waitFor({ timeout: TIMEOUT_MS });
+	await page.locator('[data-figure=difference]').waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'the difference of the runs is not drawn'));
 	const legend = await plot.locator('figcaption line').evaluateAll((lines) => lines.map((line) => line.getAttribute('stroke-dasharray') ?? ''));
 	const ratio = await page.evaluate(() => devicePixelRatio);
 	const painted = await page.evaluate(() => [...window.painted]);
 	const inks = (figure) => figure.locator('[stroke^="var(--oi"]').evaluateAll((drawn) => [...new Set(drawn.map((one) => one.getAttribute('stroke')))]);
 	const [above, below] = [await inks(plot), await inks(page.locator('[data-figure=difference]'))];
 	expect(below.join() === above.slice(1).join(), `the difference is drawn in ${below.join()}, its runs above in ${above.join()}`);
-	return { jumps: await jumpsOf(page), legend, missing: legend.filter((dash) => !painted.includes(dash.split(' ').map((n) => (n ? n * ratio : '')).join(' '))) };
+	return { jumps: await layoutShiftOf(page), legend, missing: legend.filter((dash) => !painted.includes(dash.split(' ').map((n) => (n ? n * ratio : '')).join(' '))) };
 }
 
 /** The list of ten thousand runs (told to the page in the daemon's place): how many rows exist, and how long the jump to the last takes. */
-export async function manyRuns(page, base) {
+export async function openManyRuns(page, base) {
 	const MANY = 10_000;
 	const [one] = (await (await fetch(`${base}/api/v1/runs?limit=1`)).json()).runs;
 	await page.route('**/api/v1/runs?*', (route) => {
@@ -185,7 +185,7 @@ export async function manyRuns(page, base) {
 		return route.fulfill({ json: { total: query.get('search') ? 0 : MANY, runs } });
 	});
 	await page.goto(`${base}/runs`);
-	await page.getByRole('link', { name: `#${MANY}`, exact: true }).waitFor({ timeout: PATIENCE_MS });
+	await page.getByRole('link', { name: `#${MANY}`, exact: true }).waitFor({ timeout: TIMEOUT_MS });
 	const rows = await page.locator('main tbody tr').count();
 	const begun = Date.now();
 	await page.locator('main tbody tr').first().evaluate((row) => {
@@ -193,13 +193,13 @@ export async function manyRuns(page, base) {
 		while (!/auto|scroll/.test(getComputedStyle(box).overflowY)) box = box.parentElement;
 		box.scrollTop = box.scrollHeight;
 	});
-	await page.getByRole('link', { name: '#1', exact: true }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the last of ten thousand runs is not shown'));
+	await page.getByRole('link', { name: '#1', exact: true }).waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'the last of ten thousand runs is not shown'));
 	await page.unroute('**/api/v1/runs?*');
 	return { rows, jump_ms: Date.now() - begun };
 }
 
 /** Orders the list by its runs' errors, holds them against one run, and keeps the view; a page without any of it finds it again. */
-export async function keepView(page, base, run) {
+export async function saveListView(page, base, run) {
 	await page.goto(`${base}/runs?search=state:done`);
 	const head = page.getByRole('columnheader', { name: /^error/ });
 	await head.getByRole('button').click();
@@ -207,20 +207,20 @@ export async function keepView(page, base, run) {
 	expect((await head.getAttribute('aria-sort')) === 'descending', 'a list that begins with the largest error does not say so');
 	const link = page.locator('main tbody tr a.mono');
 	const asked = (await (await fetch(`${base}/api/v1/runs?search=state:done&sort=-error&limit=3`)).json()).runs.map(({ id }) => `#${id}`);
-	await page.waitForFunction((first) => document.querySelector('main tbody:last-of-type a.mono')?.textContent === first, asked[0], { timeout: PATIENCE_MS });
+	await page.waitForFunction((first) => document.querySelector('main tbody:last-of-type a.mono')?.textContent === first, asked[0], { timeout: TIMEOUT_MS });
 	await page.getByRole('button', { name: `Base: hold the others against run ${run}` }).click();
-	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'no column tells the change against the base'));
+	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'no column tells the change against the base'));
 	expect((await link.first().innerText()) === `#${run}`, 'the base does not stay at the top of another order');
-	await page.getByText(/^[+−][\d.]+ %$/).first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'no run is held against the base'));
+	await page.getByText(/^[+−][\d.]+ %$/).first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'no run is held against the base'));
 	await page.getByRole('button', { name: 'Keep this view' }).click();
 	await audit(page, 'the list of runs, ordered');
 	await page.goto(`${base}/runs?base=none`);
 	await page.getByLabel('Export, views and columns').click();
 	await page.getByRole('button', { name: `Show state:done · by error, largest first · against #${run}` }).click();
-	await page.waitForURL((url) => url.searchParams.get('sort') === '-error' && url.searchParams.get('base') === String(run) && url.searchParams.get('search') === 'state:done', { timeout: PATIENCE_MS }).catch(() => expect(false, `a kept view is not the view that was kept: ${page.url()}`));
+	await page.waitForURL((url) => url.searchParams.get('sort') === '-error' && url.searchParams.get('base') === String(run) && url.searchParams.get('search') === 'state:done', { timeout: TIMEOUT_MS }).catch(() => expect(false, `a kept view is not the view that was kept: ${page.url()}`));
 	await page.getByRole('button', { name: 'Forget this view' }).click();
 	await page.getByRole('button', { name: `Base: hold the others against run ${run}` }).click();
-	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ state: 'detached', timeout: PATIENCE_MS });
+	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ state: 'detached', timeout: TIMEOUT_MS });
 	for (const [name, text, width] of [[`Tags of run ${run}, by commas`, 'walked, golden', 1440], [`Note on run ${run}`, 'walked on it', 420]]) {
 		await page.setViewportSize({ width, height: 900 });
 		await page.getByRole('button', { name }).click();
@@ -228,7 +228,7 @@ export async function keepView(page, base, run) {
 		await page.keyboard.press('Enter');
 	}
 	await page.setViewportSize({ width: 1440, height: 900 });
-	for (const said of [page.getByRole('link', { name: 'golden' }), page.getByText('walked on it')]) await said.first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'a tag or a note that is written in the list is not kept'));
+	for (const text of [page.getByRole('link', { name: 'golden' }), page.getByText('walked on it')]) await text.first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'a tag or a note that is written in the list is not kept'));
 }
 
 /** Results in the form that their people expect, each from a run that is short: what is shown of each. */
@@ -239,12 +239,12 @@ export async function readResults(page, base, asked) {
 		if (run === null) continue;
 		await page.goto(`${base}/runs/${run}`);
 		const card = page.locator('[data-result]');
-		await card.locator('[data-figure]').first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, `${procedure} has no result`));
+		await card.locator('[data-figure]').first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, `${procedure} has no result`));
 		const figures = await card.locator('[data-figure] figcaption, [data-figure] h3').allInnerTexts();
 		expect(figures.some((figure) => title.test(figure)), `${procedure} shows ${figures.join(', ')}, and not ${title}`);
 		await audit(page, `the result of ${procedure}`);
 		await page.setViewportSize({ width: 420, height: 900 });
-		await page.waitForFunction(() => document.documentElement.scrollWidth <= innerWidth, null, { timeout: PATIENCE_MS }).catch(() => expect(false, `the result of ${procedure} is too wide for a page of 420 px`));
+		await page.waitForFunction(() => document.documentElement.scrollWidth <= innerWidth, null, { timeout: TIMEOUT_MS }).catch(() => expect(false, `the result of ${procedure} is too wide for a page of 420 px`));
 		await page.setViewportSize({ width: 1440, height: 900 });
 		shown.push(procedure);
 		runs.push({ procedure, run });
@@ -260,10 +260,10 @@ async function readAlignment(page, base, runs) {
 	if (!one) return;
 	const { bench } = await (await fetch(`${base}/api/v1/runs/${one.run}`)).json();
 	await page.goto(`${base}/?bench=${bench}`);
-	await page.getByRole('heading', { name: 'Devices' }).waitFor({ timeout: PATIENCE_MS });
+	await page.getByRole('heading', { name: 'Devices' }).waitFor({ timeout: TIMEOUT_MS });
 	await page.keyboard.press('5');
-	for (const { run } of runs) await page.getByRole('link', { name: `run #${run}` }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, `run ${run} is not among the encoder results of ${bench}`));
-	await page.waitForFunction((count) => document.querySelectorAll('[data-result] [data-figure]').length > count && !document.querySelector('.unknown'), runs.length, { timeout: PATIENCE_MS });
+	for (const { run } of runs) await page.getByRole('link', { name: `run #${run}` }).waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, `run ${run} is not among the encoder results of ${bench}`));
+	await page.waitForFunction((count) => document.querySelectorAll('[data-result] [data-figure]').length > count && !document.querySelector('.unknown'), runs.length, { timeout: TIMEOUT_MS });
 	await audit(page, 'the encoder results');
 }
 
@@ -286,14 +286,14 @@ async function readCampaign(page, base, runs) {
 	);
 	await page.goto(`${base}/runs/${runs[0].run}`);
 	const lines = page.locator('[data-part]');
-	await lines.first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the result of a campaign is not taken apart'));
+	await lines.first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'the result of a campaign is not taken apart'));
 	expect((await lines.count()) === runs.length && (await lines.locator('[data-figure]').count()) === 0, 'a campaign does not begin with a line for each part');
 	await lines.nth(1).locator('summary').first().focus();
 	await page.keyboard.press('Enter');
-	await lines.nth(1).locator('[data-figure]').first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'a part of a campaign does not open by key'));
+	await lines.nth(1).locator('[data-figure]').first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'a part of a campaign does not open by key'));
 	await audit(page, 'the result of a campaign');
 	await page.reload();
-	await lines.nth(1).locator('[data-quantity]').first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, `the address forgets which part is open: ${page.url()}`));
+	await lines.nth(1).locator('[data-quantity]').first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, `the address forgets which part is open: ${page.url()}`));
 	await page.unroute('**/identification');
 }
 
@@ -306,9 +306,9 @@ export async function countCurves(page) {
 /** Ticks two runs of the picker, and waits for the one model of both. */
 export async function openTogether(page, base, [first, second]) {
 	await page.goto(`${base}/workbench`);
-	for (const run of [first, second]) await page.getByLabel(`Together: run ${run}`).check({ timeout: PATIENCE_MS });
+	for (const run of [first, second]) await page.getByLabel(`Together: run ${run}`).check({ timeout: TIMEOUT_MS });
 	await audit(page, 'the picker with two runs');
 	await page.getByRole('link', { name: 'One model of 2 runs' }).click();
-	await page.getByRole('list', { name: 'Runs of the data' }).getByText(`#${second}`).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the runs that were ticked together have no model together'));
+	await page.getByRole('list', { name: 'Runs of the data' }).getByText(`#${second}`).waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'the runs that were ticked together have no model together'));
 	expect(!page.url().includes('more='), `the address still asks for what it shows: ${page.url()}`);
 }

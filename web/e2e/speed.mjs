@@ -1,7 +1,7 @@
 // How quick the pages are, against a running daemon with a mock bench at the pace of the clock (pace = 1) and, for the first part, a stored run of millions of rows:
 //   node web/e2e/speed.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
 // Prints one line a figure. Chromium draws in software; what else the machine does counts in, but not in processor time.
-import { expect, open, settings, tell } from './browser.mjs';
+import { expect, open, settings, runStory } from './browser.mjs';
 import { startRun } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/speed.mjs http://127.0.0.1:8080 [path/to/chromium]');
@@ -48,7 +48,7 @@ async function zoom(page, plot, deltaY) {
 	);
 }
 
-await tell('speed', async () => {
+await runStory('speed', async () => {
 	const { browser, page, faults } = await open(where);
 	const metrics = await counting(page);
 	await page.goto(where.base);

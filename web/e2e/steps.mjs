@@ -1,8 +1,8 @@
 // What a person does on the pages, for the walk and for the pictures.
-import { expect, PATIENCE_MS } from './browser.mjs';
+import { expect, TIMEOUT_MS } from './browser.mjs';
 import { dropFiles, FOREIGN } from './files.mjs';
-import { inView } from './looks.mjs';
-import { lineTo } from './line.mjs';
+import { expectInView } from './looks.mjs';
+import { proxyTo } from './proxy.mjs';
 
 const RUN_MS = 180_000;
 const FIT_MS = 60_000;
@@ -10,10 +10,10 @@ const PHONE = { width: 420, height: 900 };
 const WIDE = { width: 1440, height: 900 };
 
 /** Short, and without load: what grows with the load cannot show in it, so a further run is suggested. */
-export const BARE = '?p.load_levels=1&p.warm_up_s=2&p.dwell_s=0.6&p.fast_speeds=4';
+export const WITHOUT_LOAD = '?p.load_levels=1&p.warm_up_s=2&p.dwell_s=0.6&p.fast_speeds=4';
 
 /** A run without repeats: nobody knows how small its error could become. */
-export const UNDECIDED = { speeds: 2, repeats: 1 };
+export const WITHOUT_REPEATS = { speeds: 2, repeats: 1 };
 
 /** Starts the procedure that is offered, as it is offered or with settings as the address carries them. Gives the run's number. */
 export async function startRun(page, base, settings = '') {
@@ -34,20 +34,20 @@ export async function startRun(page, base, settings = '') {
 export async function makeRun(base, procedure, parameters) {
 	const rest = async (path, body) => {
 		const answer = await fetch(`${base}/api/v1${path}`, body && { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) });
-		return { ok: answer.ok, said: await answer.json() };
+		return { ok: answer.ok, json: await answer.json() };
 	};
-	const { said: benches } = await rest('/bench');
+	const { json: benches } = await rest('/bench');
 	for (const { name } of benches) {
-		const { ok, said: run } = await rest('/runs', { bench: name, procedure, parameters });
+		const { ok, json: run } = await rest('/runs', { bench: name, procedure, parameters });
 		if (!ok) {
 			console.log(`no ${procedure} on ${name}: ${run.detail}`);
 			continue;
 		}
 		const until = Date.now() + RUN_MS;
 		while (Date.now() < until) {
-			const { said } = await rest(`/runs/${run.id}`);
-			if (said.state === 'completed') return run.id;
-			expect(!/stopped|aborted|failed|interrupted/.test(said.state), `${procedure} on ${name} ended ${said.state}: ${said.reason}`);
+			const { json } = await rest(`/runs/${run.id}`);
+			if (json.state === 'completed') return run.id;
+			expect(!/stopped|aborted|failed|interrupted/.test(json.state), `${procedure} on ${name} ended ${json.state}: ${json.reason}`);
 			await new Promise((resolve) => setTimeout(resolve, 500));
 		}
 		expect(false, `${procedure} on ${name} did not end in ${RUN_MS / 1000} s`);
@@ -68,17 +68,17 @@ export async function watchRun(page) {
 }
 
 /** Zooms the second plot on its own; the others stay as they were. */
-export async function zoomAlone(page) {
+export async function zoomOnePlot(page) {
 	const plot = page.locator('figure:has(.uplot)').nth(1);
 	await plot.locator('summary').click();
 	await plot.getByRole('button', { name: 'Zoom on its own' }).click();
 	await page.waitForURL(/own=/);
 	await plot.locator('.u-over').hover();
 	await page.mouse.wheel(0, -300);
-	await page.waitForURL(/own=[^&]*:[\d.]+:[\d.]+/, { timeout: PATIENCE_MS }).catch(() => expect(false, `the wheel does not zoom the plot: ${page.url()}`));
+	await page.waitForURL(/own=[^&]*:[\d.]+:[\d.]+/, { timeout: TIMEOUT_MS }).catch(() => expect(false, `the wheel does not zoom the plot: ${page.url()}`));
 	expect(!/view=/.test(page.url()), `the other plots are zoomed with it: ${page.url()}`);
 	await plot.locator('.u-over').dblclick();
-	await page.waitForURL(/own=[^&]*:all/, { timeout: PATIENCE_MS }).catch(() => expect(false, `a double click does not step back: ${page.url()}`));
+	await page.waitForURL(/own=[^&]*:all/, { timeout: TIMEOUT_MS }).catch(() => expect(false, `a double click does not step back: ${page.url()}`));
 }
 
 /** Reads the result on a run's page, by keyboard alone: its first figure as a table, and back. Says the verdict and how many numbers the table has. */
@@ -117,7 +117,7 @@ export async function readVersion(page) {
 }
 
 /** Does something that leads to another version, and waits for it. */
-export async function toAnotherVersion(page, act, patience_ms = FIT_MS) {
+export async function waitForOtherVersion(page, act, patience_ms = FIT_MS) {
 	const before = new URL(page.url()).searchParams.get('model');
 	await act();
 	await page.waitForFunction((id) => new URL(location.href).searchParams.get('model') !== id, before, { timeout: patience_ms });
@@ -152,16 +152,16 @@ export async function tryAndDrop(page) {
 	await page.setViewportSize(PHONE);
 	await page.locator('article[data-effect]').first().getByRole('button', { name: 'Try' }).click();
 	await page.locator('[data-beside=try] figure').first().waitFor({ timeout: FIT_MS });
-	await inView(page.locator('[data-beside=try]'), 'the preview');
+	await expectInView(page.locator('[data-beside=try]'), 'the preview');
 	await page.setViewportSize(WIDE);
-	const said = await page.locator('[data-beside] .said').innerText();
+	const text = await page.locator('[data-beside] .status').innerText();
 	await page.keyboard.press('x');
 	await page.locator('[data-beside]').waitFor({ state: 'detached' });
-	return said;
+	return text;
 }
 
 /** How far things have jumped on this page since it was opened, by what nobody did. */
-export const jumpsOf = (page) => page.evaluate(() => new Promise((ok) => {
+export const layoutShiftOf = (page) => page.evaluate(() => new Promise((ok) => {
 	new PerformanceObserver((list) => ok(list.getEntries().reduce((sum, one) => sum + (one.hadRecentInput ? 0 : one.value), 0))).observe({ type: 'layout-shift', buffered: true });
 	setTimeout(() => ok(0), 1000);
 }));
@@ -175,7 +175,7 @@ export async function openWorkbench(another, address) {
 		await page.goto(address);
 		await readVersion(page);
 		await page.locator('[data-worth]').first().waitFor({ timeout: FIT_MS });
-		jumps.push(await jumpsOf(page));
+		jumps.push(await layoutShiftOf(page));
 		await page.close();
 	}
 	return jumps;
@@ -187,7 +187,7 @@ export async function firstUse(page, base) {
 	await page.getByText('No run yet. Start a procedure, or bring a measurement.').waitFor({ timeout: 30_000 });
 	await page.getByRole('button', { name: 'Start a demo run' }).waitFor({ timeout: 30_000 });
 	await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 30_000 });
-	const jumps = await jumpsOf(page);
+	const jumps = await layoutShiftOf(page);
 	const started = page.waitForRequest((request) => request.method() === 'POST' && request.url().endsWith('/runs'), { timeout: 1000 });
 	await page.locator('.fields input').first().press('Enter');
 	expect(await started.then(() => false, () => true), 'Enter in a field starts the bench, which only its button may');
@@ -200,7 +200,7 @@ export async function firstUse(page, base) {
 }
 
 /** Whatever still moves by itself for a person who has asked for little motion. */
-export async function moving(page) {
+export async function runningAnimations(page) {
 	await page.emulateMedia({ reducedMotion: 'reduce' });
 	await page.waitForTimeout(500);
 	return page.evaluate(() => document.getAnimations().filter((one) => one.playState === 'running').map((one) => one.animationName ?? one.transitionProperty));
@@ -212,10 +212,10 @@ export async function compareVersions(page) {
 	const beside = page.locator('[data-beside=compare]');
 	await beside.waitFor({ timeout: 30_000 }).catch(() => expect(false, 'no other version is shown beside the one at hand'));
 	await beside.locator('tbody tr').first().waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the parameters of the two versions are not told'));
-	const said = await beside.innerText();
+	const text = await beside.innerText();
 	await page.keyboard.press('x');
 	await beside.waitFor({ state: 'detached' });
-	return said;
+	return text;
 }
 
 /** A second person, in a browser of their own, who only looks. */
@@ -233,8 +233,8 @@ export async function observe(page, base) {
 }
 
 /** A page whose line to the daemon is cut and comes back: it says so, lets nothing start, and then knows what went on without it. Gives what it said. */
-export async function loseAndFind(another, base) {
-	const line = await lineTo(base);
+export async function loseAndRestoreContact(another, base) {
+	const line = await proxyTo(base);
 	const faults = [];
 	const page = await another(line.base, faults);
 	await page.goto(line.base);
@@ -243,16 +243,16 @@ export async function loseAndFind(another, base) {
 	await line.cut();
 	await page.getByText('NO CONTACT').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the page does not say that the daemon is gone'));
 	expect(await start.isDisabled(), 'a run can be started without a daemon');
-	const said = await page.locator('#start-reason').innerText();
-	const run = await makeRun(base, 'strokes', UNDECIDED);
+	const text = await page.locator('#start-reason').innerText();
+	const run = await makeRun(base, 'strokes', WITHOUT_REPEATS);
 	expect(await page.getByText('NO CONTACT').first().isVisible(), 'the page has contact over a line that is cut');
-	await line.mend();
+	await line.restore();
 	await page.getByText('NO CONTACT').first().waitFor({ state: 'detached', timeout: 30_000 }).catch(() => expect(false, 'the page does not find the daemon again'));
 	await page.getByRole('link', { name: `#${run}` }).waitFor({ timeout: 30_000 }).catch(() => expect(false, `the page does not know run ${run}, which was made while it had no contact`));
 	expect(!faults.some((fault) => fault.startsWith('exception')), `the page did not bear the loss:\n  ${faults.join('\n  ')}`);
 	await line.cut();
 	await page.close();
-	return said;
+	return text;
 }
 
 /**
@@ -280,8 +280,8 @@ export async function stopByKey(page, base, who, keys) {
 	await escapeTwice();
 	expect((await state()) === 'running', `the Esc of the ${who} that closes the help sheet counts for a stop`);
 	for (const key of keys) await page.keyboard.press(key);
-	const said = page.getByText(/acknowledged (in|late)/i).first();
-	await said.waitFor({ timeout: 30_000 }).catch(() => expect(false, `nobody acknowledged the stop of the ${who}`));
+	const text = page.getByText(/acknowledged (in|late)/i).first();
+	await text.waitFor({ timeout: 30_000 }).catch(() => expect(false, `nobody acknowledged the stop of the ${who}`));
 	await page.getByRole('button', { name: 'The bench stands still' }).click({ timeout: 500 }).catch(() => {});
 }
 
@@ -304,7 +304,7 @@ export async function resetStopped(page, base) {
 		await held.waitFor({ state: 'detached', timeout: 30_000 });
 		await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 30_000 });
 		await page.goto(`${base}/log`);
-		await page.getByText('walked past (local)').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the log does not tell of the reset, and by whom'));
+		await page.getByText('walked past (local)').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the log does not show the reset, and by whom'));
 	}
 	return stopped.length;
 }
@@ -327,11 +327,11 @@ export async function brush(page) {
 export async function excludeAndUndo(page, reason) {
 	await page.getByRole('button', { name: 'Exclude …' }).click();
 	await page.getByRole('form', { name: 'Exclude the chosen samples' }).getByRole('textbox').fill(reason);
-	await toAnotherVersion(page, () => page.keyboard.press('Enter'));
-	const said = await page.getByRole('list', { name: 'What the fit does not look at' }).innerText();
+	await waitForOtherVersion(page, () => page.keyboard.press('Enter'));
+	const text = await page.getByRole('list', { name: 'What the fit does not look at' }).innerText();
 	await page.locator('figcaption').getByText('excluded').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'excluded samples are not marked in the plots'));
-	await toAnotherVersion(page, () => page.keyboard.press('z'));
-	return said;
+	await waitForOtherVersion(page, () => page.keyboard.press('z'));
+	return text;
 }
 
 /** Has the run made that would tell, and waits for the same model on both runs; says what the card promised. */
@@ -339,17 +339,17 @@ export async function measureNext(page) {
 	const card = page.locator('[data-experiment]');
 	await card.waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'no run is suggested'));
 	await card.locator('.uplot').first().waitFor({ timeout: FIT_MS });
-	const said = await card.innerText();
+	const text = await card.innerText();
 	const go = card.getByRole('button', { name: 'Run it and diagnose both runs together' });
 	await page.setViewportSize(PHONE);
-	const version = await toAnotherVersion(page, () => go.click(), RUN_MS);
-	await inView(page.locator('section[data-verdict]'), 'the answer of the further run');
+	const version = await waitForOtherVersion(page, () => go.click(), RUN_MS);
+	await expectInView(page.locator('section[data-verdict]'), 'the answer of the further run');
 	await page.setViewportSize(WIDE);
-	return { said, ...version };
+	return { text, ...version };
 }
 
 /** Starts an autopilot within a budget on the page of the workbench that the address names, sees it measure, and ends it; says there where it ended. */
-export async function flyAndStop(page, address) {
+export async function startAndStopAutopilot(page, address) {
 	await page.goto(address);
 	const form = page.getByRole('form', { name: 'Autopilot' });
 	await form.getByLabel('runs, at most').fill('2');
@@ -357,8 +357,8 @@ export async function flyAndStop(page, address) {
 	// A mock bench that keeps to no clock measures within a moment: every picture is looked at, and the stop pressed in it.
 	const measuring = () => {
 		const running = document.querySelector('[data-autopilot=running]');
-		const said = running?.textContent ?? '';
-		if (!said.includes('Measuring') || !/step \d+ of \d+/.test(said)) return false;
+		const text = running?.textContent ?? '';
+		if (!text.includes('Measuring') || !/step \d+ of \d+/.test(text)) return false;
 		[...running.querySelectorAll('button')].find((button) => button.textContent.trim() === 'Stop')?.click();
 		return true;
 	};
@@ -371,24 +371,24 @@ export async function flyAndStop(page, address) {
 }
 
 /** Lets an autopilot that may make no run go to its end from the first version of a run; the page has to follow it there. Gives the version and what is said of it. */
-export async function flyToEnd(page, address) {
+export async function runAutopilotToEnd(page, address) {
 	await page.goto(address);
 	await readVersion(page);
 	const form = page.getByRole('form', { name: 'Autopilot' });
 	await form.getByLabel('bench time').fill('0.01');
-	const ended = await toAnotherVersion(page, () => form.getByRole('button', { name: 'Start the autopilot' }).click(), RUN_MS);
+	const ended = await waitForOtherVersion(page, () => form.getByRole('button', { name: 'Start the autopilot' }).click(), RUN_MS);
 	await page.getByText('The autopilot has ended with this version.').waitFor({ timeout: 30_000 });
-	return { ...ended, said: await page.locator('[data-autopilot]').innerText() };
+	return { ...ended, text: await page.locator('[data-autopilot]').innerText() };
 }
 
 /** Takes the last effect out of the model, and comes back; how far things jump on the way. */
 export async function removeAndUndo(page) {
-	const before = await jumpsOf(page);
-	await toAnotherVersion(page, () => page.getByRole('list', { name: 'Effects of the model' }).getByRole('button').last().click());
+	const before = await layoutShiftOf(page);
+	await waitForOtherVersion(page, () => page.getByRole('list', { name: 'Effects of the model' }).getByRole('button').last().click());
 	await page.waitForTimeout(700);
-	await toAnotherVersion(page, () => page.keyboard.press('z'));
+	await waitForOtherVersion(page, () => page.keyboard.press('z'));
 	await page.waitForTimeout(700);
-	return (await jumpsOf(page)) - before;
+	return (await layoutShiftOf(page)) - before;
 }
 
 /** Writes an effect of one's own with a mistake in it, mends it, tries it on the run and adds it. */
@@ -413,5 +413,5 @@ export async function writeEffect(page, run) {
 	await form.getByRole('button', { name: `Try on run #${run}` }).click();
 	const found = await form.locator('.tried').innerText({ timeout: FIT_MS });
 	expect(/a = \d/.test(found), `the formula is not fitted to the run: ${found}`);
-	return toAnotherVersion(page, () => keep.click());
+	return waitForOtherVersion(page, () => keep.click());
 }

@@ -35,7 +35,7 @@ export const api = {
 	identification: (id: number, signal?: Signal) =>
 		callApi('get', '/api/v1/runs/{id}/identification', { path: { id } }, signal),
 	earlier: (id: number, signal?: Signal) => callApi('get', '/api/v1/runs/{id}/earlier', { path: { id } }, signal),
-	comparison: (id: number, signal?: Signal) => callApi('get', '/api/v1/runs/{id}/beside', { path: { id } }, signal),
+	liveComparison: (id: number, signal?: Signal) => callApi('get', '/api/v1/runs/{id}/beside', { path: { id } }, signal),
 	/** Results of complete runs. Some may arrive in a later answer. */
 	trends: (search: string, signal?: Signal) => callApi('get', '/api/v1/trends', { query: { search } }, signal),
 	start: (bench: string, procedure: string, parameters: Values) =>
@@ -80,7 +80,7 @@ export const api = {
 	keepModel: (id: number) => callApi('post', '/api/v1/models/{id}/keep', { path: { id } }),
 	/** The contribution of the effect to the prediction at each point of the residuals. */
 	withEffect: (id: number, effect: string, signal?: Signal) => callApi('get', '/api/v1/models/{id}/with/{effect}', { path: { id, effect } }, signal),
-	worth: (id: number, signal?: Signal) => callApi('get', '/api/v1/models/{id}/worth', { path: { id } }, signal),
+	effectAblation: (id: number, signal?: Signal) => callApi('get', '/api/v1/models/{id}/worth', { path: { id } }, signal),
 	compare: (first: number, second: number, run: number, signal?: Signal) =>
 		callApi('get', '/api/v1/models/{id}/compare/{other}', { path: { id: first, other: second }, query: { run } }, signal),
 	importModel: (run: number, model: Values) => callApi('post', '/api/v1/models/import', { body: { run, model } }),

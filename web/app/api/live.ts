@@ -22,9 +22,9 @@ export function connectLive(handlers: LiveHandlers): () => void {
 
 	const open = () => {
 		const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
-		const kept = token();
+		const storedToken = token();
 		// Addresses are logged in transit, so the token is a subprotocol, which may not contain brackets.
-		const offered = kept ? ['jointbench', `token.${encodeURIComponent(kept).replace(/[()]/g, (bracket) => `%${bracket.charCodeAt(0).toString(16)}`)}`] : [];
+		const offered = storedToken ? ['jointbench', `token.${encodeURIComponent(storedToken).replace(/[()]/g, (bracket) => `%${bracket.charCodeAt(0).toString(16)}`)}`] : [];
 		socket = new WebSocket(`${scheme}://${location.host}${BASE}/events`, offered);
 		socket.binaryType = 'arraybuffer';
 		socket.onopen = () => {

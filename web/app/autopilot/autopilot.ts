@@ -34,8 +34,8 @@ export function displayedSteps(steps: readonly AutopilotStep[]): AutopilotStep[]
 	return steps.flatMap((step, i) => {
 		const next = steps[i + 1];
 		if (step.action === 'measure' && next?.action === 'measured') return [];
-		const begun = steps[i - 1];
-		return [step.action === 'measured' && begun?.experiment ? { ...step, experiment: begun.experiment } : step];
+		const started = steps[i - 1];
+		return [step.action === 'measured' && started?.experiment ? { ...step, experiment: started.experiment } : step];
 	});
 }
 

@@ -93,13 +93,13 @@ interface DrawnFigure {
 	width: number;
 	height: number;
 	paper: string;
-	inks: DrawnShape[];
+	shapes: DrawnShape[];
 }
 
 /** The figure with its title above and a margin around it. */
 function drawnFigure(host: Element, title: string): DrawnFigure {
 	const root = getComputedStyle(document.documentElement);
-	const inks = [...shapesOf(host), ...textsOf(host)].map((ink) => ({ ...ink, matrix: new DOMMatrix().translate(MARGIN, TITLE + MARGIN).multiply(ink.matrix) }));
+	const shapes = [...shapesOf(host), ...textsOf(host)].map((shape) => ({ ...shape, matrix: new DOMMatrix().translate(MARGIN, TITLE + MARGIN).multiply(shape.matrix) }));
 	const head: DrawnShape = {
 		d: '',
 		text: title,
@@ -115,12 +115,12 @@ function drawnFigure(host: Element, title: string): DrawnFigure {
 		width: host.clientWidth + 2 * MARGIN,
 		height: host.clientHeight + TITLE + 2 * MARGIN,
 		paper: root.getPropertyValue('--panel').trim(),
-		inks: [head, ...inks],
+		shapes: [head, ...shapes],
 	};
 }
 
 export function svgFile(host: Element, title: string): Blob {
-	const { width, height, paper, inks } = drawnFigure(host, title);
+	const { width, height, paper, shapes: inks } = drawnFigure(host, title);
 	const anchors: Partial<Record<CanvasTextAlign, string>> = { center: 'middle', right: 'end' };
 	const body = inks.map((ink) => {
 		const common = `transform="${ink.matrix.toString()}" fill="${ink.fill}" stroke="${ink.stroke}" stroke-width="${ink.width}"`;
@@ -135,7 +135,7 @@ export function svgFile(host: Element, title: string): Blob {
 const RESOLUTION = 2;
 
 export async function pngFile(host: Element, title: string): Promise<Blob> {
-	const { width, height, paper, inks } = drawnFigure(host, title);
+	const { width, height, paper, shapes: inks } = drawnFigure(host, title);
 	const canvas = new OffscreenCanvas(width * RESOLUTION, height * RESOLUTION);
 	const ctx = canvas.getContext('2d')!;
 	ctx.scale(RESOLUTION, RESOLUTION);

@@ -61,7 +61,7 @@ export interface Chart {
 export function makeChart(
 	host: HTMLElement,
 	frame: ChartLayout,
-	asked: OnView,
+	onview: OnView,
 	pointed: (index: number | null) => void,
 	moved: OnCursors = () => {},
 ): Chart {
@@ -69,7 +69,7 @@ export function makeChart(
 	let backdrop = EMPTY_BACKDROP;
 	let whole: View = [0, 1];
 	let lines: ReturnType<typeof cursorLines> | null = null;
-	const hands = gestures(asked);
+	const gestureOptions = gestures(onview);
 	/** Points at the ends are drawn completely. */
 	const marked = frame.curves.some(({ mark }) => mark !== 'line');
 	const plot = new uPlot(
@@ -85,13 +85,13 @@ export function makeChart(
 			axes: [axis(frame.hideXLabels ? '' : frame.xTitle, tickText, frame.hideXLabels), axis(frame.yTitle, frame.log ? powerText : tickText, false, 58)],
 			series: [{}, ...frame.curves.map((curve) => series(curve, () => backdrop))],
 			cursor: {
-				...hands.cursor,
+				...gestureOptions.cursor,
 				points: { size: 6 },
 				y: false,
 				sync: frame.sync ? { key: frame.sync, setSeries: false, scales: ['x', null], filters: { pub: (what) => what === 'mousemove' } } : undefined,
 			},
 			hooks: {
-				...hands.hooks,
+				...gestureOptions.hooks,
 				draw: [() => lines?.place()],
 				drawAxes: [(u) => paintBackdrop(u, backdrop)],
 				setCursor: [(u) => pointed(u.cursor.idx ?? null)],
@@ -149,16 +149,16 @@ function axis(title: string, say: (tick: number) => string, bare = false, size?:
 
 function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
 	const stroke = () => colour(curve.stroke);
-	const aside = () => (curve.offset ? OFFSET_PX * devicePixelRatio : 0);
+	const offset = () => (curve.offset ? OFFSET_PX * devicePixelRatio : 0);
 	const fill = () => `color-mix(in srgb, ${stroke()} ${curve.mark === 'line' ? 45 : 22}%, transparent)`;
 	if (curve.mark === 'line') return { stroke, fill, points: { show: false }, paths: linePaths(curve.dash, () => backdrop().gaps) };
 	if (curve.mark === 'chord') return { stroke, width: 1.5, dash: curve.dash, points: { show: false }, fill, paths: (u, i) => chord(u, i, curve.spread ?? 0) };
 	if (curve.mark === 'dash') {
-		const paths: uPlot.Series.PathBuilder = (u, i, from, to) => dashPaths(u, i, from, to, curve.spread ?? 0, aside());
+		const paths: uPlot.Series.PathBuilder = (u, i, from, to) => dashPaths(u, i, from, to, curve.spread ?? 0, offset());
 		return { stroke, width: 2, points: { show: false }, paths, fill };
 	}
 	const filled = curve.mark === 'dot';
-	return { stroke, width: 1, fill: stroke, points: { show: false }, paths: (u, i, from, to) => pointPaths(u, i, from, to, filled, aside()) };
+	return { stroke, width: 1, fill: stroke, points: { show: false }, paths: (u, i, from, to) => pointPaths(u, i, from, to, filled, offset()) };
 }
 
 function chord(u: uPlot, index: number, spread: number): uPlot.Series.Paths {

@@ -16,13 +16,13 @@ export interface Bins {
 const POINTS_PER_BIN = 12;
 
 /** `segment`: number of the set-point of each value. Values that are not finite are ignored. */
-export function binsFor(values: readonly number[], segment: readonly number[], kept: Uint8Array, most = 24): Bins {
+export function binsFor(values: readonly number[], segment: readonly number[], counted: Uint8Array, most = 24): Bins {
 	const points: { value: number; segment: number }[] = [];
 	let low = Number.POSITIVE_INFINITY;
 	let high = Number.NEGATIVE_INFINITY;
 	for (let i = 0; i < values.length; i++) {
 		const value = values[i]!;
-		if (!kept[i] || !Number.isFinite(value)) continue;
+		if (!counted[i] || !Number.isFinite(value)) continue;
 		points.push({ value, segment: segment[i] ?? 0 });
 		low = Math.min(low, value);
 		high = Math.max(high, value);

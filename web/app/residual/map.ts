@@ -13,7 +13,7 @@ export function residualMap(
 	x: { values: readonly number[]; bins: Bins },
 	y: { values: readonly number[]; bins: Bins },
 	residual: readonly number[],
-	kept: Uint8Array,
+	counted: Uint8Array,
 	noise: number,
 	piece: readonly number[],
 ): ResidualMap {
@@ -21,7 +21,7 @@ export function residualMap(
 	const rows = Math.max(0, y.bins.edges.length - 1);
 	const sums = Array.from({ length: columns * rows }, () => new BlockSums());
 	for (let i = 0; i < residual.length; i++) {
-		if (!kept[i]) continue;
+		if (!counted[i]) continue;
 		const column = binOf(x.bins.edges, x.values[i]!);
 		const row = binOf(y.bins.edges, y.values[i]!);
 		if (column >= 0 && row >= 0) sums[row * columns + column]!.add(residual[i]!, piece[i]!);

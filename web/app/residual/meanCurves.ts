@@ -32,11 +32,11 @@ export function axisLimit(curves: readonly (readonly Point[])[]): number {
 }
 
 /** Fraction of selected points per bin. */
-export function selectedShares(values: readonly number[], { edges }: Bins, kept: Uint8Array, chosen: Uint8Array | null): number[] | null {
+export function selectedShares(values: readonly number[], { edges }: Bins, counted: Uint8Array, chosen: Uint8Array | null): number[] | null {
 	if (!chosen) return null;
 	const bins = edges.slice(1).map(() => ({ all: 0, chosen: 0 }));
 	for (let i = 0; i < values.length; i++) {
-		const bin = kept[i] ? bins[binOf(edges, values[i]!)] : undefined;
+		const bin = counted[i] ? bins[binOf(edges, values[i]!)] : undefined;
 		if (!bin) continue;
 		bin.all += 1;
 		bin.chosen += chosen[i]!;

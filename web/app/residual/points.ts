@@ -70,10 +70,10 @@ export function directionOf(set: ResidualSet): readonly number[] | null {
 }
 
 /** Axes along which the points differ; `segment` and `repeat` are only numbers. */
-export function usefulAxes(set: ResidualSet, kept: Uint8Array): ResidualSet['axes'] {
+export function usefulAxes(set: ResidualSet, counted: Uint8Array): ResidualSet['axes'] {
 	return set.axes.filter((axis) => {
 		if (axis.name === 'segment' || axis.name === 'repeat') return false;
-		const finite = axis.values.filter((value, i) => kept[i] && Number.isFinite(value));
+		const finite = axis.values.filter((value, i) => counted[i] && Number.isFinite(value));
 		return finite.length > 1 && finite.some((value) => Math.abs(value - finite[0]!) > 1e-12 * Math.max(1, Math.abs(value)));
 	});
 }

@@ -11,13 +11,13 @@ export function axisValues(set: ResidualSet, name: string): readonly number[] | 
 /** The samples of a region, one flag each; `null` without a selection, or if the run has no such axis. */
 export function regionSamples(set: ResidualSet, region: Region | null, side: DirectionFilter, ramps: boolean): Uint8Array | null {
 	if (!region) return null;
-	const kept = pointMask(set, side, ramps);
+	const mask = pointMask(set, side, ramps);
 	for (const { axis, from, to } of region) {
 		const values = axisValues(set, axis);
 		if (!values) return null;
-		for (let i = 0; i < kept.length; i++) {
-			if (!(values[i]! >= from && values[i]! <= to)) kept[i] = 0;
+		for (let i = 0; i < mask.length; i++) {
+			if (!(values[i]! >= from && values[i]! <= to)) mask[i] = 0;
 		}
 	}
-	return kept;
+	return mask;
 }

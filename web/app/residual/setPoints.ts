@@ -13,14 +13,14 @@ export function detectSetPoints(points: readonly { value: number; segment: numbe
 	if (atSetPoint < 0.7 * points.length) return null;
 	segments.sort((a, b) => a.mean - b.mean);
 	const scatter = Math.sqrt(segments.reduce((sum, each) => sum + each.n * each.scatter ** 2, 0) / atSetPoint);
-	const apart = Math.max(MERGE_SPAN * span, 3 * scatter);
+	const minDistance = Math.max(MERGE_SPAN * span, 3 * scatter);
 	const groups: { n: number; sum: number; last: number }[] = [];
 	for (const { n, mean } of segments) {
 		const group = groups.at(-1);
-		if (group && mean - group.last <= Math.max(apart, MERGE_RELATIVE * Math.abs(mean))) Object.assign(group, { n: group.n + n, sum: group.sum + n * mean, last: mean });
+		if (group && mean - group.last <= Math.max(minDistance, MERGE_RELATIVE * Math.abs(mean))) Object.assign(group, { n: group.n + n, sum: group.sum + n * mean, last: mean });
 		else groups.push({ n, sum: n * mean, last: mean });
 	}
-	const chained = groups.some((group) => group.last - group.sum / group.n > 4 * Math.max(apart, MAX_SCATTER * span));
+	const chained = groups.some((group) => group.last - group.sum / group.n > 4 * Math.max(minDistance, MAX_SCATTER * span));
 	if (chained || groups.length < 2 || groups.length > MAX_SET_POINTS) return null;
 	return groups.map((group) => group.sum / group.n);
 }

@@ -23,9 +23,9 @@ const MIN_POINTS = 30;
 const CHI2_2 = 5.991;
 
 /** The residuals of the points that count, in the order of measurement. */
-export function inTimeOrder(set: ResidualSet, kept: Uint8Array): number[] {
+export function inTimeOrder(set: ResidualSet, counted: Uint8Array): number[] {
 	const time = set.axes.find((axis) => axis.name === 'time_s')?.values;
-	const places = set.error.flatMap((_, i) => (kept[i] ? [i] : []));
+	const places = set.error.flatMap((_, i) => (counted[i] ? [i] : []));
 	if (time) places.sort((a, b) => time[a]! - time[b]!);
 	return places.map((i) => set.error[i]!);
 }

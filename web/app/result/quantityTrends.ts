@@ -1,4 +1,4 @@
-import type { Earlier, IdentifiedQuantity } from '../api/types';
+import type { EarlierResult, IdentifiedQuantity } from '../api/types';
 import { type Scale, formatQuantity as sized } from '../format/number';
 import { formatDateTime } from '../format/time';
 import { estimatesDiffer } from '../runs/differences';
@@ -21,9 +21,9 @@ export interface QuantityTrend {
 }
 
 /** The reference of changes. */
-export const referenceRun = (earlier: readonly Earlier[]): Earlier | undefined => earlier.find(({ holds }) => holds) ?? earlier[0];
+export const referenceRun = (earlier: readonly EarlierResult[]): EarlierResult | undefined => earlier.find(({ holds }) => holds) ?? earlier[0];
 
-export function quantityTrends(run: number, quantities: readonly IdentifiedQuantity[], earlier: readonly Earlier[], scale: (unit: string) => Scale): QuantityTrend[] {
+export function quantityTrends(run: number, quantities: readonly IdentifiedQuantity[], earlier: readonly EarlierResult[], scale: (unit: string) => Scale): QuantityTrend[] {
 	return quantities.flatMap((of) => {
 		const named = ({ name }: IdentifiedQuantity) => name === of.name;
 		const known = earlier.flatMap((one) => one.quantities.filter(named).map((quantity) => ({ ...one, quantity }))).reverse();

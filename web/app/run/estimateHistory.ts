@@ -16,10 +16,10 @@ export function lastChange(story: readonly EstimateSnapshot[]): string | null {
 	for (let i = story.length - 1; i > 0 && known[i - 1]!.length > 0; i--) {
 		const [before, now] = [known[i - 1]!, known[i]!];
 		const only = (here: readonly IdentifiedQuantity[], there: readonly IdentifiedQuantity[]) => here.filter(({ name }) => there.every((one) => one.name !== name)).map(({ title }) => title).join(', ');
-		const [came, went] = [only(now, before), only(before, now)];
+		const [added, removed] = [only(now, before), only(before, now)];
 		const wider = now.filter((one) => before.some((other) => other.name === one.name && width(one) > WIDER * width(other))).length;
-		const said = [came && `found now: ${came}`, went && `no longer found: ${went}`, wider && `${wider} of ${now.length} intervals wider`].filter(Boolean).join('; ');
-		if (said) return `From ${story[i]!.at_s.toFixed(0)} s on ${said}. Intervals grow with each further effect, and where new samples contradict earlier ones.`;
+		const changes = [added && `found now: ${added}`, removed && `no longer found: ${removed}`, wider && `${wider} of ${now.length} intervals wider`].filter(Boolean).join('; ');
+		if (changes) return `From ${story[i]!.at_s.toFixed(0)} s on ${changes}. Intervals grow with each further effect, and where new samples contradict earlier ones.`;
 	}
 	return null;
 }

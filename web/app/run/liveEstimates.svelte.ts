@@ -1,6 +1,6 @@
 import { api } from '../api/client';
 import { type ApiError, toApiError } from '../api/apiError';
-import type { Beside, Identification } from '../api/types';
+import type { LiveComparison, Identification } from '../api/types';
 import { lab } from '../state/lab.svelte';
 import type { EstimateSnapshot } from './estimateHistory';
 
@@ -17,13 +17,13 @@ const SLOW_MS = 400;
 export function liveEstimates(running: () => number | null) {
 	let identification = $state.raw<Identification | null>(null);
 	let history: EstimateSnapshot[] = $state.raw([]);
-	let comparison = $state.raw<Beside | null>(null);
+	let comparison = $state.raw<LiveComparison | null>(null);
 	let refused = $state.raw<ApiError | null>(null);
 	let busy = $state(false);
 
-	const asked = $derived(running());
+	const activeRun = $derived(running());
 	$effect(() => {
-		const run = asked;
+		const run = activeRun;
 		identification = null;
 		comparison = null;
 		history = [];
@@ -31,13 +31,13 @@ export function liveEstimates(running: () => number | null) {
 		const abort = new AbortController();
 		let timer: ReturnType<typeof setTimeout>;
 		const ask = async () => {
-			const begun = performance.now();
+			const start_ms = performance.now();
 			const slow = setTimeout(() => (busy = true), SLOW_MS);
 			try {
 				// The daemon refuses a run without samples, so it is not requested.
 				if ((await api.run(run, abort.signal)).rows > 0) {
 					identification = await api.identification(run, abort.signal);
-					comparison = await api.comparison(run, abort.signal);
+					comparison = await api.liveComparison(run, abort.signal);
 					history = [...history, { at_s: lab.samples?.last_s ?? history.length, quantities: identification.quantities }];
 				}
 				refused = null;
@@ -48,7 +48,7 @@ export function liveEstimates(running: () => number | null) {
 				clearTimeout(slow);
 				busy = false;
 			}
-			timer = setTimeout(() => void ask(), Math.max(EVERY_MS, WAIT_FACTOR * (performance.now() - begun)));
+			timer = setTimeout(() => void ask(), Math.max(EVERY_MS, WAIT_FACTOR * (performance.now() - start_ms)));
 		};
 		timer = setTimeout(() => void ask(), EVERY_MS / 2);
 		return () => {

@@ -17,12 +17,12 @@ export interface ExecutedStep {
 
 /** The steps of a run in the order of their start; a step that was repeated after a pause occurs twice. */
 export function executedSteps(events: readonly Pick<RunEvent, 'kind' | 'at_s' | 'data'>[], end_s: number): ExecutedStep[] {
-	const begun = events.filter(({ kind }) => kind === 'step_started');
-	return begun.map(({ at_s, data }, i) => ({
+	const started = events.filter(({ kind }) => kind === 'step_started');
+	return started.map(({ at_s, data }, i) => ({
 		step: Number(data['step'] ?? i),
 		label: withMinusSigns(String(data['label'] ?? '')),
 		at_s,
-		to_s: begun[i + 1]?.at_s ?? Math.max(at_s, end_s),
+		to_s: started[i + 1]?.at_s ?? Math.max(at_s, end_s),
 	}));
 }
 

@@ -6,10 +6,10 @@ export type PlotRange = { follow: true; width_s: number } | { follow: false; vie
 /**
  * The range after a gesture on the plot. A zoom continues to follow with a new width; the other gestures fix the range.
  */
-export function afterGesture(look: PlotRange, asked: View | null, hand: Gesture): PlotRange {
-	if (asked === null) return { follow: false, view: null };
-	if (look.follow && hand === 'zoom') return { follow: true, width_s: Math.max(0.05, asked[1] - asked[0]) };
-	return { follow: false, view: asked };
+export function afterGesture(range: PlotRange, view: View | null, hand: Gesture): PlotRange {
+	if (view === null) return { follow: false, view: null };
+	if (range.follow && hand === 'zoom') return { follow: true, width_s: Math.max(0.05, view[1] - view[0]) };
+	return { follow: false, view };
 }
 
 export function rangeView(look: PlotRange, newest_s: number): View | null {

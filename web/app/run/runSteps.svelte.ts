@@ -19,12 +19,12 @@ export function runSteps(run: () => Run | undefined, live: () => boolean) {
 		() => (run()?.procedure === 'import' ? null : id),
 		(of, signal) => api.plan(of, signal),
 	);
-	const kept = resource(
+	const storedEvents = resource(
 		() => (id === null ? null : `${id} ${live()} ${lab.connected}`),
 		(_key, signal) => api.events(id!, undefined, signal),
 	);
 	const events = $derived.by(() => {
-		const before = kept.data ?? [];
+		const before = storedEvents.data ?? [];
 		const last = before.at(-1)?.sequence ?? 0;
 		return [...before, ...(id !== null && lab.liveRun === id ? lab.events.filter(({ sequence }) => sequence > last) : [])];
 	});

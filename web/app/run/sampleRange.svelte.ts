@@ -22,13 +22,13 @@ export function sampleRange(run: () => Run, live: () => boolean, look: () => Plo
 	const view: View | null = $derived(rangeView(look(), (isLive && look().follow ? lab.shown_s : null) ?? 0));
 	/** A range that is no longer in memory, or a finished run, is read from the store. */
 	const stored = $derived(!isLive || (!look().follow && (lab.samples?.first_s ?? Infinity) > (view?.[0] ?? -Infinity) + 0.05));
-	const asked = debounced(() => (stored ? JSON.stringify([run().id, look(), live()]) : null), 90);
+	const request = debounced(() => (stored ? JSON.stringify([run().id, look(), live()]) : null), 90);
 	const load = async (from_s: number | undefined, to_s: number | undefined, signal: AbortSignal) => {
 		const samples = await api.samples(run().id, { from_s, to_s, px: PIXELS }, signal);
 		return { ...envelope(samples), names: samples.channels.map((channel) => channel.name) };
 	};
 	const history = resource(
-		() => asked.value,
+		() => request.value,
 		(_key, signal) => load(view?.[0], view?.[1], signal),
 	);
 	/** Samples before the page connected. The store has the last of them two seconds later. */

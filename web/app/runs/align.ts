@@ -76,11 +76,11 @@ export function factTable(facts: readonly Record<string, unknown>[]): { name: st
  */
 export function meanRow(name: string, found: readonly (Pick<ChannelStatistics, 'mean' | 'deviation'> | undefined)[], least: number) {
 	const means = found.flatMap((one) => one?.mean ?? []);
-	const apart = Math.max(...means) - Math.min(...means);
+	const range = Math.max(...means) - Math.min(...means);
 	return {
 		name,
 		values: found.map((one) => (one?.mean == null ? '–' : one.mean.toFixed(1))),
-		differs: apart > Math.max(least, ...found.map((one) => 2 * (one?.deviation ?? 0))),
+		differs: range > Math.max(least, ...found.map((one) => 2 * (one?.deviation ?? 0))),
 	};
 }
 

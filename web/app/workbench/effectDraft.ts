@@ -1,4 +1,4 @@
-import type { EffectDefinition, Place } from '../api/types';
+import type { EffectDefinition, FormulaPosition } from '../api/types';
 
 /** One parameter as typed by the user. */
 export interface ParameterDraft {
@@ -65,14 +65,14 @@ export function draftOf(definition: EffectDefinition): EffectDraft {
 }
 
 /** Splits a text into three parts: before, at and after the error. Positions count characters, not code units. */
-export function splitAtError({ text, position, length }: Place): [string, string, string] {
+export function splitAtError({ text, position, length }: FormulaPosition): [string, string, string] {
 	const letters = [...text];
 	const part = (from: number, to?: number) => letters.slice(from, to).join('');
 	return [part(0, position), part(position, position + length), part(position + length)];
 }
 
 /** An unknown name in the formula may become a parameter. */
-export function unknownName(place: Place | null, draft: EffectDraft): string | null {
+export function unknownName(place: FormulaPosition | null, draft: EffectDraft): string | null {
 	if (place?.field !== 'formula') return null;
 	const [, name, rest] = splitAtError(place);
 	const isCall = /^\s*\(/.test(rest);

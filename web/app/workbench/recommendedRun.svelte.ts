@@ -12,7 +12,7 @@ import type { Workbench } from './workbench.svelte';
 export function recommendedRun(workbench: Workbench) {
 	const startAction = action();
 	/** The autopilot that this page started, with the version that requested it. */
-	let started: { flight: number; from: number } | null = $state.raw(null);
+	let started: { autopilotId: number; from: number } | null = $state.raw(null);
 	const autopilots = resource(
 		() => `${lab.autopilots} ${lab.connected}`,
 		(_key, signal) => api.autopilots(signal),
@@ -20,11 +20,11 @@ export function recommendedRun(workbench: Workbench) {
 	/** The bench of the run, else the current bench. */
 	const bench = $derived(lab.benches?.find((one) => one.name === workbench.run.data?.bench) ?? lab.bench);
 	const diagnosis = $derived(workbench.diagnosisIsCurrent ? (workbench.diagnosis.data?.id ?? null) : null);
-	const flight = $derived(diagnosis === null ? null : (autopilots.data?.find((one) => requestedDiagnosis(one) === diagnosis) ?? null));
+	const autopilot = $derived(diagnosis === null ? null : (autopilots.data?.find((one) => requestedDiagnosis(one) === diagnosis) ?? null));
 
 	/** The result is the same model on more data. It is displayed if the user still displays the original version. */
 	$effect(() => {
-		const ended = autopilots.data?.find((one) => one.id === started?.flight && one.state !== 'running');
+		const ended = autopilots.data?.find((one) => one.id === started?.autopilotId && one.state !== 'running');
 		if (!ended || !started) return;
 		const stayed = started.from === untrack(() => workbench.model?.id);
 		started = null;
@@ -35,7 +35,7 @@ export function recommendedRun(workbench: Workbench) {
 		const from = workbench.model?.id;
 		if (diagnosis === null || !bench || from === undefined) return;
 		await startAction.run(async () => {
-			started = { flight: (await api.experiment(diagnosis, bench.name)).id, from };
+			started = { autopilotId: (await api.experiment(diagnosis, bench.name)).id, from };
 			lab.autopilots += 1;
 		});
 	}
@@ -45,8 +45,8 @@ export function recommendedRun(workbench: Workbench) {
 		get bench() {
 			return bench;
 		},
-		get flight() {
-			return flight;
+		get autopilot() {
+			return autopilot;
 		},
 		get starting() {
 			return startAction.busy;

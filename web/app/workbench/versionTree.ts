@@ -64,9 +64,9 @@ export function branches(models: readonly Model[]): Branch[] {
 	}
 	const branchList: Branch[] = [];
 	const walk = (parent: number | null, depth: number) => {
-		const here = children.get(parent) ?? [];
-		for (const model of here) {
-			const forks = parent !== null && model !== here.at(-1);
+		const siblings = children.get(parent) ?? [];
+		for (const model of siblings) {
+			const forks = parent !== null && model !== siblings.at(-1);
 			branchList.push({ model, depth: depth + Number(forks), forks, ends: !children.has(model.id) });
 			walk(model.id, depth + Number(forks));
 		}

@@ -1,4 +1,4 @@
-import type { Model, Suggestion, Worth } from '../api/types';
+import type { Model, Suggestion, EffectAblation } from '../api/types';
 import { idText } from '../format/label';
 import { sameData, stepName } from './versionTree';
 
@@ -42,8 +42,8 @@ export interface EffectLoss {
 }
 
 /** The largest loss first; an effect without which the fit is impossible has no value. */
-export function effectLosses(worth: readonly Worth[]): EffectLoss[] {
-	return worth.flatMap(({ effect, without_rms }) => (without_rms == null ? [] : [{ effect, without: without_rms }])).sort((a, b) => b.without - a.without);
+export function effectLosses(ablations: readonly EffectAblation[]): EffectLoss[] {
+	return ablations.flatMap(({ effect, without_rms }) => (without_rms == null ? [] : [{ effect, without: without_rms }])).sort((a, b) => b.without - a.without);
 }
 
 /** Position of the mark of a bar with one added effect: the error without this effect in the current model. */

@@ -123,7 +123,7 @@ export function openWorkbench(id: number) {
 		router.set({ model: next.id, with: null, region: null, side: null, zoom: null }, parent === null ? 'replace' : 'push');
 		undone = [];
 		notice = parent ? changeNotice(parent, next) : null;
-		if (notice?.good === false) void reveal('said');
+		if (notice?.good === false) void reveal('workbench-status');
 	}
 
 	/** Fits with the effect and compares the result with the current version, which stays displayed. */
@@ -152,35 +152,35 @@ export function openWorkbench(id: number) {
 	 * The change in the words of a comparison. For a trial, only the undetermined results, because the comparison shows
 	 * the rest.
 	 */
-	function changeNotice(before: Model, after: Model, kept = true): { text: string; good: boolean } | null {
+	function changeNotice(before: Model, after: Model, isKept = true): { text: string; good: boolean } | null {
 		if (!sameData(before, after)) return null;
 		const share = gain(before, after);
 		const open = share > MIN_GAIN ? undecided(before, after) : [];
-		if (!kept && open.length === 0) return null;
+		if (!isKept && open.length === 0) return null;
 		const stays = after.added.length === 0 && Math.abs(share) <= MIN_GAIN;
 		const [was, is] = [before, after].map((one) => formatQuantity(one.validation_rms, one.fit.unit));
-		const said = `Validation error ${was} → ${is}: ${stays ? '≈ as before' : gainText(share)} (${formatChange(-share)})`;
-		if (open.length > 0) return { text: `${said}, but this data does not decide ${open.join(', ')}: ${kept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
+		const errorText = `Validation error ${was} → ${is}: ${stays ? '≈ as before' : gainText(share)} (${formatChange(-share)})`;
+		if (open.length > 0) return { text: `${errorText}, but this data does not decide ${open.join(', ')}: ${isKept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
 		const good = stays || share > MIN_GAIN;
-		return { text: `${said}.${good ? '' : ' Undo with z.'}`, good };
+		return { text: `${errorText}.${good ? '' : ' Undo with z.'}`, good };
 	}
 
 	const currentNotice = $derived.by(() => {
 		const before = model?.added.length ? versions.find((one) => one.id === model.parent) : undefined;
-		const said = before && model ? changeNotice(before, model) : null;
-		return said?.good ? null : said;
+		const change = before && model ? changeNotice(before, model) : null;
+		return change?.good ? null : change;
 	});
 	const isTrying = $derived(comparison !== null && comparison.parent === model?.id && isTrial(comparison));
 	/** Suggestions from contradictory columns are not reliable. */
 	const hasContradictoryColumns = $derived(diagnosis.data?.undecided_reason === 'contradictory_columns');
 
 	/** Fits the same effects to other data; without `excluded` it has the same exclusions as this version. */
-	async function refitOn(more: number[], what: string, excluded?: Exclusion[], told?: string): Promise<void> {
+	async function refitOn(more: number[], what: string, excluded?: Exclusion[], noticeText?: string): Promise<void> {
 		const from = model;
 		const made = from && (await runFit(what, () => api.fit({ run: id, effects: from.effects, parent: from.id, more_runs: more, exclude: excluded })));
 		if (!made) return;
 		await show(made, from);
-		if (told) notice = { text: `${told} Undo with z.`, good: true };
+		if (noticeText) notice = { text: `${noticeText} Undo with z.`, good: true };
 	}
 	const others = $derived(model?.more_runs ?? []);
 	/** Additional runs in the address: used once, afterwards the address names the version. */
@@ -199,7 +199,7 @@ export function openWorkbench(id: number) {
 	});
 	const addRun = (more: number) => refitOn([...others, more], `Fitting run #${more} with the others`);
 	const removeRun = (less: number) => refitOn(others.filter((one) => one !== less), `Fitting without run #${less}`);
-	const refitWithout = (excluded: Exclusion[], what: string, told: string) => refitOn(others, what, excluded, told);
+	const refitWithout = (excluded: Exclusion[], what: string, noticeText: string) => refitOn(others, what, excluded, noticeText);
 	const exclude = (stretches: Exclusion[], reason: string) =>
 		refitWithout([...(model?.excluded ?? []), ...stretches], 'Refitting without the chosen samples', `Fitted without the chosen samples (${reason}).`);
 	/** Includes the samples again that were excluded for a reason. */
@@ -286,9 +286,9 @@ export function openWorkbench(id: number) {
 		},
 		/** Residuals of the comparison version, if both versions have the same samples. */
 		get comparisonSet() {
-			const [mine, theirs] = [residuals.data, otherResiduals.data];
-			const alike = theirs?.version === comparison?.id && theirs?.set.error.length === mine?.set.error.length;
-			return comparison && alike ? (theirs?.set ?? null) : null;
+			const [current, compared] = [residuals.data, otherResiduals.data];
+			const alike = compared?.version === comparison?.id && compared?.set.error.length === current?.set.error.length;
+			return comparison && alike ? (compared?.set ?? null) : null;
 		},
 		/** The comparison version is a trial of an effect on the current version. */
 		get isTrying() {

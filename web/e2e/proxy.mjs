@@ -3,7 +3,7 @@ import { once } from 'node:events';
 import { connect, createServer } from 'node:net';
 
 /** Listens on a free port of its own and passes everything on to `base`. */
-export async function lineTo(base) {
+export async function proxyTo(base) {
 	const { hostname, port } = new URL(base);
 	const ends = new Set();
 	const server = createServer((here) => {
@@ -28,6 +28,6 @@ export async function lineTo(base) {
 			server.close();
 			for (const end of ends) end.destroy();
 		},
-		mend: () => listen(own),
+		restore: () => listen(own),
 	};
 }
