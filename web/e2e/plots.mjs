@@ -1,10 +1,10 @@
-// What can be done with plots: hide a channel, go to a step, compute, draw one channel over another, follow a figure over runs.
+// Functions of plots: hide a channel, go to a step, derive a channel, plot one channel over another, show a quantity over runs.
 import { audit } from './audit.mjs';
 import { expect, TIMEOUT_MS } from './browser.mjs';
 
 const imageOf = (plot) => plot.locator('canvas').first().evaluate((canvas) => canvas.toDataURL());
 
-/** Hides a channel by its entry in the legend, and shows it again; the address keeps it. */
+/** Hides a channel by its legend entry and shows it again. The address stores it. */
 export async function hideChannel(page) {
 	const plot = page.locator('#plots figure:has(.uplot)', { has: page.getByRole('button', { name: /set ?point/ }) }).first();
 	await plot.waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'no plot names its set point'));
@@ -25,7 +25,7 @@ export async function hideChannel(page) {
 	await figure.getByRole('button', { pressed: false }).first().press('Enter');
 }
 
-/** Goes to a step and to an entry of the journal; both show their time in the plots. */
+/** Opens a step and a journal entry. Both show their time in the plots. */
 export async function goToSteps(page) {
 	const viewOf = () => new URL(page.url()).searchParams.get('view');
 	const step = page.getByRole('list', { name: 'Steps of the run' }).getByRole('button').nth(1);
@@ -38,7 +38,7 @@ export async function goToSteps(page) {
 	await page.waitForURL((url) => !url.searchParams.has('view'), { timeout: TIMEOUT_MS });
 }
 
-/** Computes a channel by a formula (once with a mistake), draws one channel over another, and a spectrum; a fresh page finds all of it behind the address. */
+/** Derives a channel by a formula (once with an error), plots one channel over another, and shows a spectrum. A new page must show the same from the address. */
 export async function analyse(page) {
 	const panel = page.locator('section', { has: page.getByRole('heading', { name: 'Analysis' }) });
 	await panel.getByRole('button', { name: 'Derived channel' }).click();
@@ -74,7 +74,7 @@ export async function compareChannels(page) {
 	await channels.getByLabel('motor velocity').uncheck();
 }
 
-/** Follows a figure over all runs of a search, over their order and over their temperature. */
+/** Shows a quantity over all runs of a search, by run and by temperature. */
 export async function followTrend(page, base) {
 	await page.goto(`${base}/runs?search=procedure:friction`);
 	await page.getByRole('button', { name: 'Trend', exact: true }).click();
@@ -103,7 +103,7 @@ export async function changeMapColours(page) {
 	await section.getByLabel(/^scale/).selectOption('log');
 }
 
-/** Opens the joint regions of parameters that trade off, where there are any. */
+/** Opens the joint regions of correlated parameters, if there are any. */
 export async function openTradeOffs(page) {
 	const summary = page.getByText(/parameter trade-offs?$/);
 	if ((await summary.count()) === 0) return console.log('no parameters trade off: their regions are left out');
@@ -113,7 +113,7 @@ export async function openTradeOffs(page) {
 	await summary.click();
 }
 
-/** Before any script of the dashboard has come: the first answer holds the stop, and it stops the benches. */
+/** The first answer contains a stop button that works before any script of the dashboard is loaded. */
 export async function stopEarly(another, base) {
 	const first = await (await fetch(base)).text();
 	expect(/id="early-stop"/.test(first), 'the first answer of the daemon has no stop');

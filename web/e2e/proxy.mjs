@@ -1,8 +1,8 @@
-// A line to the daemon that can be cut, as a pulled cable or a killed daemon cuts it.
+// A proxy to the daemon. It can be interrupted, like a connection with a pulled cable or a terminated daemon.
 import { once } from 'node:events';
 import { connect, createServer } from 'node:net';
 
-/** Listens on a free port of its own and passes everything on to `base`. */
+/** Listens on a free port and forwards everything to `base`. */
 export async function proxyTo(base) {
 	const { hostname, port } = new URL(base);
 	const ends = new Set();

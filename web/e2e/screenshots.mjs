@@ -14,10 +14,10 @@ mkdirSync(folder, { recursive: true });
 
 const NARROW = { width: 768, height: 1024 };
 const WIDE = { width: 1440, height: 900 };
-/** With the map of the residual on it. */
+/** Tall enough for the residual map. */
 const TALL = { width: 1440, height: 1240 };
 
-/** Results that look unlike each other, each from a run that is short and still says something. */
+/** Short runs with different kinds of results. */
 const GALLERY = {
 	demagnetise: {},
 	brake_speed_independence: {},

@@ -1,8 +1,8 @@
-// What a person sets: who may come in, and whose result the next runs use.
+// Settings: access tokens, and the results that the next runs use.
 import { audit } from './audit.mjs';
 import { expect, TIMEOUT_MS } from './browser.mjs';
 
-/** Makes a token for a screen that only looks; a page that comes in with it starts nothing, and is cut off when it is revoked. */
+/** Creates a read-only token. A page with this token cannot start a run, and is disconnected when the token is revoked. */
 export async function makeAndRevoke(page, another, base) {
 	await page.goto(`${base}/settings`);
 	await page.getByLabel('Name of the token').fill('wall screen');
@@ -27,7 +27,7 @@ export async function makeAndRevoke(page, another, base) {
 	await guest.close();
 }
 
-/** Applies a run's brake to its bench, sees there and in the log who did it, and leaves it to the last complete run again. */
+/** Applies the result of a brake run to its bench, checks the user's name there and in the log, and returns to the last complete run. */
 export async function applyAndGoBack(page, base, run) {
 	await page.goto(`${base}/runs/${run}`);
 	await page.getByText('Apply to bench …').click({ timeout: TIMEOUT_MS });

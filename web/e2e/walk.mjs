@@ -1,12 +1,18 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, hide a channel, go to a step, compute a channel, draw one over another, open the workbench, have the run made that would tell more, see where the model fails on
-// both, by keyboard too, take its map away as a file, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot, follow another to its end; take an effect out and in again without a jump; a token made, used and revoked; an observer in a second browser; the software stop by key, and before any script has come, and its reset; a search that is still being typed; a list ordered, held against a run and kept as a view; a foreign table dropped on the page; three runs compared, with their dashes and colours, in two channels; a figure followed over runs; two runs ticked and opened as one model; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; a brake applied to its bench and gone back on; the log back to its first run;
-// no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
+//
+// Pages: the empty daemon, contact lost and restored, a run started and watched, its result by keyboard, plots (own zoom, hidden channels,
+// steps, derived channels, X–Y, spectrum), tokens, an observer, the log, and results of several procedures.
+// Workbench: the recommended run, regions of residuals, the residual map and its file, exclusions, suggestions tried and added, undo,
+// comparisons, a version from another client, REST, a user's effect, autopilots, and an effect removed and added again.
+// Bench: the software stop by keyboard, before any script is loaded, and its reset; a result applied to a bench and reverted.
+// Runs: searches, sorting, base run, saved views, imports, comparisons, trends, models of several runs, and ten thousand runs.
+//
+// No page may break a rule of axe. Exits with 1 and a sentence if a check fails.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, runStory } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { openUnknownVersion, reimportRun, byKeyboard, dashesOf, saveListView, openManyRuns, openTogether, readResults, showEarlier, exportRun, exportMap, countCurves, zoomWhileFollowing } from './looks.mjs';
+import { openUnknownVersion, reimportRun, byKeyboard, dashesOf, saveListView, openManyRuns, openTogether, readResults, showEarlier, exportRun, exportMap, countCurves, zoomWhileFollowing } from './checks.mjs';
 import { FOREIGN, importForeign } from './files.mjs';
 import { analyse, compareChannels, followTrend, goToSteps, hideChannel, openTradeOffs, changeMapColours, stopEarly } from './plots.mjs';
 import { WITHOUT_LOAD, brush, compareVersions, excludeAndUndo, firstUse, startAndStopAutopilot, runAutopilotToEnd, loseAndRestoreContact, makeRun, measureNext, runningAnimations, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, waitForOtherVersion, tryAndDrop, watchRun, writeEffect, zoomOnePlot } from './steps.mjs';
@@ -14,11 +20,11 @@ import { applyAndGoBack, makeAndRevoke } from './settings.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const FIT_MS = 60_000;
-/** Without typeset formulas, whose script comes with the first of them. */
+/** Without the script for formulas, which is loaded with the first formula. */
 const BUNDLE_BYTES = 160_000;
-/** The link stands where an autopilot that was ended left it: a brake's run that is slow stays within its range. */
+/** The link is where a stopped autopilot left it. A slow brake run stays within its range. */
 const SLOW = { speed_rad_s: 0.5 };
-/** Short runs whose results look unlike each other; the last two where the daemon has an encoder bench. */
+/** Short runs with different kinds of results. The last two need an encoder bench. */
 const RESULTS = {
 	stiffness: { parameters: { load_levels: 4 }, title: /Torsion over torque/i },
 	compensation: { parameters: {}, title: /Errors relative to no compensation/i },
@@ -44,7 +50,7 @@ await runStory('walk', async () => {
 	expect(/no contact with the daemon/.test(without), `Start does not say why it waits: ${without}`);
 	const run = await startRun(page, where.base, WITHOUT_LOAD);
 	await watcher.getByText('RUNNING').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the observer does not see the run'));
-	const assets = await page.evaluate(() => performance.getEntriesByType('resource').map((one) => one.name).filter((name) => /\/assets\/(?!Typeset-)/.test(name)));
+	const assets = await page.evaluate(() => performance.getEntriesByType('resource').map((one) => one.name).filter((name) => /\/assets\/(?!MathFormula-)/.test(name)));
 	const files = await Promise.all(assets.map(async (name) => gzipSync(Buffer.from(await (await fetch(name)).arrayBuffer()))));
 	const bytes = files.reduce((sum, file) => sum + file.length, 0);
 	expect(bytes > 0 && bytes <= BUNDLE_BYTES, `scripts and styles are ${bytes} bytes compressed, ${BUNDLE_BYTES} is the most`);

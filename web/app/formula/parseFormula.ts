@@ -85,7 +85,7 @@ export function parseFormula(text: string): Node[] {
 	return row(null);
 }
 
-/** A piece that stays on one line: words, or a formula up to its comma. */
+/** A part that stays on one line: words, or a formula up to its comma. */
 export type FormulaPart = { words: string } | { nodes: Node[] };
 
 /** Words, also in brackets. */

@@ -22,7 +22,7 @@ class LabState {
 	progress: Record<number, Progress> = $state({});
 	runStates: Record<number, RunState> = $state({});
 	events: RunEvent[] = $state.raw([]);
-	/** The run of `events` and `tape`. */
+	/** The run of `events` and `samples`. */
 	liveRun: number | null = $state(null);
 	channels: Channel[] = $state.raw([]);
 	/** Incremented with every frame, so that plots redraw. */

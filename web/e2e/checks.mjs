@@ -1,11 +1,11 @@
-// What the pages say and show apart from the walk's own path.
+// Checks of pages besides the main path of the walk.
 import { readFileSync } from 'node:fs';
 import { audit } from './audit.mjs';
 import { expect, TIMEOUT_MS } from './browser.mjs';
 import { dropFiles } from './files.mjs';
 import { layoutShiftOf, makeRun, readVersion } from './steps.mjs';
 
-/** Whether what a press has made is on the screen, and has the focus. */
+/** Expects that the result of an action is visible and has the focus. */
 export async function expectInView(locator, what) {
 	await locator.waitFor({ timeout: TIMEOUT_MS });
 	const seen = () => locator.evaluate((node) => {
@@ -21,14 +21,14 @@ export async function expectInView(locator, what) {
 	expect(found.onScreen && found.focused, `${what} is not brought into view: ${JSON.stringify(found)}`);
 }
 
-/** Turns the wheel over a plot of a run that is on: it goes on following, over a shorter stretch. On a bench that keeps a pace, so that the run lasts. */
+/** Zooms a plot of an active run with the wheel. The plot must continue to follow, with a shorter range. Needs a paced bench, so that the run lasts. */
 export async function zoomWhileFollowing(page, base) {
 	const post = async (path, body) => (await fetch(`${base}/api/v1${path}`, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) })).json();
 	const benches = await (await fetch(`${base}/api/v1/bench`)).json();
 	const waits = await Promise.all(benches.map(async ({ name }) => ({ name, ...(await post('/procedures/friction/preview', { bench: name })) })));
 	const bench = waits.find(({ wait_s }) => wait_s > 20)?.name;
 	if (!bench) return console.log('no bench keeps a pace: zooming a run that is on is left out');
-	// Long dwells, within the range of the link: the run must not end by itself on a slow machine.
+	// The dwells are long, so that the run does not end early on a slow machine. The travel stays within the range of the link.
 	const { id } = await post('/runs', { bench, procedure: 'friction', parameters: { dwell_s: 4 } });
 	await page.goto(`${base}/runs/${id}`);
 	const plot = page.locator('main figure .u-over').first();
@@ -51,9 +51,9 @@ export async function zoomWhileFollowing(page, base) {
 	await page.keyboard.press('n');
 	await page.keyboard.type('walked by');
 	await page.keyboard.press('Enter');
-	// The note is shown when it is durable; that takes as long as the disk does.
+	// The note appears after it is stored durably, which takes as long as the disk needs.
 	await page.locator('li', { hasText: 'walked by' }).waitFor({ timeout: TIMEOUT_MS }).catch(async () => expect(false, `Enter does not keep a note: ${await page.getByRole('form', { name: 'Note' }).locator('xpath=../..').innerText()}`));
-	// Back where it came from, or at the notes where it came from nowhere.
+	// The focus returns to the former element, or to the notes if there was none.
 	const returned = (from) => document.activeElement === (from === document.body ? document.querySelector('ol[aria-label=Notes]') : from);
 	await page.waitForFunction(returned, focused, { timeout: TIMEOUT_MS }).catch(() => expect(false, 'Enter in a note loses the focus'));
 	const box = await plot.boundingBox();
@@ -77,7 +77,7 @@ export async function zoomWhileFollowing(page, base) {
 	await page.locator('h1:focus').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the end of a run that is aborted loses the focus'));
 }
 
-/** Looks closer at a plot and chooses a cell of the residual map, by keyboard alone; what the map says of the cell. */
+/** Zooms a plot and selects a cell of the residual map by keyboard. Returns the text of the cell. */
 export async function byKeyboard(page) {
 	const plot = page.locator('section', { has: page.getByRole('heading', { name: 'Measured against model' }) }).locator('.uplot').first();
 	await plot.focus();
@@ -96,7 +96,7 @@ export async function byKeyboard(page) {
 	return text;
 }
 
-/** An address of a version that is not there: the page says so, and which one it shows. */
+/** Opens the address of an unknown version. Returns the message that names the displayed version. */
 export async function openUnknownVersion(page, base, run) {
 	await page.goto(`${base}/workbench/${run}?model=987654`);
 	const text = page.getByText(`Run #${run} has no model 987654`);
@@ -104,7 +104,7 @@ export async function openUnknownVersion(page, base, run) {
 	return text.innerText();
 }
 
-/** Saves the run as a table and opens its report, from its page. */
+/** Saves the run as a table and opens its report. */
 export async function exportRun(page, base, run) {
 	await page.goto(`${base}/runs/${run}`);
 	const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('link', { name: 'CSV', exact: true }).click()]);
@@ -116,14 +116,14 @@ export async function exportRun(page, base, run) {
 	return { name: file.suggestedFilename(), table, report: text };
 }
 
-/** The residual map as a file: its name, and how it begins. */
+/** Saves the residual map as a file. Returns its name and its first bytes. */
 export async function exportMap(page) {
 	await page.getByLabel('Menu of Residual map').click();
 	const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Parquet' }).click()]);
 	return { name: file.suggestedFilename(), begins: readFileSync(await file.path(), 'latin1').slice(0, 4) };
 }
 
-/** Goes back in the log until it tells of the first run. */
+/** Loads earlier entries of the log until the first run is displayed. */
 export async function showEarlier(page, base) {
 	await page.goto(`${base}/log`);
 	await page.locator('main tbody tr').first().waitFor({ timeout: TIMEOUT_MS });
@@ -137,7 +137,7 @@ export async function showEarlier(page, base) {
 	await audit(page, 'the log of earlier runs');
 }
 
-/** Brings a run's own export in again, beside it the same with its current in milliampere and a file without a line; what the page says. */
+/** Imports the export of a run again, the same table with its current in mA, and an empty file. Returns the text of the page. */
 export async function reimportRun(page, base, run, table) {
 	const meta = await (await fetch(`${base}/api/v1/runs/${run}/meta`)).text();
 	const [names, ...rows] = table.trim().split('\n').map((line) => line.split(','));
@@ -151,7 +151,7 @@ export async function reimportRun(page, base, run, table) {
 	return { text, ...(await readVersion(page)) };
 }
 
-/** The distinct dashes of a comparison's lines, in its legend and as they were painted. */
+/** Returns the dashes of the lines of a comparison, in its legend and as painted. */
 export async function dashesOf(page, address) {
 	await page.addInitScript(() => {
 		window.painted = new Set();
@@ -174,7 +174,7 @@ export async function dashesOf(page, address) {
 	return { jumps: await layoutShiftOf(page), legend, missing: legend.filter((dash) => !painted.includes(dash.split(' ').map((n) => (n ? n * ratio : '')).join(' '))) };
 }
 
-/** The list of ten thousand runs (told to the page in the daemon's place): how many rows exist, and how long the jump to the last takes. */
+/** Displays a list of ten thousand runs, with answers in place of the daemon's. Returns the number of rows and the time of a jump to the last row. */
 export async function openManyRuns(page, base) {
 	const MANY = 10_000;
 	const [one] = (await (await fetch(`${base}/api/v1/runs?limit=1`)).json()).runs;
@@ -198,7 +198,7 @@ export async function openManyRuns(page, base) {
 	return { rows, jump_ms: Date.now() - begun };
 }
 
-/** Orders the list by its runs' errors, holds them against one run, and keeps the view; a page without any of it finds it again. */
+/** Sorts the list by error, compares it with a base run, and saves the view. A new page must offer the same view. */
 export async function saveListView(page, base, run) {
 	await page.goto(`${base}/runs?search=state:done`);
 	const head = page.getByRole('columnheader', { name: /^error/ });
@@ -231,7 +231,7 @@ export async function saveListView(page, base, run) {
 	for (const text of [page.getByRole('link', { name: 'golden' }), page.getByText('walked on it')]) await text.first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'a tag or a note that is written in the list is not kept'));
 }
 
-/** Results in the form that their people expect, each from a run that is short: what is shown of each. */
+/** Opens the results of short runs of several procedures. Returns the procedures that were shown. */
 export async function readResults(page, base, asked) {
 	const [shown, runs] = [[], []];
 	for (const [procedure, { parameters, title }] of Object.entries(asked)) {
@@ -254,7 +254,7 @@ export async function readResults(page, base, asked) {
 	return shown;
 }
 
-/** The page of a bench's encoders: the newest result of each procedure, by key from anywhere. */
+/** Opens the page of a bench's encoders by key. It shows the newest result of each procedure. */
 async function readAlignment(page, base, runs) {
 	const [one] = runs;
 	if (!one) return;
@@ -267,7 +267,10 @@ async function readAlignment(page, base, runs) {
 	await audit(page, 'the encoder results');
 }
 
-/** The result of a campaign (told to the page in the daemon's place, of what two runs have found): a line for each part, which opens by key, and stays open behind its address. */
+/**
+ * Displays the result of a campaign, with an answer in place of the daemon's that contains the results of two runs.
+ * Each part has a line. It opens by key, and the address stores the open parts.
+ */
 async function readCampaign(page, base, runs) {
 	const of = async ({ procedure, run }, title) => {
 		const found = await (await fetch(`${base}/api/v1/runs/${run}/identification`)).json();
@@ -297,13 +300,13 @@ async function readCampaign(page, base, runs) {
 	await page.unroute('**/identification');
 }
 
-/** How many curves of the residual are shown, and how many axes there are to show it along. */
+/** Counts the residual curves and the axes that can be selected. */
 export async function countCurves(page) {
 	const axes = await page.locator('section', { has: page.getByRole('heading', { name: 'Where the model is wrong' }) }).locator('select').first().locator('option').count();
 	return { curves: await page.getByTitle("Show on the map's x axis").count(), axes };
 }
 
-/** Ticks two runs of the picker, and waits for the one model of both. */
+/** Selects two runs and waits for their common model. */
 export async function openTogether(page, base, [first, second]) {
 	await page.goto(`${base}/workbench`);
 	for (const run of [first, second]) await page.getByLabel(`Together: run ${run}`).check({ timeout: TIMEOUT_MS });
