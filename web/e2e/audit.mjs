@@ -1,4 +1,4 @@
-// Accessibility of the page as it stands, light and dark, by axe-core; through the debugger, so that the page's own policy stays as strict as it is.
+// Accessibility of the displayed page in both themes, by axe-core. It runs through the debugger, so the page's policy stays strict.
 import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
 import { expect } from './browser.mjs';

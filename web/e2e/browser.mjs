@@ -1,11 +1,11 @@
-// One Chromium page that keeps a record of everything that must not happen.
+// One Chromium page. It records every event that must not occur.
 import { existsSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 
 const KNOWN = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 
-/** How long the walk waits for what has to come: a page, an answer, a commit of the daemon on a busy machine. */
-export const PATIENCE_MS = 60_000;
+/** Longest wait for a page, an answer, or a commit of the daemon on a busy machine. */
+export const TIMEOUT_MS = 60_000;
 
 export class Failed extends Error {}
 
@@ -24,7 +24,10 @@ export function settings(usage) {
 	return { base: base.replace(/\/$/, ''), executablePath };
 }
 
-/** A page at `base`, a way to `another` (elsewhere, with a record of its own, where it says so) in a browser of its own, and the list of what went wrong: console errors, exceptions, requests to another host. */
+/**
+ * Opens a page at `base`. `another` opens a page in a separate browser context, optionally at another address and with a separate record.
+ * `faults` lists console errors, exceptions, and requests to another host.
+ */
 export async function open({ base, executablePath }, context = {}) {
 	const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-dev-shm-usage'] });
 	const faults = [];
@@ -34,7 +37,7 @@ export async function open({ base, executablePath }, context = {}) {
 
 function watch(page, base, faults) {
 	page.on('console', (message) => {
-		// Chromium calls every refusal an error; that an empty file and a misspelt formula are refused is what is looked for.
+		// Chromium reports every refused request as an error. The tests send an empty file and an invalid formula on purpose.
 		if (/\/runs\/(import(\/preview)?$|\d+\/derived\?formulas=motor_currant)/.test(message.location().url) && /status of 422/.test(message.text())) return;
 		if (message.type() === 'error') faults.push(`console: ${message.text()} (${message.location().url})`);
 	});
@@ -48,8 +51,8 @@ function watch(page, base, faults) {
 	return page;
 }
 
-/** Runs the story; says in one line how it ended. */
-export async function tell(name, story) {
+/** Runs the story and prints its result in one line. */
+export async function runStory(name, story) {
 	try {
 		await story();
 		console.log(`${name}: ok`);

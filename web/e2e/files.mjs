@@ -1,10 +1,10 @@
-// Files that a person brings, dropped on a page.
+// Files that a user drops on a page.
 import { expect } from './browser.mjs';
 
-/** A table with foreign names and units, a column that holds no numbers, semicolons between its columns and commas in its numbers. */
+/** A table with other names and units, a text column, semicolons between columns, and decimal commas. */
 export const FOREIGN = ['Time [ms];pos_deg;Iq [A];remark', ...Array.from({ length: 200 }, (_, i) => `${i * 4};${i % 90};0,${i % 9};${i ? '' : 'cold'}`)].join('\n');
 
-/** Drops files, each a name and a text, on a page to import them. */
+/** Drops files on a page. Each file is a name and a text. */
 export async function dropFiles(page, base, files, path = '/runs') {
 	await page.goto(base + path);
 	await page.getByRole('heading', { level: 1 }).first().waitFor({ state: 'attached' });
@@ -15,7 +15,7 @@ export async function dropFiles(page, base, files, path = '/runs') {
 	}, files);
 }
 
-/** Drops a table on the page to import it; the form that asks what its columns are. */
+/** Drops a table on the page. Returns the form that asks for its columns. */
 export async function chooseForeign(page, base, table) {
 	await dropFiles(page, base, [['foreign.csv', table]], '/settings');
 	const form = page.getByRole('form', { name: /foreign.csv/ });
@@ -23,7 +23,7 @@ export async function chooseForeign(page, base, table) {
 	return form;
 }
 
-/** Brings the table in, in three clicks from the file to the workbench. */
+/** Imports the table in three clicks, from the file to the workbench. */
 export async function importForeign(page, base, table) {
 	const form = await chooseForeign(page, base, table);
 	expect(await form.getByRole('button', { name: 'Import' }).isDisabled(), 'a file without torque constant can be imported');

@@ -4,9 +4,9 @@
 // of the bench joint-a-mock with effects = ["load_linear"].
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { expect, open, settings, tell } from './browser.mjs';
+import { expect, open, settings, runStory } from './browser.mjs';
 import { chooseForeign, FOREIGN } from './files.mjs';
-import { BARE, flyAndStop, makeRun, measureNext, readVersion, startRun, toAnotherVersion, UNDECIDED, watchRun } from './steps.mjs';
+import { WITHOUT_LOAD, startAndStopAutopilot, makeRun, measureNext, readVersion, startRun, waitForOtherVersion, WITHOUT_REPEATS, watchRun } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/screenshots.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const folder = process.env.JB_SCREENS ?? fileURLToPath(new URL('../../docs/screens', import.meta.url));
@@ -14,10 +14,10 @@ mkdirSync(folder, { recursive: true });
 
 const NARROW = { width: 768, height: 1024 };
 const WIDE = { width: 1440, height: 900 };
-/** With the map of the residual on it. */
+/** Tall enough for the residual map. */
 const TALL = { width: 1440, height: 1240 };
 
-/** Results that look unlike each other, each from a run that is short and still says something. */
+/** Short runs with different kinds of results. */
 const GALLERY = {
 	demagnetise: {},
 	brake_speed_independence: {},
@@ -37,7 +37,7 @@ async function shoot(page, name) {
 	}
 }
 
-await tell(`screens in ${folder}`, async () => {
+await runStory(`screens in ${folder}`, async () => {
 	const { browser, page, faults } = await open(where);
 	await page.goto(where.base);
 	await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 20_000 });
@@ -65,14 +65,14 @@ await tell(`screens in ${folder}`, async () => {
 	if (first.verdict === 'missing_effect') {
 		await page.locator('a.region').first().click();
 		await shoot(page, 'workbench-region');
-		await toAnotherVersion(page, () => page.keyboard.press('a'));
+		await waitForOtherVersion(page, () => page.keyboard.press('a'));
 		await shoot(page, 'workbench-added');
 	}
 	await page.setViewportSize(NARROW);
 	await shoot(page, 'workbench-narrow');
 	await page.setViewportSize(WIDE);
 
-	await startRun(page, where.base, BARE);
+	await startRun(page, where.base, WITHOUT_LOAD);
 	await (await watchRun(page)).click();
 	await readVersion(page);
 	await shoot(page, 'workbench-next');
@@ -84,7 +84,7 @@ await tell(`screens in ${folder}`, async () => {
 	await form.locator('mark').waitFor();
 	await form.scrollIntoViewIfNeeded();
 	await shoot(page, 'workbench-formula');
-	await flyAndStop(page, `${where.base}/workbench`);
+	await startAndStopAutopilot(page, `${where.base}/workbench`);
 	await shoot(page, 'autopilot');
 
 	await page.goto(`${where.base}/runs`);
@@ -98,7 +98,7 @@ await tell(`screens in ${folder}`, async () => {
 		await page.locator('[data-result] [data-figure]').first().waitFor({ timeout: 60_000 });
 		await shoot(page, `result-${procedure}`);
 	}
-	const bare = await makeRun(where.base, 'strokes', UNDECIDED);
+	const bare = await makeRun(where.base, 'strokes', WITHOUT_REPEATS);
 	if (bare !== null) {
 		await page.goto(`${where.base}/workbench/${bare}`);
 		expect((await readVersion(page)).verdict === 'undecided', 'a run without repeats should leave the diagnosis undecided');

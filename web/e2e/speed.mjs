@@ -1,7 +1,7 @@
-// How quick the pages are, against a running daemon with a mock bench at the pace of the clock (pace = 1) and, for the first part, a stored run of millions of rows:
+// Speed of the pages. Needs a running daemon with a mock bench at real time (pace = 1), and for the first part a stored run of millions of rows:
 //   node web/e2e/speed.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Prints one line a figure. Chromium draws in software; what else the machine does counts in, but not in processor time.
-import { expect, open, settings, tell } from './browser.mjs';
+// Prints one line per quantity. Chromium draws in software. Other processes affect the durations, but not the processor times.
+import { expect, open, settings, runStory } from './browser.mjs';
 import { startRun } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/speed.mjs http://127.0.0.1:8080 [path/to/chromium]');
@@ -11,7 +11,7 @@ const LIVE_S = 15;
 const HANDS = 12;
 const median = (list) => list.toSorted((a, b) => a - b)[list.length >> 1];
 
-/** Milliseconds from the start of the page until `done` holds and is painted, and the processor time of its main thread till then. */
+/** Milliseconds from the start of the page until `done` holds and is painted, and the processor time of the main thread. */
 async function opened(page, metrics, address, done) {
 	await page.goto(address, { waitUntil: 'commit' });
 	await page.waitForFunction(done, null, { timeout: 300_000, polling: 'raf' });
@@ -19,14 +19,14 @@ async function opened(page, metrics, address, done) {
 	return { wall, own: 1000 * (await metrics()).TaskDuration };
 }
 
-/** What Chromium counts of a page, in processor time of its main thread. */
+/** Chromium's metrics of a page, in processor time of its main thread. */
 async function counting(page) {
 	const session = await page.context().newCDPSession(page);
 	await session.send('Performance.enable', { timeDomain: 'threadTicks' });
 	return async () => Object.fromEntries((await session.send('Performance.getMetrics')).metrics.map(({ name, value }) => [name, value]));
 }
 
-/** Turns the wheel over a plot; milliseconds until the picture has moved, and until the samples of the new view are drawn. */
+/** Zooms a plot with the wheel. Returns the milliseconds until the image changes, and until the samples of the new range are drawn. */
 async function zoom(page, plot, deltaY) {
 	return page.evaluate(
 		async ([selector, deltaY]) => {
@@ -48,7 +48,7 @@ async function zoom(page, plot, deltaY) {
 	);
 }
 
-await tell('speed', async () => {
+await runStory('speed', async () => {
 	const { browser, page, faults } = await open(where);
 	const metrics = await counting(page);
 	await page.goto(where.base);
@@ -90,7 +90,7 @@ await tell('speed', async () => {
 	const moved = await page.evaluate(
 		(wait_ms) =>
 			new Promise((ok) => {
-				// A picture counts where every plot was painted anew: nothing else on the page clears a canvas.
+				// An image counts if every plot was painted. Nothing else on the page clears a canvas.
 				const plots = document.querySelectorAll('main .uplot').length;
 				const { clearRect } = CanvasRenderingContext2D.prototype;
 				let [cleared, moved] = [0, 0];

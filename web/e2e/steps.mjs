@@ -1,21 +1,21 @@
-// What a person does on the pages, for the walk and for the pictures.
-import { expect, PATIENCE_MS } from './browser.mjs';
+// Actions of a user, for the walk and for the screenshots.
+import { expect, TIMEOUT_MS } from './browser.mjs';
 import { dropFiles, FOREIGN } from './files.mjs';
-import { inView } from './looks.mjs';
-import { lineTo } from './line.mjs';
+import { expectInView } from './checks.mjs';
+import { proxyTo } from './proxy.mjs';
 
 const RUN_MS = 180_000;
 const FIT_MS = 60_000;
 const PHONE = { width: 420, height: 900 };
 const WIDE = { width: 1440, height: 900 };
 
-/** Short, and without load: what grows with the load cannot show in it, so a further run is suggested. */
-export const BARE = '?p.load_levels=1&p.warm_up_s=2&p.dwell_s=0.6&p.fast_speeds=4';
+/** A short run without load. It cannot show effects that depend on the load, so a further run is recommended. */
+export const WITHOUT_LOAD = '?p.load_levels=1&p.warm_up_s=2&p.dwell_s=0.6&p.fast_speeds=4';
 
-/** A run without repeats: nobody knows how small its error could become. */
-export const UNDECIDED = { speeds: 2, repeats: 1 };
+/** A run without repeats: its noise floor is unknown. */
+export const WITHOUT_REPEATS = { speeds: 2, repeats: 1 };
 
-/** Starts the procedure that is offered, as it is offered or with settings as the address carries them. Gives the run's number. */
+/** Starts the offered procedure, with the settings of the address if given. Returns the number of the run. */
 export async function startRun(page, base, settings = '') {
 	await page.goto(`${base}/${settings}`);
 	const start = page.getByRole('button', { name: 'Start' });
@@ -30,24 +30,24 @@ export async function startRun(page, base, settings = '') {
 	return Number(/runs\/(\d+)/.exec(page.url())[1]);
 }
 
-/** Makes a run through REST and waits for its end; `null` where no bench of the daemon can make it. */
+/** Executes a run through REST and waits for its end. Returns `null` if no bench can execute it. */
 export async function makeRun(base, procedure, parameters) {
 	const rest = async (path, body) => {
 		const answer = await fetch(`${base}/api/v1${path}`, body && { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) });
-		return { ok: answer.ok, said: await answer.json() };
+		return { ok: answer.ok, json: await answer.json() };
 	};
-	const { said: benches } = await rest('/bench');
+	const { json: benches } = await rest('/bench');
 	for (const { name } of benches) {
-		const { ok, said: run } = await rest('/runs', { bench: name, procedure, parameters });
+		const { ok, json: run } = await rest('/runs', { bench: name, procedure, parameters });
 		if (!ok) {
 			console.log(`no ${procedure} on ${name}: ${run.detail}`);
 			continue;
 		}
 		const until = Date.now() + RUN_MS;
 		while (Date.now() < until) {
-			const { said } = await rest(`/runs/${run.id}`);
-			if (said.state === 'completed') return run.id;
-			expect(!/stopped|aborted|failed|interrupted/.test(said.state), `${procedure} on ${name} ended ${said.state}: ${said.reason}`);
+			const { json } = await rest(`/runs/${run.id}`);
+			if (json.state === 'completed') return run.id;
+			expect(!/stopped|aborted|failed|interrupted/.test(json.state), `${procedure} on ${name} ended ${json.state}: ${json.reason}`);
 			await new Promise((resolve) => setTimeout(resolve, 500));
 		}
 		expect(false, `${procedure} on ${name} did not end in ${RUN_MS / 1000} s`);
@@ -55,7 +55,7 @@ export async function makeRun(base, procedure, parameters) {
 	return null;
 }
 
-/** Waits on the live page until the run has completed. */
+/** Waits on the live page until the run is complete. */
 export async function watchRun(page) {
 	const open = page.getByRole('link', { name: 'Open in the workbench' });
 	await page.locator('.uplot').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'no live plot was drawn'));
@@ -67,21 +67,21 @@ export async function watchRun(page) {
 	return open;
 }
 
-/** Zooms the second plot on its own; the others stay as they were. */
-export async function zoomAlone(page) {
+/** Zooms only the second plot. The others must not change. */
+export async function zoomOnePlot(page) {
 	const plot = page.locator('figure:has(.uplot)').nth(1);
 	await plot.locator('summary').click();
 	await plot.getByRole('button', { name: 'Zoom on its own' }).click();
 	await page.waitForURL(/own=/);
 	await plot.locator('.u-over').hover();
 	await page.mouse.wheel(0, -300);
-	await page.waitForURL(/own=[^&]*:[\d.]+:[\d.]+/, { timeout: PATIENCE_MS }).catch(() => expect(false, `the wheel does not zoom the plot: ${page.url()}`));
+	await page.waitForURL(/own=[^&]*:[\d.]+:[\d.]+/, { timeout: TIMEOUT_MS }).catch(() => expect(false, `the wheel does not zoom the plot: ${page.url()}`));
 	expect(!/view=/.test(page.url()), `the other plots are zoomed with it: ${page.url()}`);
 	await plot.locator('.u-over').dblclick();
-	await page.waitForURL(/own=[^&]*:all/, { timeout: PATIENCE_MS }).catch(() => expect(false, `a double click does not step back: ${page.url()}`));
+	await page.waitForURL(/own=[^&]*:all/, { timeout: TIMEOUT_MS }).catch(() => expect(false, `a double click does not step back: ${page.url()}`));
 }
 
-/** Reads the result on a run's page, by keyboard alone: its first figure as a table, and back. Says the verdict and how many numbers the table has. */
+/** Reads a result by keyboard: shows its first figure as a table, and as a figure again. Returns the verdict and the number of table rows. */
 export async function readResult(page) {
 	const card = page.locator('[data-result]');
 	await card.locator('[data-figure]').first().waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the run has no result'));
@@ -101,11 +101,11 @@ export async function readResult(page) {
 	return { verdict: await card.getAttribute('data-result'), quantities: await card.locator('[data-quantity]').count(), rows };
 }
 
-/** Waits until the version on the screen is fitted and diagnosed; says what the screen shows of it. */
+/** Waits until the displayed version is fitted and diagnosed. Returns the displayed values. */
 export async function readVersion(page) {
 	await page.locator('section[data-verdict]').waitFor({ timeout: FIT_MS });
 	await page.locator('rect.held.here').waitFor({ timeout: FIT_MS });
-	// A version that was made elsewhere is in the address before the page has heard of it.
+	// A version that another client made is in the address before the page knows it.
 	const isThere = () => document.querySelector(`a[href$="model=${new URL(location.href).searchParams.get('model')}"] rect.held.here`) && !document.querySelector('main .old');
 	await page.waitForFunction(isThere, null, { timeout: FIT_MS });
 	return {
@@ -116,15 +116,15 @@ export async function readVersion(page) {
 	};
 }
 
-/** Does something that leads to another version, and waits for it. */
-export async function toAnotherVersion(page, act, patience_ms = FIT_MS) {
+/** Executes `act`, which leads to another version, and waits for that version. */
+export async function waitForOtherVersion(page, act, patience_ms = FIT_MS) {
 	const before = new URL(page.url()).searchParams.get('model');
 	await act();
 	await page.waitForFunction((id) => new URL(location.href).searchParams.get('model') !== id, before, { timeout: patience_ms });
 	return readVersion(page);
 }
 
-/** A version that somebody else makes of the one at hand, with an effect more: shown when the address names it, and meanwhile no third in its place. Goes back. */
+/** Another client makes a version with one more effect. The page must display it when the address names it, without a third version in between. Returns to the former version. */
 export async function showForeign(page, base, run, at, effect) {
 	const ask = async (path, body) => (await fetch(`${base}/api/v1${path}`, body && { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) })).json();
 	const from = (await ask(`/models?run=${run}`)).find((model) => String(model.id) === at.model);
@@ -147,26 +147,26 @@ export async function showForeign(page, base, run, at, effect) {
 	return readVersion(page);
 }
 
-/** Tries the first suggestion beside the version at hand and drops it again; says what error the preview shows. */
+/** Tries the first suggestion and drops it. Returns the text of the comparison. */
 export async function tryAndDrop(page) {
 	await page.setViewportSize(PHONE);
 	await page.locator('article[data-effect]').first().getByRole('button', { name: 'Try' }).click();
 	await page.locator('[data-beside=try] figure').first().waitFor({ timeout: FIT_MS });
-	await inView(page.locator('[data-beside=try]'), 'the preview');
+	await expectInView(page.locator('[data-beside=try]'), 'the preview');
 	await page.setViewportSize(WIDE);
-	const said = await page.locator('[data-beside] .said').innerText();
+	const text = await page.locator('[data-beside] .status').innerText();
 	await page.keyboard.press('x');
 	await page.locator('[data-beside]').waitFor({ state: 'detached' });
-	return said;
+	return text;
 }
 
-/** How far things have jumped on this page since it was opened, by what nobody did. */
-export const jumpsOf = (page) => page.evaluate(() => new Promise((ok) => {
+/** Layout shift of the page since it was opened, without shifts after user input. */
+export const layoutShiftOf = (page) => page.evaluate(() => new Promise((ok) => {
 	new PerformanceObserver((list) => ok(list.getEntries().reduce((sum, one) => sum + (one.hadRecentInput ? 0 : one.value), 0))).observe({ type: 'layout-shift', buffered: true });
 	setTimeout(() => ok(0), 1000);
 }));
 
-/** How far things jump while the workbench of a run opens, on a desk and on a phone. */
+/** Layout shift of an opening workbench, on a desktop and on a phone. */
 export async function openWorkbench(another, address) {
 	const jumps = [];
 	for (const size of [WIDE, PHONE]) {
@@ -175,19 +175,19 @@ export async function openWorkbench(another, address) {
 		await page.goto(address);
 		await readVersion(page);
 		await page.locator('[data-worth]').first().waitFor({ timeout: FIT_MS });
-		jumps.push(await jumpsOf(page));
+		jumps.push(await layoutShiftOf(page));
 		await page.close();
 	}
 	return jumps;
 }
 
-/** The page of a daemon without any run: what it says, how far things jump while it loads, and what it may load at all. Its demo run is made. */
+/** Opens the page of a daemon without runs and starts the demo run. Returns the layout shift and the content security policy. */
 export async function firstUse(page, base) {
 	const answer = await page.goto(base);
 	await page.getByText('No run yet. Start a procedure, or bring a measurement.').waitFor({ timeout: 30_000 });
 	await page.getByRole('button', { name: 'Start a demo run' }).waitFor({ timeout: 30_000 });
 	await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 30_000 });
-	const jumps = await jumpsOf(page);
+	const jumps = await layoutShiftOf(page);
 	const started = page.waitForRequest((request) => request.method() === 'POST' && request.url().endsWith('/runs'), { timeout: 1000 });
 	await page.locator('.fields input').first().press('Enter');
 	expect(await started.then(() => false, () => true), 'Enter in a field starts the bench, which only its button may');
@@ -199,26 +199,26 @@ export async function firstUse(page, base) {
 	return { jumps, policy: answer.headers()['content-security-policy'] ?? '' };
 }
 
-/** Whatever still moves by itself for a person who has asked for little motion. */
-export async function moving(page) {
+/** Animations that still run for a user who prefers reduced motion. */
+export async function runningAnimations(page) {
 	await page.emulateMedia({ reducedMotion: 'reduce' });
 	await page.waitForTimeout(500);
 	return page.evaluate(() => document.getAnimations().filter((one) => one.playState === 'running').map((one) => one.animationName ?? one.transitionProperty));
 }
 
-/** Holds the version at hand beside another one, and lets it go again; what the page says of the two. */
+/** Compares the current version with another one and closes the comparison. Returns its text. */
 export async function compareVersions(page) {
 	await page.getByRole('button', { name: /^Compare with v/ }).and(page.locator(':enabled')).last().click();
 	const beside = page.locator('[data-beside=compare]');
 	await beside.waitFor({ timeout: 30_000 }).catch(() => expect(false, 'no other version is shown beside the one at hand'));
 	await beside.locator('tbody tr').first().waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the parameters of the two versions are not told'));
-	const said = await beside.innerText();
+	const text = await beside.innerText();
 	await page.keyboard.press('x');
 	await beside.waitFor({ state: 'detached' });
-	return said;
+	return text;
 }
 
-/** A second person, in a browser of their own, who only looks. */
+/** A second user, in a separate browser, who only observes. */
 export async function observe(page, base) {
 	await page.goto(base);
 	await page.getByRole('button', { name: 'Operator' }).click();
@@ -232,9 +232,9 @@ export async function observe(page, base) {
 	await page.goto(base);
 }
 
-/** A page whose line to the daemon is cut and comes back: it says so, lets nothing start, and then knows what went on without it. Gives what it said. */
-export async function loseAndFind(another, base) {
-	const line = await lineTo(base);
+/** Interrupts the connection of a page and restores it. Meanwhile the page must not start a run, and afterwards it must know the changes. Returns the displayed reason. */
+export async function loseAndRestoreContact(another, base) {
+	const line = await proxyTo(base);
 	const faults = [];
 	const page = await another(line.base, faults);
 	await page.goto(line.base);
@@ -243,21 +243,21 @@ export async function loseAndFind(another, base) {
 	await line.cut();
 	await page.getByText('NO CONTACT').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the page does not say that the daemon is gone'));
 	expect(await start.isDisabled(), 'a run can be started without a daemon');
-	const said = await page.locator('#start-reason').innerText();
-	const run = await makeRun(base, 'strokes', UNDECIDED);
+	const text = await page.locator('#start-reason').innerText();
+	const run = await makeRun(base, 'strokes', WITHOUT_REPEATS);
 	expect(await page.getByText('NO CONTACT').first().isVisible(), 'the page has contact over a line that is cut');
-	await line.mend();
+	await line.restore();
 	await page.getByText('NO CONTACT').first().waitFor({ state: 'detached', timeout: 30_000 }).catch(() => expect(false, 'the page does not find the daemon again'));
 	await page.getByRole('link', { name: `#${run}` }).waitFor({ timeout: 30_000 }).catch(() => expect(false, `the page does not know run ${run}, which was made while it had no contact`));
 	expect(!faults.some((fault) => fault.startsWith('exception')), `the page did not bear the loss:\n  ${faults.join('\n  ')}`);
 	await line.cut();
 	await page.close();
-	return said;
+	return text;
 }
 
 /**
- * The software stop by key alone. Esc twice stops neither a bench at rest nor one whose field has the focus; `keys` then stop the run.
- * Needs the bench `paced`, whose runs last.
+ * The software stop by keyboard. Esc twice stops neither an idle bench nor a bench while a field has the focus. `keys` then stop the run.
+ * Needs the bench `paced`, because its runs last long enough.
  */
 export async function stopByKey(page, base, who, keys) {
 	const state = async () => (await (await fetch(`${base}/api/v1/bench/paced`)).json()).state;
@@ -280,12 +280,12 @@ export async function stopByKey(page, base, who, keys) {
 	await escapeTwice();
 	expect((await state()) === 'running', `the Esc of the ${who} that closes the help sheet counts for a stop`);
 	for (const key of keys) await page.keyboard.press(key);
-	const said = page.getByText(/acknowledged (in|late)/i).first();
-	await said.waitFor({ timeout: 30_000 }).catch(() => expect(false, `nobody acknowledged the stop of the ${who}`));
+	const text = page.getByText(/acknowledged (in|late)/i).first();
+	await text.waitFor({ timeout: 30_000 }).catch(() => expect(false, `nobody acknowledged the stop of the ${who}`));
 	await page.getByRole('button', { name: 'The bench stands still' }).click({ timeout: 500 }).catch(() => {});
 }
 
-/** Every bench that the software stop holds: nothing starts, and the page says why, until it is reset in two steps and with a reason. Gives how many were held. */
+/** Resets every stopped bench. Until then no run can start, and the page shows the reason. A reset needs two steps and a reason. Returns the number of stopped benches. */
 export async function resetStopped(page, base) {
 	const benches = await (await fetch(`${base}/api/v1/bench`)).json();
 	const stopped = benches.filter(({ state }) => state === 'stopped');
@@ -304,12 +304,12 @@ export async function resetStopped(page, base) {
 		await held.waitFor({ state: 'detached', timeout: 30_000 });
 		await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 30_000 });
 		await page.goto(`${base}/log`);
-		await page.getByText('walked past (local)').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the log does not tell of the reset, and by whom'));
+		await page.getByText('walked past (local)').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the log does not show the reset, and by whom'));
 	}
 	return stopped.length;
 }
 
-/** Drags over the residual below the overlay; says how many samples the page calls chosen. */
+/** Selects samples by a drag over the residual plot. Returns the displayed number of selected samples. */
 export async function brush(page) {
 	const plot = page.locator('section', { has: page.getByRole('heading', { name: 'Measured against model' }) }).locator('.uplot .u-over').last();
 	await plot.scrollIntoViewIfNeeded();
@@ -323,42 +323,42 @@ export async function brush(page) {
 	return Number(/([\d,]+) chosen/.exec(note)[1].replaceAll(',', ''));
 }
 
-/** Takes the chosen samples out of the fit with a reason, and goes back; says what the page calls excluded. */
+/** Excludes the selected samples with a reason and undoes it. Returns the displayed exclusions. */
 export async function excludeAndUndo(page, reason) {
 	await page.getByRole('button', { name: 'Exclude …' }).click();
 	await page.getByRole('form', { name: 'Exclude the chosen samples' }).getByRole('textbox').fill(reason);
-	await toAnotherVersion(page, () => page.keyboard.press('Enter'));
-	const said = await page.getByRole('list', { name: 'What the fit does not look at' }).innerText();
+	await waitForOtherVersion(page, () => page.keyboard.press('Enter'));
+	const text = await page.getByRole('list', { name: 'What the fit does not look at' }).innerText();
 	await page.locator('figcaption').getByText('excluded').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'excluded samples are not marked in the plots'));
-	await toAnotherVersion(page, () => page.keyboard.press('z'));
-	return said;
+	await waitForOtherVersion(page, () => page.keyboard.press('z'));
+	return text;
 }
 
-/** Has the run made that would tell, and waits for the same model on both runs; says what the card promised. */
+/** Starts the recommended run and waits for the model of both runs. Returns the text of the card and the new version. */
 export async function measureNext(page) {
 	const card = page.locator('[data-experiment]');
 	await card.waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'no run is suggested'));
 	await card.locator('.uplot').first().waitFor({ timeout: FIT_MS });
-	const said = await card.innerText();
+	const text = await card.innerText();
 	const go = card.getByRole('button', { name: 'Run it and diagnose both runs together' });
 	await page.setViewportSize(PHONE);
-	const version = await toAnotherVersion(page, () => go.click(), RUN_MS);
-	await inView(page.locator('section[data-verdict]'), 'the answer of the further run');
+	const version = await waitForOtherVersion(page, () => go.click(), RUN_MS);
+	await expectInView(page.locator('section[data-verdict]'), 'the answer of the further run');
 	await page.setViewportSize(WIDE);
-	return { said, ...version };
+	return { text, ...version };
 }
 
-/** Starts an autopilot within a budget on the page of the workbench that the address names, sees it measure, and ends it; says there where it ended. */
-export async function flyAndStop(page, address) {
+/** Starts an autopilot with a budget, waits until it measures, and stops it. Returns its final text. */
+export async function startAndStopAutopilot(page, address) {
 	await page.goto(address);
 	const form = page.getByRole('form', { name: 'Autopilot' });
 	await form.getByLabel('runs, at most').fill('2');
 	await form.getByLabel('bench time').fill('20');
-	// A mock bench that keeps to no clock measures within a moment: every picture is looked at, and the stop pressed in it.
+	// A mock bench without pace measures within a moment, so every image is checked, and Stop is pressed in it.
 	const measuring = () => {
 		const running = document.querySelector('[data-autopilot=running]');
-		const said = running?.textContent ?? '';
-		if (!said.includes('Measuring') || !/step \d+ of \d+/.test(said)) return false;
+		const text = running?.textContent ?? '';
+		if (!text.includes('Measuring') || !/step \d+ of \d+/.test(text)) return false;
 		[...running.querySelectorAll('button')].find((button) => button.textContent.trim() === 'Stop')?.click();
 		return true;
 	};
@@ -370,28 +370,28 @@ export async function flyAndStop(page, address) {
 	return ended.innerText();
 }
 
-/** Lets an autopilot that may make no run go to its end from the first version of a run; the page has to follow it there. Gives the version and what is said of it. */
-export async function flyToEnd(page, address) {
+/** Runs an autopilot without runs to its end. The page must follow it to its last version. Returns the version and its text. */
+export async function runAutopilotToEnd(page, address) {
 	await page.goto(address);
 	await readVersion(page);
 	const form = page.getByRole('form', { name: 'Autopilot' });
 	await form.getByLabel('bench time').fill('0.01');
-	const ended = await toAnotherVersion(page, () => form.getByRole('button', { name: 'Start the autopilot' }).click(), RUN_MS);
+	const ended = await waitForOtherVersion(page, () => form.getByRole('button', { name: 'Start the autopilot' }).click(), RUN_MS);
 	await page.getByText('The autopilot has ended with this version.').waitFor({ timeout: 30_000 });
-	return { ...ended, said: await page.locator('[data-autopilot]').innerText() };
+	return { ...ended, text: await page.locator('[data-autopilot]').innerText() };
 }
 
-/** Takes the last effect out of the model, and comes back; how far things jump on the way. */
+/** Removes the last effect of the model and undoes it. Returns the layout shift. */
 export async function removeAndUndo(page) {
-	const before = await jumpsOf(page);
-	await toAnotherVersion(page, () => page.getByRole('list', { name: 'Effects of the model' }).getByRole('button').last().click());
+	const before = await layoutShiftOf(page);
+	await waitForOtherVersion(page, () => page.getByRole('list', { name: 'Effects of the model' }).getByRole('button').last().click());
 	await page.waitForTimeout(700);
-	await toAnotherVersion(page, () => page.keyboard.press('z'));
+	await waitForOtherVersion(page, () => page.keyboard.press('z'));
 	await page.waitForTimeout(700);
-	return (await jumpsOf(page)) - before;
+	return (await layoutShiftOf(page)) - before;
 }
 
-/** Writes an effect of one's own with a mistake in it, mends it, tries it on the run and adds it. */
+/** Enters a user's effect with an error, corrects it, tries it on the run, and adds it. */
 export async function writeEffect(page, run) {
 	await page.getByRole('button', { name: 'Own formula' }).click();
 	const form = page.getByRole('form', { name: 'Own formula' });
@@ -413,5 +413,5 @@ export async function writeEffect(page, run) {
 	await form.getByRole('button', { name: `Try on run #${run}` }).click();
 	const found = await form.locator('.tried').innerText({ timeout: FIT_MS });
 	expect(/a = \d/.test(found), `the formula is not fitted to the run: ${found}`);
-	return toAnotherVersion(page, () => keep.click());
+	return waitForOtherVersion(page, () => keep.click());
 }

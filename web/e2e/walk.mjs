@@ -1,24 +1,30 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, hide a channel, go to a step, compute a channel, draw one over another, open the workbench, have the run made that would tell more, see where the model fails on
-// both, by keyboard too, take its map away as a file, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot, follow another to its end; take an effect out and in again without a jump; a token made, used and revoked; an observer in a second browser; the software stop by key, and before any script has come, and its reset; a search that is still being typed; a list ordered, held against a run and kept as a view; a foreign table dropped on the page; three runs compared, with their dashes and colours, in two channels; a figure followed over runs; two runs ticked and opened as one model; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; a brake applied to its bench and gone back on; the log back to its first run;
-// no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
+//
+// Pages: the empty daemon, contact lost and restored, a run started and watched, its result by keyboard, plots (own zoom, hidden channels,
+// steps, derived channels, X–Y, spectrum), tokens, an observer, the log, and results of several procedures.
+// Workbench: the recommended run, regions of residuals, the residual map and its file, exclusions, suggestions tried and added, undo,
+// comparisons, a version from another client, REST, a user's effect, autopilots, and an effect removed and added again.
+// Bench: the software stop by keyboard, before any script is loaded, and its reset; a result applied to a bench and reverted.
+// Runs: searches, sorting, base run, saved views, imports, comparisons, trends, models of several runs, and ten thousand runs.
+//
+// No page may break a rule of axe. Exits with 1 and a sentence if a check fails.
 import { gzipSync } from 'node:zlib';
-import { expect, open, settings, tell } from './browser.mjs';
+import { expect, open, settings, runStory } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { askForNone, bringBack, byKeyboard, dashesOf, keepView, manyRuns, openTogether, readResults, showEarlier, takeAway, takeMap, countCurves, zoomWhileFollowing } from './looks.mjs';
+import { openUnknownVersion, reimportRun, byKeyboard, dashesOf, saveListView, openManyRuns, openTogether, readResults, showEarlier, exportRun, exportMap, countCurves, zoomWhileFollowing } from './checks.mjs';
 import { FOREIGN, importForeign } from './files.mjs';
-import { analyse, compareChannels, followTrend, goToTimes, hideChannel, openTradeOffs, shadeMap, stopEarly } from './plots.mjs';
-import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, flyToEnd, loseAndFind, makeRun, measureNext, moving, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
+import { analyse, compareChannels, followTrend, goToSteps, hideChannel, openTradeOffs, changeMapColours, stopEarly } from './plots.mjs';
+import { WITHOUT_LOAD, brush, compareVersions, excludeAndUndo, firstUse, startAndStopAutopilot, runAutopilotToEnd, loseAndRestoreContact, makeRun, measureNext, runningAnimations, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, waitForOtherVersion, tryAndDrop, watchRun, writeEffect, zoomOnePlot } from './steps.mjs';
 import { applyAndGoBack, makeAndRevoke } from './settings.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const FIT_MS = 60_000;
-/** Without typeset formulas, whose script comes with the first of them. */
+/** Without the script for formulas, which is loaded with the first formula. */
 const BUNDLE_BYTES = 160_000;
-/** The link stands where an autopilot that was ended left it: a brake's run that is slow stays within its range. */
+/** The link is where a stopped autopilot left it. A slow brake run stays within its range. */
 const SLOW = { speed_rad_s: 0.5 };
-/** Short runs whose results look unlike each other; the last two where the daemon has an encoder bench. */
+/** Short runs with different kinds of results. The last two need an encoder bench. */
 const RESULTS = {
 	stiffness: { parameters: { load_levels: 4 }, title: /Torsion over torque/i },
 	compensation: { parameters: {}, title: /Errors relative to no compensation/i },
@@ -32,7 +38,7 @@ const rest = async (path) => {
 	return answer.json();
 };
 
-await tell('walk', async () => {
+await runStory('walk', async () => {
 	const { browser, page, faults, another } = await open(where);
 	const { jumps, policy } = await firstUse(page, where.base);
 	expect(jumps < 0.1, `the page jumps while it loads, by ${jumps}`);
@@ -40,11 +46,11 @@ await tell('walk', async () => {
 	console.log(`layout shift of the first page: ${jumps.toFixed(4)}`);
 	const watcher = await another();
 	await observe(watcher, where.base);
-	const without = await loseAndFind(another, where.base);
+	const without = await loseAndRestoreContact(another, where.base);
 	expect(/no contact with the daemon/.test(without), `Start does not say why it waits: ${without}`);
-	const run = await startRun(page, where.base, BARE);
+	const run = await startRun(page, where.base, WITHOUT_LOAD);
 	await watcher.getByText('RUNNING').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the observer does not see the run'));
-	const assets = await page.evaluate(() => performance.getEntriesByType('resource').map((one) => one.name).filter((name) => /\/assets\/(?!Typeset-)/.test(name)));
+	const assets = await page.evaluate(() => performance.getEntriesByType('resource').map((one) => one.name).filter((name) => /\/assets\/(?!MathFormula-)/.test(name)));
 	const files = await Promise.all(assets.map(async (name) => gzipSync(Buffer.from(await (await fetch(name)).arrayBuffer()))));
 	const bytes = files.reduce((sum, file) => sum + file.length, 0);
 	expect(bytes > 0 && bytes <= BUNDLE_BYTES, `scripts and styles are ${bytes} bytes compressed, ${BUNDLE_BYTES} is the most`);
@@ -52,9 +58,9 @@ await tell('walk', async () => {
 	const toWorkbench = await watchRun(page);
 	const result = await readResult(page);
 	expect(result.verdict !== 'failed' && result.quantities > 2 && result.rows > 10, `the result says too little: ${JSON.stringify(result)}`);
-	await zoomAlone(page);
+	await zoomOnePlot(page);
 	await hideChannel(page);
-	await goToTimes(page);
+	await goToSteps(page);
 	await analyse(page);
 	await audit(page, 'the run');
 	console.log(`run ${run} is done`);
@@ -62,7 +68,7 @@ await tell('walk', async () => {
 	await toWorkbench.click();
 	const bare = await readVersion(page);
 	expect(bare.verdict === 'adequate', `without load nothing can be missing, but the verdict is ${bare.verdict}`);
-	const { said: promised, ...first } = await measureNext(page);
+	const { text: promised, ...first } = await measureNext(page);
 	expect(/expected separation/.test(promised), `the card does not say what it expects: ${promised}`);
 	expect(first.verdict === 'missing_effect', `with both runs the model should lack an effect, but the verdict is ${first.verdict}`);
 	console.log(`held-out error ${first.held}, missing: ${first.effects.join(', ')}`);
@@ -82,31 +88,31 @@ await tell('walk', async () => {
 	const cell = await byKeyboard(page);
 	expect(/standard errors|too few|never visited/.test(cell), `the map does not say what its cell is: ${cell}`);
 	await brush(page);
-	await shadeMap(page);
+	await changeMapColours(page);
 	await openTradeOffs(page);
-	const map = await takeMap(page);
+	const map = await exportMap(page);
 	expect(/-map\.parquet$/.test(map.name) && map.begins === 'PAR1', `the map leaves as ${JSON.stringify(map)}`);
 	const excluded = await excludeAndUndo(page, 'walked over the cable');
 	expect(/without .* s: walked over the cable/.test(excluded), `the page does not say what is excluded: ${excluded}`);
 
 	await page.locator('[data-shape=link_torque_nm]').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the card does not show what is left over the load, with the shape of the effect on it'));
 	const held = await page.evaluate(() => document.querySelector('rect.held.here').dataset.held);
-	const said = await tryAndDrop(page);
+	const text = await tryAndDrop(page);
 	await audit(page, 'the workbench');
-	expect(/↓ better \(−[\d.]+ ± [\d.]+ %\)/.test(said), `the preview should promise a smaller error, and how sure that is: ${said}`);
+	expect(/↓ better \(−[\d.]+ ± [\d.]+ %\)/.test(text), `the preview should promise a smaller error, and how sure that is: ${text}`);
 	expect((await readVersion(page)).held === Number(held), 'a try must leave the version at hand alone');
 
 	const card = page.locator('article[data-effect]').first();
-	const second = await toAnotherVersion(page, () => card.getByRole('button', { name: 'Add and refit' }).click());
+	const second = await waitForOtherVersion(page, () => card.getByRole('button', { name: 'Add and refit' }).click());
 	expect(second.held < first.held, `the error should fall, but went from ${first.held} to ${second.held}`);
 	expect((await page.locator('rect.held').count()) >= 2, 'the waterfall has no step');
 	console.log(`with ${first.effects[0]}: ${second.held}`);
 
-	const undone = await toAnotherVersion(page, () => page.keyboard.press('z'));
+	const undone = await waitForOtherVersion(page, () => page.keyboard.press('z'));
 	expect(undone.held === first.held, `undo should lead back to ${first.held}, but shows ${undone.held}`);
 
 	const differs = await compareVersions(page);
-	expect(first.effects[0] === 'load_linear' && differs.includes('Load-dependent friction'), `the comparison does not tell what differs: ${differs}`);
+	expect(first.effects[0] === 'load_linear' && differs.includes('Load-dependent friction'), `the comparison does not show what differs: ${differs}`);
 
 	const back = await showForeign(page, where.base, run, undone, 'viscous_quadratic');
 	expect(back.model === undone.model, `back from the version made elsewhere the page shows ${back.model}`);
@@ -132,19 +138,19 @@ await tell('walk', async () => {
 	expect(opened.every((jumps) => jumps < 0.1), `the workbench jumps while it opens, by ${opened.join(' and ')}`);
 	console.log(`layout shift of the workbench, desk and phone: ${opened.map((jumps) => jumps.toFixed(4)).join(', ')}`);
 
-	const none = await askForNone(page, where.base, run);
+	const none = await openUnknownVersion(page, where.base, run);
 	expect(/; v\d+ \(model \d+\) is shown/.test(none), `the page does not say which version it shows: ${none}`);
-	const ended = await flyAndStop(page, `${where.base}/workbench/${run}`);
+	const ended = await startAndStopAutopilot(page, `${where.base}/workbench/${run}`);
 	expect(/stopped by the operator/i.test(ended), `the autopilot does not say where it ended: ${ended}`);
 	expect(ended.includes(`from run #${run}`), `the autopilot does not say where it was started: ${ended}`);
 	await audit(page, 'the autopilot');
-	const flown = await flyToEnd(page, `${where.base}/workbench/${run + 1}`);
-	expect(/no runs made/.test(flown.said) && flown.said.includes(`from run #${run + 1}`), `the autopilot does not say that it made no run: ${flown.said}`);
-	const { added } = (await rest(`/models?run=${run + 1}`)).find((model) => String(model.id) === flown.model);
+	const autopilot = await runAutopilotToEnd(page, `${where.base}/workbench/${run + 1}`);
+	expect(/no runs made/.test(autopilot.text) && autopilot.text.includes(`from run #${run + 1}`), `the autopilot does not say that it made no run: ${autopilot.text}`);
+	const { added } = (await rest(`/models?run=${run + 1}`)).find((model) => String(model.id) === autopilot.model);
 	expect(added.length > 0, 'the page does not follow the autopilot to the version it ended with');
-	const jumped = await removeAndUndo(page);
-	expect(jumped < 0.1, `removing an effect and undoing that makes the page jump, by ${jumped}`);
-	console.log(`layout shift of removing and undoing: ${jumped.toFixed(4)}`);
+	const shift = await removeAndUndo(page);
+	expect(shift < 0.1, `removing an effect and undoing that makes the page jump, by ${shift}`);
+	console.log(`layout shift of removing and undoing: ${shift.toFixed(4)}`);
 
 	for (const path of ['/', '/live', '/log', '/settings']) {
 		await page.goto(where.base + path);
@@ -152,7 +158,7 @@ await tell('walk', async () => {
 		await audit(page, path);
 	}
 	await makeAndRevoke(page, another, where.base);
-	const moves = await moving(watcher);
+	const moves = await runningAnimations(watcher);
 	expect(moves.length === 0, `with little motion asked for these still move: ${moves.join(', ')}`);
 	await stopByKey(watcher, where.base, 'observer', ['Control+Shift+Space']);
 	expect((await resetStopped(page, where.base)) === 1, 'the stop of the observer does not hold');
@@ -171,7 +177,7 @@ await tell('walk', async () => {
 	await lost.getByText('run 987654 does not exist').waitFor({ timeout: 30_000 });
 	await audit(lost, 'a run that is not there');
 	await lost.close();
-	await keepView(page, where.base, run);
+	await saveListView(page, where.base, run);
 	await importForeign(page, where.base, FOREIGN);
 	await page.getByLabel(`Compare run ${run}`).check();
 	const third = page.getByLabel(`Compare run ${run + 3}`);
@@ -187,11 +193,11 @@ await tell('walk', async () => {
 
 	const beside = await another();
 	await zoomWhileFollowing(beside, where.base);
-	const { legend, missing, jumps: shift } = await dashesOf(beside, page.url());
-	expect(shift < 0.1, `the comparison jumps while it opens, by ${shift}`);
+	const { legend, missing, jumps: opening } = await dashesOf(beside, page.url());
+	expect(opening < 0.1, `the comparison jumps while it opens, by ${opening}`);
 	expect(legend.length === 3 && new Set(legend).size === 3 && missing.length === 0, `colour alone keeps lines apart: ${JSON.stringify({ legend, missing })}`);
 	await openTogether(beside, where.base, [run + 1, run]);
-	const { rows, jump_ms } = await manyRuns(beside, where.base);
+	const { rows, jump_ms } = await openManyRuns(beside, where.base);
 	expect(rows < 100, `${rows} rows exist of ten thousand runs: only those on the screen should`);
 	expect(jump_ms < 2000, `the jump to the last of ten thousand runs takes ${jump_ms} ms`);
 	console.log(`ten thousand runs: ${rows} rows, jump to the last ${jump_ms} ms`);
@@ -202,14 +208,14 @@ await tell('walk', async () => {
 	await audit(page, 'the result over runs');
 	await followTrend(page, where.base);
 
-	const { name, table, report } = await takeAway(page, where.base, run + 1);
+	const { name, table, report } = await exportRun(page, where.base, run + 1);
 	expect(name === `run-${run + 1}.csv` && /^time_s,/.test(table), `the run leaves as ${name}: ${table.slice(0, 60)}`);
 	expect(report.includes(`Run ${run + 1}`) && report.includes('SIMULATED'), `the report does not name its run: ${report.slice(0, 200)}`);
-	const brought = await bringBack(page, where.base, run + 1, table);
-	expect(new RegExp(`samples are those of run #${run + 1}: a copy`).test(brought.said), `a copy is not told: ${brought.said}`);
-	expect(/of a simulated bench/.test(brought.said), `the copy of a simulated run is not called simulated: ${brought.said}`);
-	expect(/another unit or sign/.test(brought.said), `a current in milliampere is not told: ${brought.said}`);
-	expect(brought.verdict === 'contradiction' && brought.effects.length === 0, `columns contradict each other, but the page says ${brought.verdict} and offers ${brought.effects.join(', ')}`);
+	const reimported = await reimportRun(page, where.base, run + 1, table);
+	expect(new RegExp(`samples are those of run #${run + 1}: a copy`).test(reimported.text), `a copy is not told: ${reimported.text}`);
+	expect(/of a simulated bench/.test(reimported.text), `the copy of a simulated run is not called simulated: ${reimported.text}`);
+	expect(/another unit or sign/.test(reimported.text), `a current in milliampere is not told: ${reimported.text}`);
+	expect(reimported.verdict === 'contradiction' && reimported.effects.length === 0, `columns contradict each other, but the page says ${reimported.verdict} and offers ${reimported.effects.join(', ')}`);
 
 	const shown = await readResults(page, where.base, RESULTS);
 	console.log(`results read: ${shown.join(', ')}`);

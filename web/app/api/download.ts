@@ -1,4 +1,4 @@
-import { request } from './ask';
+import { request } from './request';
 
 /**
  * Fetches a file and saves it. An ordinary link cannot carry a token, and would save an error document under the file's

@@ -7,7 +7,7 @@ export interface LiveHandlers {
 	message: (message: LiveMessage) => void;
 	frame: (frame: Frame) => void;
 	/** The connection is open (true) or lost (false). */
-	line: (up: boolean) => void;
+	connected: (up: boolean) => void;
 }
 
 const FIRST_RETRY_MS = 300;
@@ -18,18 +18,18 @@ export function connectLive(handlers: LiveHandlers): () => void {
 	let socket: WebSocket | null = null;
 	let wait_ms = FIRST_RETRY_MS;
 	let timer: ReturnType<typeof setTimeout> | undefined;
-	let over = false;
+	let closed = false;
 
 	const open = () => {
 		const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
-		const kept = token();
+		const storedToken = token();
 		// Addresses are logged in transit, so the token is a subprotocol, which may not contain brackets.
-		const offered = kept ? ['jointbench', `token.${encodeURIComponent(kept).replace(/[()]/g, (bracket) => `%${bracket.charCodeAt(0).toString(16)}`)}`] : [];
+		const offered = storedToken ? ['jointbench', `token.${encodeURIComponent(storedToken).replace(/[()]/g, (bracket) => `%${bracket.charCodeAt(0).toString(16)}`)}`] : [];
 		socket = new WebSocket(`${scheme}://${location.host}${BASE}/events`, offered);
 		socket.binaryType = 'arraybuffer';
 		socket.onopen = () => {
 			wait_ms = FIRST_RETRY_MS;
-			handlers.line(true);
+			handlers.connected(true);
 		};
 		socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
 			if (typeof data === 'string') return handlers.message(JSON.parse(data) as LiveMessage);
@@ -37,15 +37,15 @@ export function connectLive(handlers: LiveHandlers): () => void {
 			if (frame) handlers.frame(frame);
 		};
 		socket.onclose = () => {
-			if (over) return;
-			handlers.line(false);
+			if (closed) return;
+			handlers.connected(false);
 			timer = setTimeout(open, wait_ms);
 			wait_ms = Math.min(LAST_RETRY_MS, wait_ms * 1.6);
 		};
 	};
 	open();
 	return () => {
-		over = true;
+		closed = true;
 		clearTimeout(timer);
 		socket?.close();
 	};

@@ -2,17 +2,17 @@
  * A daemon that listens beyond loopback requires a token. The user enters it once per browser session. Requests send it
  * in a header; the live stream uses the subprotocol header, because a browser cannot set another one there.
  */
-const KEPT = 'jointbench.token';
+const STORAGE_KEY = 'jointbench.token';
 
 export function token(): string | null {
-	return sessionStorage.getItem(KEPT);
+	return sessionStorage.getItem(STORAGE_KEY);
 }
 
 export function keepToken(text: string): void {
-	sessionStorage.setItem(KEPT, text.trim());
+	sessionStorage.setItem(STORAGE_KEY, text.trim());
 }
 
 export function authorization(): Record<string, string> {
-	const kept = token();
-	return kept ? { authorization: `Bearer ${kept}` } : {};
+	const stored = token();
+	return stored ? { authorization: `Bearer ${stored}` } : {};
 }

@@ -1,11 +1,11 @@
 import { expect, it } from 'vitest';
-import { pair } from './upload';
+import { pairWithMeta } from './upload';
 
 it('gives every table of a drop the meta file of the drop', () => {
 	const [csv, parquet, meta] = ['a.csv', 'b.parquet', 'meta.json'].map((name) => new File(['x'], name));
-	expect(pair([csv!, meta!, parquet!])).toEqual([
+	expect(pairWithMeta([csv!, meta!, parquet!])).toEqual([
 		{ file: csv, meta },
 		{ file: parquet, meta },
 	]);
-	expect(pair([csv!])).toEqual([{ file: csv, meta: null }]);
+	expect(pairWithMeta([csv!])).toEqual([{ file: csv, meta: null }]);
 });

@@ -1,4 +1,4 @@
-import { request } from './ask';
+import { request } from './request';
 import { BASE } from './client';
 import type { ImportPreview, Run } from './types';
 
@@ -9,16 +9,16 @@ export interface Upload {
 }
 
 /** Import options under the daemon's names: `map`, `unit`, `time_from_rate` … */
-export type Choices = Record<string, string[]>;
+export type ImportOptions = Record<string, string[]>;
 
 /** Pairs files that were dropped together: one `.json` is used for all tables. */
-export function pair(files: readonly File[]): Upload[] {
+export function pairWithMeta(files: readonly File[]): Upload[] {
 	const meta = files.find((file) => file.name.endsWith('.json')) ?? null;
 	return files.filter((file) => !file.name.endsWith('.json')).map((file) => ({ file, meta }));
 }
 
 /** Sent as a form, which the typed client does not support. */
-async function send(address: string, { file, meta }: Upload, choices: Choices): Promise<unknown> {
+async function send(address: string, { file, meta }: Upload, choices: ImportOptions): Promise<unknown> {
 	const form = new FormData();
 	form.append('file', file, file.name);
 	if (meta) form.append('meta', await meta.text());
@@ -27,7 +27,7 @@ async function send(address: string, { file, meta }: Upload, choices: Choices): 
 	return await answer.json();
 }
 
-export const importRun = async (upload: Upload, choices: Choices = {}): Promise<Run> => (await send('/runs/import', upload, choices)) as Run;
+export const importRun = async (upload: Upload, choices: ImportOptions = {}): Promise<Run> => (await send('/runs/import', upload, choices)) as Run;
 
 /** The daemon's interpretation of a file; nothing is stored. */
-export const previewImport = async (upload: Upload, choices: Choices = {}): Promise<ImportPreview> => (await send('/runs/import/preview', upload, choices)) as ImportPreview;
+export const previewImport = async (upload: Upload, choices: ImportOptions = {}): Promise<ImportPreview> => (await send('/runs/import/preview', upload, choices)) as ImportPreview;

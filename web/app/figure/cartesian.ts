@@ -7,7 +7,7 @@ export interface Tick {
 }
 
 /** Position of a figure on its paper [px]. */
-export interface Frame {
+export interface PlotLayout {
 	left: number;
 	right: number;
 	top: number;
@@ -28,7 +28,7 @@ const LETTER = 6.1;
 export const SLANT_DEG = 32;
 const DOWN = LETTER * Math.sin((SLANT_DEG * Math.PI) / 180);
 
-export function cartesian(figure: Figure, width: number, height: number, factor: { x: number; y: number }): Frame {
+export function cartesianLayout(figure: Figure, width: number, height: number, factor: { x: number; y: number }): PlotLayout {
 	const names = figure.x.names?.length ? figure.x.names : null;
 	const slot = names ? (width - LEFT - 10) / names.length : 0;
 	const longest = Math.max(0, ...(names ?? []).map((name) => name.length));
@@ -37,7 +37,7 @@ export function cartesian(figure: Figure, width: number, height: number, factor:
 	const bars = figure.series.filter((one) => one.mark === 'bars');
 	const step = names ? 1 : narrowest(bars);
 	const [xLow, xHigh] = names ? [-0.5, names.length - 0.5] : widened(spanOf(figure.series.flatMap((one) => one.x)), bars.length ? step * 0.6 : 0, 0.02);
-	const [yLow, yHigh] = aired(reachOf(figure.series), bars.length > 0);
+	const [yLow, yHigh] = withMargin(reachOf(figure.series), bars.length > 0);
 	const x = (value: number) => left + ((value - xLow) / (xHigh - xLow)) * (right - left);
 	const y = (value: number) => bottom - ((value - yLow) / (yHigh - yLow)) * (bottom - top);
 	const scaled = (low: number, high: number, factor: number, count: number, at: (value: number) => number) =>
@@ -72,7 +72,7 @@ function widened([low, high]: Span, by: number, share: number): Span {
 }
 
 /** Margin above and below, except at the zero line of bars. */
-function aired([low, high]: Span, standing: boolean): Span {
+function withMargin([low, high]: Span, standing: boolean): Span {
 	const more = (high - low) * 0.07 || Math.abs(high) * 0.1 || 1;
 	return [standing && low === 0 ? 0 : low - more, standing && high === 0 ? 0 : high + more];
 }

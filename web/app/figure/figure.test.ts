@@ -1,9 +1,9 @@
 import { describe, expect, it } from 'vitest';
-import { cartesian } from './cartesian';
-import { type Figure, type Series, inUnits, magnification, magnified, reachOf, styles, tableOf } from './figure';
-import { glyphs, line, ribbon } from './ink';
-import { flow } from './legend';
-import { polar } from './polar';
+import { cartesianLayout } from './cartesian';
+import { type Figure, type Series, inDisplayUnits, magnification, magnified, reachOf, styles, tableOf } from './figure';
+import { glyphs, line, ribbon } from './paths';
+import { legendLayout } from './legendLayout';
+import { polarLayout } from './polar';
 
 const series = (label: string, mark: Series['mark'], x: number[], y: number[], band?: number[][]): Series => ({ label, mark, x, y, band });
 const figure = (more: Partial<Figure>): Figure => ({
@@ -54,7 +54,7 @@ describe('a cartesian figure', () => {
 	const drawn = figure({ series: [series('a', 'points', [0, 10], [0.01, 0.04], [[0, 0.02], [0.03, 0.05]])] });
 
 	it('shows points with their bands, ticks with the prefix', () => {
-		const frame = cartesian(drawn, 400, 300, { x: 1, y: 1000 });
+		const frame = cartesianLayout(drawn, 400, 300, { x: 1, y: 1000 });
 		for (const y of [0, 0.05]) expect(frame.y(y) > frame.top && frame.y(y) < frame.bottom).toBe(true);
 		expect(frame.yTicks.map((tick) => tick.text)).toEqual(['0', '10', '20', '30', '40', '50']);
 		expect(frame.yTicks[1]!.at).toBeCloseTo(frame.y(0.01), 9);
@@ -63,7 +63,7 @@ describe('a cartesian figure', () => {
 	it('stands bars on zero, each in its slot', () => {
 		const bars = figure({ x: { label: '', unit: '', names: ['one', 'two'] }, series: [series('a', 'bars', [0, 1], [3, 4]), series('b', 'bars', [0, 1], [5, 2])] });
 		expect(reachOf(bars.series)).toEqual([0, 5]);
-		const frame = cartesian(bars, 400, 300, { x: 1, y: 1 });
+		const frame = cartesianLayout(bars, 400, 300, { x: 1, y: 1 });
 		expect(frame.y(0)).toBe(frame.bottom);
 		expect(frame.xTicks.map((tick) => tick.text)).toEqual(['one', 'two']);
 		expect(2 * frame.bar).toBeLessThan(frame.x(1) - frame.x(0));
@@ -72,14 +72,14 @@ describe('a cartesian figure', () => {
 
 	it('survives what has no extent', () => {
 		for (const one of [[], [series('a', 'line', [3], [7])], [series('a', 'points', [Number.NaN], [Number.NaN])]]) {
-			const frame = cartesian(figure({ series: one }), 300, 200, { x: 1, y: 1 });
+			const frame = cartesianLayout(figure({ series: one }), 300, 200, { x: 1, y: 1 });
 			for (const value of [frame.x(3), frame.y(7)]) expect(Number.isFinite(value)).toBe(true);
 		}
 	});
 });
 
 it('keeps the centre free where a polar figure has two signs, and starts there where it has one', () => {
-	const round = (y: number[]) => polar(figure({ form: 'polar', series: [series('a', 'line', [0, 1, 2], y)] }), 300, 300, 1);
+	const round = (y: number[]) => polarLayout(figure({ form: 'polar', series: [series('a', 'line', [0, 1, 2], y)] }), 300, 300, 1);
 	const signed = round([-1, 0, 1]);
 	expect(signed.radius(-1)).toBeGreaterThan(signed.outer * 0.2);
 	expect(signed.radius(1)).toBeLessThan(signed.outer);
@@ -97,9 +97,9 @@ it('gives exactly what is drawn, with all digits and names', () => {
 
 it('is shown in the units that a person reads', () => {
 	const drawn = figure({ series: [series('a', 'line', [1, 2], [3, 4], [[2, 4], [3, 5]])] });
-	const shown = inUnits(drawn, (unit) => (unit === 'rad/s' ? { factor: 10, unit: 'rpm' } : { factor: 1, unit }));
+	const shown = inDisplayUnits(drawn, (unit) => (unit === 'rad/s' ? { factor: 10, unit: 'rpm' } : { factor: 1, unit }));
 	expect([shown.x.unit, shown.series[0]!.x, shown.series[0]!.band]).toEqual(['rpm', [10, 20], [[2, 4], [3, 5]]]);
-	expect(inUnits(drawn, (unit) => ({ factor: 1, unit }))).toBe(drawn);
+	expect(inDisplayUnits(drawn, (unit) => ({ factor: 1, unit }))).toBe(drawn);
 });
 
 it('breaks a line where a value is missing', () => {
@@ -109,7 +109,7 @@ it('breaks a line where a value is missing', () => {
 });
 
 it('puts entries of a legend below each other where they do not fit', () => {
-	const { entries, height } = flow(['positive', 'negative', 'model'], 170);
+	const { entries, height } = legendLayout(['positive', 'negative', 'model'], 170);
 	expect(entries.map((one) => one.y > 0)).toEqual([false, false, true]);
 	expect(height).toBe(34);
 });

@@ -57,21 +57,21 @@ function family(labels: readonly string[], i: number): string {
 	const label = labels[i]!;
 	const run = /^#\d+/.exec(label);
 	if (run) return run[0];
-	const kin = labels.find((one) => one !== label && (label.endsWith(` ${one}`) || label.split(', ').at(-1) === one));
-	return kin ?? label.split(', ').at(-1)!;
+	const related = labels.find((one) => one !== label && (label.endsWith(` ${one}`) || label.split(', ').at(-1) === one));
+	return related ?? label.split(', ').at(-1)!;
 }
 
 /** `runs`: runs in the order in which another plot assigns its colours and dashes. */
 export function styles(series: readonly Series[], runs: readonly string[] = []): Style[] {
 	const labels = series.map((one) => one.label);
-	const kin = labels.map((_, i) => family(labels, i));
-	const families = [...new Set([...runs, ...kin])];
+	const relatives = labels.map((_, i) => family(labels, i));
+	const families = [...new Set([...runs, ...relatives])];
 	/** Position among the series with the same mark. Series with the same name look the same. */
 	const before = (i: number) => [...new Set(series.filter((one) => one.mark === series[i]!.mark).map((one) => one.label))].indexOf(labels[i]!);
 	/** The second curve of a run has a dash that no first curve has. */
-	const dash = (i: number) => (runs.length ? families.indexOf(kin[i]!) + runs.length * labels.slice(0, i).filter((_, k) => kin[k] === kin[i]).length : before(i));
+	const dash = (i: number) => (runs.length ? families.indexOf(relatives[i]!) + runs.length * labels.slice(0, i).filter((_, k) => relatives[k] === relatives[i]).length : before(i));
 	return series.map((_, i) => ({
-		stroke: STROKES[families.indexOf(kin[i]!) % STROKES.length]!,
+		stroke: STROKES[families.indexOf(relatives[i]!) % STROKES.length]!,
 		dash: DASHES[dash(i) % DASHES.length]!,
 		glyph: GLYPHS[before(i) % GLYPHS.length]!,
 		bar: before(i),
@@ -79,7 +79,7 @@ export function styles(series: readonly Series[], runs: readonly string[] = []):
 }
 
 /** The figure with each axis in the displayed unit. */
-export function inUnits(figure: Figure, scaleOf: (unit: string) => { factor: number; unit: string }): Figure {
+export function inDisplayUnits(figure: Figure, scaleOf: (unit: string) => { factor: number; unit: string }): Figure {
 	const [x, y] = [scaleOf(figure.x.unit), scaleOf(figure.y.unit)];
 	if (x.factor === 1 && y.factor === 1) return figure;
 	const series = figure.series.map((one) => ({
@@ -92,10 +92,10 @@ export function inUnits(figure: Figure, scaleOf: (unit: string) => { factor: num
 }
 
 /** The axis along which the series `before` and `after` are compared. */
-const told = ({ series, x }: Figure) => (!x.names && series.some((one) => one.mark === 'bars') ? 'x' : 'y');
+const comparedAxis = ({ series, x }: Figure) => (!x.names && series.some((one) => one.mark === 'bars') ? 'x' : 'y');
 
-function room(figure: Figure): number {
-	const largest = (word: string) => Math.max(...figure.series.filter((one) => one.label.endsWith(word)).flatMap((one) => one[told(figure)].map(Math.abs)));
+function magnificationOf(figure: Figure): number {
+	const largest = (word: string) => Math.max(...figure.series.filter((one) => one.label.endsWith(word)).flatMap((one) => one[comparedAxis(figure)].map(Math.abs)));
 	const ratio = largest('before') / largest('after');
 	const power = 10 ** Math.floor(Math.log10(ratio));
 	const factor = power * (ratio < 2 * power ? 1 : ratio < 5 * power ? 2 : 5);
@@ -106,12 +106,12 @@ function room(figure: Figure): number {
  * A small remainder compared with its original value would be a flat line or a single bar. It is magnified by this
  * factor in all figures that have room for it.
  */
-export const magnification = (figures: readonly Figure[]) => Math.min(...figures.map(room).filter((factor) => factor > 1));
+export const magnification = (figures: readonly Figure[]) => Math.min(...figures.map(magnificationOf).filter((factor) => factor > 1));
 
 /** The figure with the series `after` magnified by `factor`. A reference line of bars is drawn for both series. */
 export function magnified(figure: Figure, factor: number): Figure {
-	if (room(figure) < factor) return figure;
-	const along = told(figure);
+	if (magnificationOf(figure) < factor) return figure;
+	const along = comparedAxis(figure);
 	const large = (one: Series): Series => ({
 		...one,
 		label: `${one.label}, ×${factor}`,
@@ -162,8 +162,8 @@ export function rowsOf(figure: Figure): Row[] {
 	);
 }
 
-const titled = (label: string, unit: string) => (unit ? `${label} [${unit}]` : label);
-export const axisName = (axis: Axis) => titled(axis.label, axis.unit);
+const withUnit = (label: string, unit: string) => (unit ? `${label} [${unit}]` : label);
+export const axisName = (axis: Axis) => withUnit(axis.label, axis.unit);
 
 export function tableOf(figure: Figure): Table {
 	const y = axisName(figure.y);

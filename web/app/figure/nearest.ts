@@ -1,5 +1,5 @@
 /** The point nearest to the pointer [px], or none within reach. */
-export interface Pointed {
+export interface PointedAt {
 	series: number;
 	index: number;
 	at: readonly [x: number, y: number];
@@ -7,8 +7,8 @@ export interface Pointed {
 
 const REACH = 32;
 
-export function nearest(places: readonly (readonly (readonly [x: number, y: number])[])[], x: number, y: number): Pointed | null {
-	let best: Pointed | null = null;
+export function nearest(places: readonly (readonly (readonly [x: number, y: number])[])[], x: number, y: number): PointedAt | null {
+	let best: PointedAt | null = null;
 	let least = REACH;
 	places.forEach((points, series) =>
 		points.forEach((at, index) => {

@@ -3,7 +3,7 @@ import { type Figure, reachOf } from './figure';
 import type { Tick } from './cartesian';
 
 /** A figure around a centre: angle from the right, anticlockwise, as in mathematics. */
-export interface Disc {
+export interface PolarLayout {
 	centre: { x: number; y: number };
 	outer: number;
 	/** Radius [px] of a value. */
@@ -19,7 +19,7 @@ const TITLE = 16;
 
 export const SPOKES = Array.from({ length: 12 }, (_, i) => i * 30);
 
-export function polar(figure: Figure, width: number, height: number, factor: number): Disc {
+export function polarLayout(figure: Figure, width: number, height: number, factor: number): PolarLayout {
 	const outer = Math.max(20, Math.min(width - 70, height - 44 - TITLE) / 2);
 	const centre = { x: width / 2, y: (height - TITLE) / 2 };
 	const [least, most] = reachOf(figure.series);

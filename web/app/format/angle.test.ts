@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { angleScale, hasAngle, readAngle } from './angle';
+import { angleScale, hasAngle, parseAngle } from './angle';
 
 it('scales angles, compliances and stiffnesses, and nothing else', () => {
 	expect(angleScale('rad', 'arcmin').factor).toBeCloseTo(3437.75, 2);
@@ -12,6 +12,6 @@ it('scales angles, compliances and stiffnesses, and nothing else', () => {
 });
 
 it('reads what the address says, else rad', () => {
-	expect([readAngle('arcsec'), readAngle('turns'), readAngle(null)]).toEqual(['arcsec', 'rad', 'rad']);
+	expect([parseAngle('arcsec'), parseAngle('turns'), parseAngle(null)]).toEqual(['arcsec', 'rad', 'rad']);
 	expect([hasAngle(['Nm', 'rad/Nm']), hasAngle(['Nm', 'rad/s'])]).toEqual([true, false]);
 });

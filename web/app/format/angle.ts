@@ -6,7 +6,7 @@ export type Angle = (typeof ANGLES)[number];
 
 const PER_RAD: Record<Angle, number> = { rad: 1, '°': 180 / Math.PI, arcmin: (60 * 180) / Math.PI, arcsec: (3600 * 180) / Math.PI };
 
-export const readAngle = (text: string | null): Angle => ANGLES.find((one) => one === text) ?? 'rad';
+export const parseAngle = (text: string | null): Angle => ANGLES.find((one) => one === text) ?? 'rad';
 
 /** Scale of an angle, a compliance in it or a stiffness against it; other units are unchanged. */
 export function angleScale(unit: string, angle: Angle): Scale {

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { axisTitle, cut, inLines, label, linear, prose, tail } from './label';
+import { axisTitle, truncate, inTwoLines, label, linearUnit, displayText, pathEnd } from './label';
 
 it('reads the unit from the suffix', () => {
 	expect(label('motor_velocity_rad_s')).toEqual({ title: 'motor velocity', unit: 'rad/s' });
@@ -16,30 +16,30 @@ it('trusts a unit that is given', () => {
 });
 
 it('says ids of a sentence as words', () => {
-	expect(prose('it would show load_linear and stribeck_load, at 5 mNm')).toBe('It would show load linear and stribeck load, at 5 mNm');
-	expect(prose('Missing effects: load_linear, then load_viscous.', [{ id: 'load_linear', title: 'Load-dependent friction' }])).toBe('Missing effects: load-dependent friction, then load viscous.');
+	expect(displayText('it would show load_linear and stribeck_load, at 5 mNm')).toBe('It would show load linear and stribeck load, at 5 mNm');
+	expect(displayText('Missing effects: load_linear, then load_viscous.', [{ id: 'load_linear', title: 'Load-dependent friction' }])).toBe('Missing effects: load-dependent friction, then load viscous.');
 	const short = [{ id: 'viscous', title: 'Viscous friction' }, { id: 'stribeck', title: 'Stribeck effect' }];
-	expect(prose('Missing effect: viscous. Adding viscous reduces the validation error', short)).toBe('Missing effect: viscous friction. Adding viscous friction reduces the validation error');
-	expect(prose('Possibly missing effect (weak evidence): stribeck (or viscous: this run cannot distinguish them).', short)).toBe('Possibly missing effect (weak evidence): Stribeck effect (or viscous: this run cannot distinguish them).');
-	expect(prose('motor_current_a is -1.5 times what 0-3 gives, by time_s')).toBe('Motor current is −1.5 times what 0-3 gives, by time');
-	expect(prose('repeat with a lower stribeck_speed_rad_s, for tau_c')).toBe('Repeat with a lower stribeck speed, for tau c');
+	expect(displayText('Missing effect: viscous. Adding viscous reduces the validation error', short)).toBe('Missing effect: viscous friction. Adding viscous friction reduces the validation error');
+	expect(displayText('Possibly missing effect (weak evidence): stribeck (or viscous: this run cannot distinguish them).', short)).toBe('Possibly missing effect (weak evidence): Stribeck effect (or viscous: this run cannot distinguish them).');
+	expect(displayText('motor_current_a is -1.5 times what 0-3 gives, by time_s')).toBe('Motor current is −1.5 times what 0-3 gives, by time');
+	expect(displayText('repeat with a lower stribeck_speed_rad_s, for tau_c')).toBe('Repeat with a lower stribeck speed, for tau c');
 });
 
 it('cuts what has no room', () => {
-	expect(cut('friction ripple', 200)).toBe('friction ripple');
-	expect(cut('friction ripple', 62)).toBe('friction…');
+	expect(truncate('friction ripple', 200)).toBe('friction ripple');
+	expect(truncate('friction ripple', 62)).toBe('friction…');
 });
 
 it('reads units as an axis that slides has them', () => {
-	expect(['rad/s', 'Nm', 'Nm/A', 'kg·m²', 'Nm·s/rad', 's'].map(linear)).toEqual(['m/s', 'N', 'N/A', 'kg', 'N·s/m', 's']);
+	expect(['rad/s', 'Nm', 'Nm/A', 'kg·m²', 'Nm·s/rad', 's'].map(linearUnit)).toEqual(['m/s', 'N', 'N/A', 'kg', 'N·s/m', 's']);
 });
 
 it('keeps the end of a path', () => {
-	expect(['/data/emps/run.csv', 'C:\\data\\run.csv', 'joint-a'].map(tail)).toEqual(['…/emps/run.csv', '…/data/run.csv', 'joint-a']);
+	expect(['/data/emps/run.csv', 'C:\\data\\run.csv', 'joint-a'].map(pathEnd)).toEqual(['…/emps/run.csv', '…/data/run.csv', 'joint-a']);
 });
 
 it('breaks a label that has no room between its words', () => {
-	expect(inLines('+ Coulomb', 100)).toEqual(['+ Coulomb']);
-	expect(inLines('+ Load-dependent friction', 100)).toEqual(['+ Load-dependent', 'friction']);
-	expect(inLines('+ Transmissionlosses', 60)).toEqual(['+ Transm…']);
+	expect(inTwoLines('+ Coulomb', 100)).toEqual(['+ Coulomb']);
+	expect(inTwoLines('+ Load-dependent friction', 100)).toEqual(['+ Load-dependent', 'friction']);
+	expect(inTwoLines('+ Transmissionlosses', 60)).toEqual(['+ Transm…']);
 });

@@ -22,7 +22,7 @@ const SUFFIXES: [string, string][] = [
 	['_m', 'm'],
 ];
 
-const SAID: Record<string, string> = {
+const TITLES: Record<string, string> = {
 	link_torque_nm: 'load (link torque)',
 	run_order: 'order in the run',
 	direction: 'direction of motion',
@@ -35,12 +35,12 @@ export interface Label {
 
 export function label(column: string, unit?: string | null): Label {
 	const suffix = SUFFIXES.find(([end]) => column.endsWith(end));
-	const bare = suffix ? column.slice(0, -suffix[0].length) : column;
-	return { title: SAID[column] ?? bare.replaceAll('_', ' '), unit: unit ?? suffix?.[1] ?? '' };
+	const withoutUnit = suffix ? column.slice(0, -suffix[0].length) : column;
+	return { title: TITLES[column] ?? withoutUnit.replaceAll('_', ' '), unit: unit ?? suffix?.[1] ?? '' };
 }
 
 /** The unit on a sliding axis. */
-export const linear = (unit: string): string => unit.replace('kg·m²', 'kg').replace('Nm', 'N').replace('rad', 'm');
+export const linearUnit = (unit: string): string => unit.replace('kg·m²', 'kg').replace('Nm', 'N').replace('rad', 'm');
 
 /** `motor velocity [rad/s]` */
 export function axisTitle(column: string, unit?: string | null): string {
@@ -48,52 +48,52 @@ export function axisTitle(column: string, unit?: string | null): string {
 	return known && known !== '1' ? `${title} [${known}]` : title;
 }
 
-const WORDS: Record<string, string> = {
+const ID_TEXTS: Record<string, string> = {
 	joint: 'joint drive',
 	torque_sensor: 'torque sensor',
 	brake: 'brake current source',
 };
 
 /** Ids as words: `viscous_asymmetry` → `viscous asymmetry`. */
-export function words(id: string): string {
-	return WORDS[id] ?? id.replaceAll('_', ' ');
+export function idText(id: string): string {
+	return ID_TEXTS[id] ?? id.replaceAll('_', ' ');
 }
 
 /** A suffix that can only be a unit; `tau_c` is not a temperature. */
-const SPELT_UNIT = /_(nm_rad|rad_s2?|rad|nm|hz)$|(?<=current)_a$|(?<=temperature)_c$|(?<=time)_s$/;
+const UNIT_SUFFIX = /_(nm_rad|rad_s2?|rad|nm|hz)$|(?<=current)_a$|(?<=temperature)_c$|(?<=time)_s$/;
 /** A minus sign before a number that is not after another number. */
 const SIGN = /(?<![\w.,)\]])-(?=\d)/g;
 
 /** Replaces hyphens by minus signs in a text of the daemon. */
-export const signed = (text: string): string => text.replace(SIGN, '−');
+export const withMinusSigns = (text: string): string => text.replace(SIGN, '−');
 
 /**
  * A sentence of the daemon for display: effects by their titles, other ids as words without their unit, with a capital
  * at its start.
  */
-export function prose(sentence: string, effects: readonly { id: string; title: string }[] = []): string {
-	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])|(?<=issing effects?(?: \(weak evidence\))?: |, then |Adding )[a-z]+(?=[.,]| \(or| reduces)/g, (id) => {
+export function displayText(sentence: string, effects: readonly { id: string; title: string }[] = []): string {
+	const replaced = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])|(?<=issing effects?(?: \(weak evidence\))?: |, then |Adding )[a-z]+(?=[.,]| \(or| reduces)/g, (id) => {
 		const title = effects.find((one) => one.id === id)?.title;
-		return title?.replace(/^(?!Coul|Strib)./, (first) => first.toLowerCase()) ?? words(id.replace(SPELT_UNIT, ''));
+		return title?.replace(/^(?!Coul|Strib)./, (first) => first.toLowerCase()) ?? idText(id.replace(UNIT_SUFFIX, ''));
 	});
-	return spoken.charAt(0).toUpperCase() + signed(spoken.slice(1));
+	return replaced.charAt(0).toUpperCase() + withMinusSigns(replaced.slice(1));
 }
 
 /** The end of a path, which says more than its beginning. Names stay complete. */
-export const tail = (name: string): string => (/[\\/]/.test(name) ? `…/${name.split(/[\\/]/).filter(Boolean).slice(-2).join('/')}` : name);
+export const pathEnd = (name: string): string => (/[\\/]/.test(name) ? `…/${name.split(/[\\/]/).filter(Boolean).slice(-2).join('/')}` : name);
 
 /** Average width of a letter of the small print [px]. */
 export const LETTER_PX = 6.1;
 
 /** Cuts a text to the available width, for drawings that cannot wrap. The full text belongs in a title. */
-export function cut(text: string, width_px: number): string {
+export function truncate(text: string, width_px: number): string {
 	const letters = Math.max(2, Math.floor(width_px / LETTER_PX));
 	return text.length <= letters ? text : `${text.slice(0, letters - 1).trimEnd()}…`;
 }
 
 /** The same in two lines, broken between words. */
-export function inLines(text: string, width_px: number): string[] {
+export function inTwoLines(text: string, width_px: number): string[] {
 	const end = text.lastIndexOf(' ', width_px / LETTER_PX);
-	const short = cut(text, width_px);
-	return short === text || end < 3 ? [short] : [text.slice(0, end), cut(text.slice(end + 1), width_px)];
+	const short = truncate(text, width_px);
+	return short === text || end < 3 ? [short] : [text.slice(0, end), truncate(text.slice(end + 1), width_px)];
 }

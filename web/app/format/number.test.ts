@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { bounds, chance, counted, estimate, figure, percent, quantity, scaleFor, written } from './number';
+import { formatInterval, formatPValue, formatCount, formatEstimate, formatNumber, formatPercent, formatQuantity, scaleFor, formatAllDigits } from './number';
 
 describe('numbers as an instrument shows them', () => {
 	it.each([
@@ -11,14 +11,14 @@ describe('numbers as an instrument shows them', () => {
 		[-2e7, '−2.000·10⁷'],
 		[Number.NaN, '–'],
 		[null, '–'],
-	])('%s is %s', (value, text) => expect(figure(value)).toBe(text));
+	])('%s is %s', (value, text) => expect(formatNumber(value)).toBe(text));
 
 	it('leaves a figure that somebody wrote down as it is', () => {
-		expect([0.0406, 177.8, 1.2e-5, 45, -0.5, 31.41592653589793].map(written)).toEqual(['0.0406', '177.8', '1.2·10⁻⁵', '45', '−0.5', '31.41593']);
+		expect([0.0406, 177.8, 1.2e-5, 45, -0.5, 31.41592653589793].map(formatAllDigits)).toEqual(['0.0406', '177.8', '1.2·10⁻⁵', '45', '−0.5', '31.41593']);
 	});
 
 	it('has no minus before a share of nothing', () => {
-		expect([-0.0004, 0.0004, -0.04].map((share) => percent(share, 1))).toEqual(['0.0 %', '0.0 %', '−4.0 %']);
+		expect([-0.0004, 0.0004, -0.04].map((share) => formatPercent(share, 1))).toEqual(['0.0 %', '0.0 %', '−4.0 %']);
 	});
 
 	it('chooses one prefix by the largest magnitude', () => {
@@ -26,27 +26,27 @@ describe('numbers as an instrument shows them', () => {
 		expect(scaleFor('Nm', 2)).toEqual({ factor: 1, unit: 'Nm' });
 		expect(scaleFor('rad', 3e-5)).toEqual({ factor: 1e6, unit: 'µrad' });
 		expect(scaleFor('kg·m²', 3e-5).factor).toBe(1);
-		expect(quantity(0.02142, 'Nm')).toBe('21.4 mNm');
+		expect(formatQuantity(0.02142, 'Nm')).toBe('21.4 mNm');
 	});
 
 	it('gives a value the digits that its interval deserves', () => {
-		expect(estimate(0.10123, [0.097, 0.105])).toBe('0.1012');
-		expect(estimate(0.10123, [0.05, 0.15])).toBe('0.101');
-		expect(estimate(1, [null, null])).toBe('1.000');
-		expect(`${estimate(9e-5, [6.1e-5, 1.19e-4])} ${bounds([6.1e-5, 1.19e-4])}`).toBe('0.000090 [0.000061, 0.000119]');
-		expect(bounds([-2e-5, 3e-5])).toBe('[−2.0·10⁻⁵, 3.0·10⁻⁵]');
-		expect(bounds([0.5, null])).toBe('[0.5000, ?]');
+		expect(formatEstimate(0.10123, [0.097, 0.105])).toBe('0.1012');
+		expect(formatEstimate(0.10123, [0.05, 0.15])).toBe('0.101');
+		expect(formatEstimate(1, [null, null])).toBe('1.000');
+		expect(`${formatEstimate(9e-5, [6.1e-5, 1.19e-4])} ${formatInterval([6.1e-5, 1.19e-4])}`).toBe('0.000090 [0.000061, 0.000119]');
+		expect(formatInterval([-2e-5, 3e-5])).toBe('[−2.0·10⁻⁵, 3.0·10⁻⁵]');
+		expect(formatInterval([0.5, null])).toBe('[0.5000, ?]');
 	});
 
 	it('counts one as one', () => {
-		expect([0, 1, 1204].map((n) => counted(n, 'step'))).toEqual(['0 steps', '1 step', '1,204 steps']);
+		expect([0, 1, 1204].map((n) => formatCount(n, 'step'))).toEqual(['0 steps', '1 step', '1,204 steps']);
 	});
 
 	it('says chances and shares', () => {
-		expect(chance(3e-10)).toBe('p < 10⁻⁹');
-		expect(chance(0)).toBe('p < 10⁻¹⁶');
-		expect(chance(0.02)).toBe('p = 0.020');
-		expect(chance(0.002, true)).toBe('p ≤ 0.002');
-		expect(percent(-0.42)).toBe('−42 %');
+		expect(formatPValue(3e-10)).toBe('p < 10⁻⁹');
+		expect(formatPValue(0)).toBe('p < 10⁻¹⁶');
+		expect(formatPValue(0.02)).toBe('p = 0.020');
+		expect(formatPValue(0.002, true)).toBe('p ≤ 0.002');
+		expect(formatPercent(-0.42)).toBe('−42 %');
 	});
 });

@@ -3,7 +3,7 @@
 const MINUS = '−';
 
 /** `digits` significant digits, no exponent from `least` to 1e6. */
-export function figure(value: number | null | undefined, digits = 4, least = 1e-4): string {
+export function formatNumber(value: number | null | undefined, digits = 4, least = 1e-4): string {
 	if (value == null || !Number.isFinite(value)) return '–';
 	if (value === 0) return '0';
 	const size = Math.abs(value);
@@ -18,7 +18,7 @@ function exponent(value: number, decimals: number): string {
 }
 
 /** A number with its own digits, at most seven. */
-export function written(value: number): string {
+export function formatAllDigits(value: number): string {
 	const own = Number(value.toPrecision(7));
 	const size = Math.abs(own);
 	if (size === 0 || (size >= 1e-4 && size < 1e6)) return String(own).replace('-', MINUS);
@@ -54,27 +54,27 @@ export function scaleFor(unit: string, largest: number): Scale {
 	return size >= 1e-7 ? { factor: 1e6, unit: `µ${unit}` } : { factor: 1e9, unit: `n${unit}` };
 }
 
-export function quantity(value: number | null | undefined, unit: string, digits = 3): string {
+export function formatQuantity(value: number | null | undefined, unit: string, digits = 3): string {
 	if (value == null || !Number.isFinite(value)) return '–';
 	const scale = scaleFor(unit, value);
-	return `${figure(value * scale.factor, digits)} ${scale.unit}`.trim();
+	return `${formatNumber(value * scale.factor, digits)} ${scale.unit}`.trim();
 }
 
-export function percent(share: number, digits = 0): string {
+export function formatPercent(share: number, digits = 0): string {
 	const text = (share * 100).toFixed(digits);
 	return `${Number(text) === 0 ? text.replace('-', '') : text.replace('-', MINUS)} %`;
 }
 
 /** Relative change: `+0.3 %`, `−83 %`. */
-export const change = (share: number) => (share >= 0 ? '+' : '') + percent(share, Math.abs(share) < 0.1 ? 1 : 0);
+export const formatChange = (share: number) => (share >= 0 ? '+' : '') + formatPercent(share, Math.abs(share) < 0.1 ? 1 : 0);
 
 /** `1 step`, `1,204 steps` */
-export function counted(n: number, one: string): string {
+export function formatCount(n: number, one: string): string {
 	return `${n.toLocaleString('en')} ${one}${n === 1 ? '' : 's'}`;
 }
 
 /** `p < 10⁻⁹` instead of many zeros. */
-export function chance(p: number, atMost = false): string {
+export function formatPValue(p: number, atMost = false): string {
 	if (p <= 0) return 'p < 10⁻¹⁶';
 	if (p < 1e-3) return `p < 10${superscript(Math.ceil(Math.log10(p)))}`;
 	return `p ${atMost ? '≤' : '='} ${p.toFixed(p < 0.1 ? 3 : 2)}`;
@@ -87,15 +87,15 @@ export type Interval = readonly (number | null)[];
  * A value (or an end of its interval) with the number of digits that the interval justifies, in the notation of its
  * larger end.
  */
-export function estimate(value: number | null, interval: Interval): string {
+export function formatEstimate(value: number | null, interval: Interval): string {
 	const [low, high] = interval;
 	const width = low == null || high == null ? 0 : Math.abs(high - low) / 2;
-	if (value === null || !(width > 0) || value === 0) return figure(value, 4);
+	if (value === null || !(width > 0) || value === 0) return formatNumber(value, 4);
 	const needed = Math.floor(Math.log10(Math.abs(value))) - Math.floor(Math.log10(width)) + 2;
-	return figure(value, Math.min(7, Math.max(2, needed)), Math.max(Math.abs(low!), Math.abs(high!)) < 1e-4 ? 1e-4 : 1e-6);
+	return formatNumber(value, Math.min(7, Math.max(2, needed)), Math.max(Math.abs(low!), Math.abs(high!)) < 1e-4 ? 1e-4 : 1e-6);
 }
 
 /** `[0.097, 0.105]` */
-export function bounds(interval: Interval): string {
-	return `[${interval.map((edge) => (edge === null ? '?' : estimate(edge, interval))).join(', ')}]`;
+export function formatInterval(interval: Interval): string {
+	return `[${interval.map((edge) => (edge === null ? '?' : formatEstimate(edge, interval))).join(', ')}]`;
 }

@@ -10,7 +10,7 @@ export function speedScale(unit: string, rpm: boolean): Scale {
 const PREFIX: Record<string, number> = { '': 1, m: 1e-3, µ: 1e-6, k: 1e3 };
 
 /** A sentence of the daemon with its speeds in the displayed unit. */
-export function spokenSpeeds(sentence: string, rpm: boolean): string {
+export function withDisplayedSpeeds(sentence: string, rpm: boolean): string {
 	if (!rpm) return sentence;
 	return sentence.replace(/([-−]?)(\d[\d.]*) ([mµk]?)rad\/s(?![\w²^])/g, (_all, sign: string, figure: string, prefix: string) => {
 		const turns = Number(figure) * PREFIX[prefix]! * RPM_PER_RAD_S;
@@ -19,7 +19,7 @@ export function spokenSpeeds(sentence: string, rpm: boolean): string {
 }
 
 /** A column in the displayed unit; the same column if the unit is unchanged. */
-export function scaled<T extends ArrayLike<number | null>>(column: T, { factor }: Scale): ArrayLike<number | null> {
+export function scaledColumn<T extends ArrayLike<number | null>>(column: T, { factor }: Scale): ArrayLike<number | null> {
 	if (factor === 1) return column;
 	const out = new Array<number | null>(column.length);
 	for (let i = 0; i < out.length; i++) out[i] = column[i] === null ? null : column[i]! * factor;

@@ -6,40 +6,40 @@ export interface Kind {
 	/** Facts about the set-up that the models of this kind need or use. */
 	facts: string[];
 	/** A fit is impossible without these facts. */
-	must?: string[];
+	mandatoryFacts?: string[];
 	baseline: string[];
 }
 
-const ALWAYS = ['temperature_c', 'segment', 'repeat'];
+const COMMON = ['temperature_c', 'segment', 'repeat'];
 
 export const KINDS: Kind[] = [
 	{
 		id: 'friction',
 		required: ['time_s', 'motor_position_rad', 'motor_current_a'],
-		optional: ['motor_velocity_rad_s', 'link_position_rad', 'link_torque_nm', 'brake_current_a', 'brake_torque_command_nm', ...ALWAYS],
+		optional: ['motor_velocity_rad_s', 'link_position_rad', 'link_torque_nm', 'brake_current_a', 'brake_torque_command_nm', ...COMMON],
 		facts: ['torque_constant_nm_per_a', 'gear_ratio', 'rotor_inertia_kg_m2'],
-		must: ['torque_constant_nm_per_a'],
+		mandatoryFacts: ['torque_constant_nm_per_a'],
 		baseline: ['inertia', 'load_transmission', 'coulomb', 'viscous'],
 	},
 	{
 		id: 'encoder',
 		required: ['time_s', 'reference_position_rad', 'test_position_rad'],
-		optional: ['velocity_rad_s', ...ALWAYS],
+		optional: ['velocity_rad_s', ...COMMON],
 		facts: ['reference_bits', 'test_bits', 'pole_pairs'],
 		baseline: ['offset'],
 	},
 	{
 		id: 'stiffness',
 		required: ['time_s', 'motor_position_rad', 'link_position_rad', 'link_torque_nm'],
-		optional: ['link_velocity_rad_s', ...ALWAYS],
+		optional: ['link_velocity_rad_s', ...COMMON],
 		facts: ['gear_ratio'],
-		must: ['gear_ratio'],
+		mandatoryFacts: ['gear_ratio'],
 		baseline: ['offset', 'compliance'],
 	},
 	{
 		id: 'brake',
 		required: ['time_s', 'brake_current_a', 'brake_torque_nm'],
-		optional: ['velocity_rad_s', 'position_rad', ...ALWAYS],
+		optional: ['velocity_rad_s', 'position_rad', ...COMMON],
 		facts: ['rated_current_a', 'poles'],
 		baseline: ['drag', 'torque_per_current'],
 	},
@@ -72,7 +72,7 @@ export function unitsOf(column: string, stated = ''): string[] {
 }
 
 /** The mapping as options for the daemon. */
-export function instructions(mapping: Mapping): { map: string[]; unit: string[] } {
+export function mappingOptions(mapping: Mapping): { map: string[]; unit: string[] } {
 	const used = Object.entries(mapping).filter(([, source]) => source.from !== '');
 	return {
 		map: used.filter(([column, { from }]) => from !== column).map(([column, { from }]) => `${column}=${from}`),

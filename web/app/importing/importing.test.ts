@@ -1,36 +1,36 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import type { ImportPreview } from '../api/types';
-import { isWhole, optionInWords, parseOption, recall, remember, timingOf, withOption, withTiming, without } from './choices';
-import { instructions, unitsOf } from './columns';
+import { isComplete, optionText, parseOption, loadMapping, saveMapping, timeSourceOf, withOption, withTimeSource, withoutOption } from './importOptions';
+import { mappingOptions, unitsOf } from './columns';
 import { unzip } from './unpack';
 
 describe('options that the daemon proposes', () => {
 	it('are parts of a request', () => {
 		expect(parseOption('--spread-time')).toEqual([['spread_time', 'true']]);
 		expect(parseOption("--map 'time_s=Time [ms]' --unit time_s=ms")).toEqual([['map', 'time_s=Time [ms]'], ['unit', 'time_s=ms']]);
-		expect([isWhole('--rate HZ'), isWhole('--rate 200'), isWhole('--split-runs')]).toEqual([false, true, true]);
+		expect([isComplete('--rate HZ'), isComplete('--rate 200'), isComplete('--split-runs')]).toEqual([false, true, true]);
 	});
 
 	it('are said in words', () => {
-		expect(optionInWords('--missing -9999 --leave-empty-rows')).toBe('-9999 is an empty cell, omit rows with empty cells');
-		expect(optionInWords("--decimal 'I [mA]=comma'")).toBe('I [mA]: decimal comma');
-		expect(optionInWords('--time-from-rate 200')).toBe('200 rows a second');
-		expect(optionInWords('--scale motor_current_a=-1')).toBe('motor_current_a × −1');
+		expect(optionText('--missing -9999 --leave-empty-rows')).toBe('-9999 is an empty cell, omit rows with empty cells');
+		expect(optionText("--decimal 'I [mA]=comma'")).toBe('I [mA]: decimal comma');
+		expect(optionText('--time-from-rate 200')).toBe('200 rows a second');
+		expect(optionText('--scale motor_current_a=-1')).toBe('motor_current_a × −1');
 	});
 
 	it('give the time from one place', () => {
-		const counted = withTiming({ spread_time: ['true'], leave: ['remark'] }, 'rate', '200', true);
-		expect([counted, timingOf(counted)]).toEqual([{ leave: ['remark'], time_from_rate: ['200'] }, 'rate']);
-		expect(withTiming(counted, 'rate', '200', false)).toEqual({ leave: ['remark'], rate: ['200'] });
-		expect(withTiming(counted, 'column', '', true)).toEqual({ leave: ['remark'] });
-		expect(timingOf({ operating_points: ['true'] })).toBe('operating_points');
+		const counted = withTimeSource({ spread_time: ['true'], leave: ['remark'] }, 'rate', '200', true);
+		expect([counted, timeSourceOf(counted)]).toEqual([{ leave: ['remark'], time_from_rate: ['200'] }, 'rate']);
+		expect(withTimeSource(counted, 'rate', '200', false)).toEqual({ leave: ['remark'], rate: ['200'] });
+		expect(withTimeSource(counted, 'column', '', true)).toEqual({ leave: ['remark'] });
+		expect(timeSourceOf({ operating_points: ['true'] })).toBe('operating_points');
 	});
 
 	it('are taken, exchanged and taken back', () => {
 		const once = withOption({ leave: ['remark'] }, '--unit time_s=ms');
 		expect(withOption(once, '--unit time_s=us')).toEqual({ leave: ['remark'], unit: ['time_s=us'] });
 		expect(withOption({ time_from_rate: ['100'] }, '--time-from-rate 200')).toEqual({ time_from_rate: ['200'] });
-		expect(without(once, 'unit', 'time_s=ms')).toEqual({ leave: ['remark'] });
+		expect(withoutOption(once, 'unit', 'time_s=ms')).toEqual({ leave: ['remark'] });
 	});
 });
 
@@ -42,14 +42,14 @@ describe('what a person chose', () => {
 
 	it('comes back for a file of the same shape', () => {
 		const what = { kind: 'friction', mapping: { time_s: { from: 't', unit: 'ms' } }, facts: {}, left: [], choices: {} };
-		remember(preview('t', 'x'), what, storage);
-		expect(recall(preview('t', 'x'), storage)).toEqual(what);
-		expect(recall(preview('t', 'y'), storage)).toBeNull();
+		saveMapping(preview('t', 'x'), what, storage);
+		expect(loadMapping(preview('t', 'x'), storage)).toEqual(what);
+		expect(loadMapping(preview('t', 'y'), storage)).toBeNull();
 	});
 
 	it('becomes what the daemon understands', () => {
 		const mapping = { time_s: { from: 'Time', unit: '' }, motor_position_rad: { from: 'pos', unit: 'deg' }, motor_current_a: { from: 'motor_current_a', unit: 'A' }, segment: { from: '', unit: '' } };
-		expect(instructions(mapping)).toEqual({ map: ['time_s=Time', 'motor_position_rad=pos'], unit: ['motor_position_rad=deg'] });
+		expect(mappingOptions(mapping)).toEqual({ map: ['time_s=Time', 'motor_position_rad=pos'], unit: ['motor_position_rad=deg'] });
 		expect(unitsOf('motor_velocity_rad_s', '1/min')).toEqual(['rad/s', 'rpm', 'deg/s', 'rev/s', '1/min']);
 	});
 });

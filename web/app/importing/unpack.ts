@@ -1,5 +1,5 @@
 /** File names of run tables and facts. */
-const TAKEN = /\.(csv|tsv|txt|dat|asc|log|lvm|parquet|arrow|feather|json)(\.gz)?$/i;
+const TABLE_FILE = /\.(csv|tsv|txt|dat|asc|log|lvm|parquet|arrow|feather|json)(\.gz)?$/i;
 
 /**
  * All files of a drop: the content of folders, and unpacked zip archives. Both ignore other files than tables and
@@ -21,7 +21,7 @@ export async function filesOf(entry: FileSystemEntry): Promise<File[]> {
 		if (some.length === 0) break;
 		for (const one of some) found.push(...(await filesOf(one)));
 	}
-	return found.filter(({ name }) => TAKEN.test(name));
+	return found.filter(({ name }) => TABLE_FILE.test(name));
 }
 
 const END = 0x06054b50;
@@ -29,7 +29,7 @@ const ENTRY = 0x02014b50;
 /** Range of the end record at the end of the file: its 22 bytes and a comment. */
 const TAIL_BYTES = 22 + 0xffff;
 /** Limit for all unpacked files of an archive together. */
-const MOST_BYTES = 4 * 2 ** 30;
+const MAX_BYTES = 4 * 2 ** 30;
 
 /** The tables of a zip archive. Source: PKWARE APPNOTE.TXT 6.3.10, 4.3.12 and 4.3.16. */
 export async function unzip(archive: File): Promise<File[]> {
@@ -47,9 +47,9 @@ export async function unzip(archive: File): Promise<File[]> {
 		const [named, extra, comment] = [bytes.getUint16(at + 28, true), bytes.getUint16(at + 30, true), bytes.getUint16(at + 32, true)];
 		const name = new TextDecoder().decode(new Uint8Array(bytes.buffer, at + 46, named));
 		at += 46 + named + extra + comment;
-		if (!TAKEN.test(name) || name.startsWith('__MACOSX/')) continue;
+		if (!TABLE_FILE.test(name) || name.startsWith('__MACOSX/')) continue;
 		total += size;
-		if (total > MOST_BYTES) throw new Error(`${archive.name} unpacks to more than 4 GiB: import its files one by one`);
+		if (total > MAX_BYTES) throw new Error(`${archive.name} unpacks to more than 4 GiB: import its files one by one`);
 		if (from + 30 > bytes.byteLength) throw broken();
 		const start = from + 30 + bytes.getUint16(from + 26, true) + bytes.getUint16(from + 28, true);
 		const piece = archive.slice(start, start + packed);

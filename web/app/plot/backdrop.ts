@@ -3,10 +3,10 @@ import type uPlot from 'uplot';
 import { colour } from './colour';
 
 /** A set-point over time, or a constant limit. It does not change the scale, which depends only on the curves. */
-export interface BackLine {
+export interface BackdropLine {
 	label: string;
 	/** In words, such as `± 20 rad/s`; empty for a set-point. */
-	said: string;
+	valueText: string;
 	/** Custom property of the colour. */
 	stroke: string;
 	dash: number[];
@@ -25,16 +25,16 @@ export interface Backdrop {
 	notes: readonly number[];
 	/** Start times of steps, in order. */
 	steps: readonly number[];
-	lines: readonly BackLine[];
+	lines: readonly BackdropLine[];
 }
 
-export const BARE: Backdrop = { gaps: [], region: null, band: null, notes: [], steps: [], lines: [] };
+export const EMPTY_BACKDROP: Backdrop = { gaps: [], region: null, band: null, notes: [], steps: [], lines: [] };
 
 /** Smallest width of a step that is marked [px]. */
 const NARROWEST = 5;
 
 /** Time ranges of every second step in the view; none if the steps are too narrow on average. */
-export function everyOther(steps: readonly number[], [from, to]: readonly [number, number], width_px: number): [number, number][] {
+export function alternateSteps(steps: readonly number[], [from, to]: readonly [number, number], width_px: number): [number, number][] {
 	const seen = steps.filter((at) => at > from && at < to).length;
 	if (steps.length < 2 || width_px / (seen + 1) < NARROWEST) return [];
 	return steps.flatMap((at, i) => {
@@ -55,7 +55,7 @@ export function paintBackdrop(u: uPlot, { region, band, notes, steps, lines }: B
 	const { min: from, max: to } = u.scales.x!;
 	if (from != null && to != null) {
 		ctx.fillStyle = colour('--step');
-		for (const [begin, end] of everyOther(steps, [from, to], u.over.clientWidth)) ctx.fillRect(x(begin), top, x(end) - x(begin), height);
+		for (const [begin, end] of alternateSteps(steps, [from, to], u.over.clientWidth)) ctx.fillRect(x(begin), top, x(end) - x(begin), height);
 	}
 	if (region) {
 		const [from, to] = region.map(x) as [number, number];
@@ -80,7 +80,7 @@ interface Place {
 	y: (value: number) => number;
 }
 
-function stroke(ctx: CanvasRenderingContext2D, line: BackLine, { left, width, x, y }: Place): void {
+function stroke(ctx: CanvasRenderingContext2D, line: BackdropLine, { left, width, x, y }: Place): void {
 	ctx.beginPath();
 	for (const level of line.levels) {
 		ctx.moveTo(left, y(level));

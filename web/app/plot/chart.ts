@@ -1,12 +1,12 @@
 import uPlot from 'uplot';
 import { spanOf } from '../figure/figure';
-import { BARE, type Backdrop, paintBackdrop } from './backdrop';
+import { EMPTY_BACKDROP, type Backdrop, paintBackdrop } from './backdrop';
 import { colour } from './colour';
-import { type Asked, type View, gestures } from './gestures';
-import { dashes, points } from './marks';
-import { type Cursors, type Moved, rulers } from './measure';
+import { type OnView, type View, gestures } from './gestures';
+import { dashPaths, pointPaths } from './markPaths';
+import { type Cursors, type OnCursors, cursorLines } from './cursors';
 import { powerText, tickText } from './ticks';
-import { trace } from './trace';
+import { linePaths } from './linePaths';
 
 /** `line` joins the points, `chord` only the first and the last; the others mark each point separately. */
 export type Mark = 'line' | 'chord' | 'dot' | 'ring' | 'dash';
@@ -21,12 +21,12 @@ export interface Curve {
 	/** Half height of the band around a `chord`, or of the box around a `dash`: the scatter of repeats. */
 	spread?: number;
 	/** Its marks are shifted to the right, so that they do not cover others. */
-	aside?: boolean;
+	offset?: boolean;
 }
 
-const ASIDE = 5;
+const OFFSET_PX = 5;
 
-export interface Frame {
+export interface ChartLayout {
 	xTitle: string;
 	yTitle: string;
 	curves: Curve[];
@@ -34,7 +34,7 @@ export interface Frame {
 	sync?: string;
 	height: number;
 	/** The axis below has the labels. */
-	bareX?: boolean;
+	hideXLabels?: boolean;
 	/** The plots above have the same cursors. */
 	cursorsAbove?: boolean;
 	/** There is a band around zero, which is always in view. */
@@ -48,7 +48,7 @@ export interface Frame {
 export interface Chart {
 	draw: (data: uPlot.AlignedData, view: View | null, backdrop: Backdrop) => void;
 	/** Ranges of the axes. */
-	shows: () => { x: View; y: View };
+	axisRanges: () => { x: View; y: View };
 	/** Two cursors for measuring, or none. */
 	measure: (cursors: Cursors | null) => void;
 	resize: (width: number, height: number) => void;
@@ -60,16 +60,16 @@ export interface Chart {
  */
 export function makeChart(
 	host: HTMLElement,
-	frame: Frame,
-	asked: Asked,
+	frame: ChartLayout,
+	onview: OnView,
 	pointed: (index: number | null) => void,
-	moved: Moved = () => {},
+	moved: OnCursors = () => {},
 ): Chart {
 	let view: View | null = null;
-	let backdrop = BARE;
+	let backdrop = EMPTY_BACKDROP;
 	let whole: View = [0, 1];
-	let lines: ReturnType<typeof rulers> | null = null;
-	const hands = gestures(asked);
+	let lines: ReturnType<typeof cursorLines> | null = null;
+	const gestureOptions = gestures(onview);
 	/** Points at the ends are drawn completely. */
 	const marked = frame.curves.some(({ mark }) => mark !== 'line');
 	const plot = new uPlot(
@@ -82,16 +82,16 @@ export function makeChart(
 				x: { time: false, range: (_u, low, high) => view ?? (frame.square ? whole : padded(low, high, marked ? 0.012 : 0)) },
 				y: frame.square ? { range: () => view ?? whole } : frame.banded ? { range: (_u, low, high) => withBand(low, high, backdrop.band ?? 0) } : {},
 			},
-			axes: [axis(frame.bareX ? '' : frame.xTitle, tickText, frame.bareX), axis(frame.yTitle, frame.log ? powerText : tickText, false, 58)],
+			axes: [axis(frame.hideXLabels ? '' : frame.xTitle, tickText, frame.hideXLabels), axis(frame.yTitle, frame.log ? powerText : tickText, false, 58)],
 			series: [{}, ...frame.curves.map((curve) => series(curve, () => backdrop))],
 			cursor: {
-				...hands.cursor,
+				...gestureOptions.cursor,
 				points: { size: 6 },
 				y: false,
 				sync: frame.sync ? { key: frame.sync, setSeries: false, scales: ['x', null], filters: { pub: (what) => what === 'mousemove' } } : undefined,
 			},
 			hooks: {
-				...hands.hooks,
+				...gestureOptions.hooks,
 				draw: [() => lines?.place()],
 				drawAxes: [(u) => paintBackdrop(u, backdrop)],
 				setCursor: [(u) => pointed(u.cursor.idx ?? null)],
@@ -102,7 +102,7 @@ export function makeChart(
 	);
 	plot.root.role = 'group';
 	plot.root.ariaLabel = `${frame.yTitle} over ${frame.xTitle}`;
-	lines = rulers(plot, frame.xTitle, moved, !frame.cursorsAbove);
+	lines = cursorLines(plot, frame.xTitle, moved, !frame.cursorsAbove);
 	return {
 		draw: (data, next, behind) => {
 			view = next;
@@ -110,7 +110,7 @@ export function makeChart(
 			if (frame.square) whole = padded(...spanOf(data.flatMap((one) => [...one] as number[])), 0.02);
 			plot.setData(data, true);
 		},
-		shows: () => ({ x: shown(plot.scales.x), y: shown(plot.scales.y) }),
+		axisRanges: () => ({ x: shown(plot.scales.x), y: shown(plot.scales.y) }),
 		measure: (cursors) => lines?.put(cursors),
 		resize: (width, height) => plot.setSize({ width, height }),
 		destroy: () => plot.destroy(),
@@ -149,16 +149,16 @@ function axis(title: string, say: (tick: number) => string, bare = false, size?:
 
 function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
 	const stroke = () => colour(curve.stroke);
-	const aside = () => (curve.aside ? ASIDE * devicePixelRatio : 0);
+	const offset = () => (curve.offset ? OFFSET_PX * devicePixelRatio : 0);
 	const fill = () => `color-mix(in srgb, ${stroke()} ${curve.mark === 'line' ? 45 : 22}%, transparent)`;
-	if (curve.mark === 'line') return { stroke, fill, points: { show: false }, paths: trace(curve.dash, () => backdrop().gaps) };
+	if (curve.mark === 'line') return { stroke, fill, points: { show: false }, paths: linePaths(curve.dash, () => backdrop().gaps) };
 	if (curve.mark === 'chord') return { stroke, width: 1.5, dash: curve.dash, points: { show: false }, fill, paths: (u, i) => chord(u, i, curve.spread ?? 0) };
 	if (curve.mark === 'dash') {
-		const paths: uPlot.Series.PathBuilder = (u, i, from, to) => dashes(u, i, from, to, curve.spread ?? 0, aside());
+		const paths: uPlot.Series.PathBuilder = (u, i, from, to) => dashPaths(u, i, from, to, curve.spread ?? 0, offset());
 		return { stroke, width: 2, points: { show: false }, paths, fill };
 	}
 	const filled = curve.mark === 'dot';
-	return { stroke, width: 1, fill: stroke, points: { show: false }, paths: (u, i, from, to) => points(u, i, from, to, filled, aside()) };
+	return { stroke, width: 1, fill: stroke, points: { show: false }, paths: (u, i, from, to) => pointPaths(u, i, from, to, filled, offset()) };
 }
 
 function chord(u: uPlot, index: number, spread: number): uPlot.Series.Paths {

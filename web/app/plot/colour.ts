@@ -11,7 +11,7 @@ export function colour(property: string): string {
 }
 
 /** Called after a change of theme. */
-export function forgetColours(): void {
+export function clearColourCache(): void {
 	known.clear();
 }
 

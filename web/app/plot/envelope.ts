@@ -1,6 +1,6 @@
 import type { Samples } from '../api/types';
 
-export interface Drawn {
+export interface Envelope {
 	time: number[];
 	columns: (number | null)[][];
 	gaps: [number, number][];
@@ -10,7 +10,7 @@ export interface Drawn {
  * The daemon's minimum and maximum of each pixel as one line. Both have the same time, so that a spike of one sample
  * stays visible. A pause much longer than the others is a gap.
  */
-export function envelope(samples: Samples): Drawn {
+export function envelope(samples: Samples): Envelope {
 	const gaps = findGaps(samples.time_s);
 	if (samples.exact) return { time: samples.time_s, columns: samples.channels.map((c) => c.min), gaps };
 	const time = samples.time_s.flatMap((t) => [t, t]);
@@ -26,7 +26,7 @@ export function findGaps(time_s: readonly number[]): [number, number][] {
 }
 
 /** Joins earlier and later columns. In the overlap the later columns are used. */
-export function follow(early: readonly (readonly (number | null)[])[], late: readonly ArrayLike<number | null>[]): ArrayLike<number | null>[] {
+export function joinColumns(early: readonly (readonly (number | null)[])[], late: readonly ArrayLike<number | null>[]): ArrayLike<number | null>[] {
 	const begins = late[0]?.[0] ?? Infinity;
 	const count = early[0]!.filter((at) => at! < begins).length;
 	return late.map((column, c) => {

@@ -1,5 +1,5 @@
 /** A plot as a vector drawing with the content of the canvas, to scale and edit. */
-import { type Backdrop, everyOther } from './backdrop';
+import { type Backdrop, alternateSteps } from './backdrop';
 import type { Curve } from './chart';
 import type { View } from './gestures';
 import { powerText, tickText, ticks } from './ticks';
@@ -29,7 +29,7 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 	const [right, foot] = [width - RIGHT, height - FOOT];
 	const x = (value: number) => LEFT + ((value - drawing.x[0]) / (drawing.x[1] - drawing.x[0])) * (right - LEFT);
 	const y = (value: number) => foot - ((value - drawing.y[0]) / (drawing.y[1] - drawing.y[0])) * (foot - HEAD);
-	const text = (at: readonly [number, number], said: string, more = '') => `<text x="${short(at[0])}" y="${short(at[1])}" fill="${ink('--soft')}" ${more}>${escaped(said)}</text>`;
+	const text = (at: readonly [number, number], label: string, more = '') => `<text x="${short(at[0])}" y="${short(at[1])}" fill="${ink('--soft')}" ${more}>${escaped(label)}</text>`;
 	const path = (d: string, stroke: string, more = '') => `<path d="${d}" fill="none" stroke="${ink(stroke)}" ${more}/>`;
 	const middle = 'text-anchor="middle"';
 
@@ -41,8 +41,8 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 	];
 	const lineOf = ({ levels, x: xs, y: ys }: Backdrop['lines'][number]) =>
 		levels.map((level) => `M${LEFT} ${short(y(level))}H${right}`).join('') + xs.map((at, i) => `${i ? 'L' : 'M'}${short(x(at))} ${short(y(ys[i]!))}`).join('');
-	const behind = [
-		...everyOther(backdrop.steps, drawing.x, right - LEFT).map(([begin, end]) => `<rect x="${short(x(begin))}" y="${HEAD}" width="${short(x(end) - x(begin))}" height="${foot - HEAD}" fill="${ink('--step')}"/>`),
+	const backdropShapes = [
+		...alternateSteps(backdrop.steps, drawing.x, right - LEFT).map(([begin, end]) => `<rect x="${short(x(begin))}" y="${HEAD}" width="${short(x(end) - x(begin))}" height="${foot - HEAD}" fill="${ink('--step')}"/>`),
 		backdrop.region && `<rect x="${short(x(backdrop.region[0]))}" y="${HEAD}" width="${short(Math.max(2, x(backdrop.region[1]) - x(backdrop.region[0])))}" height="${foot - HEAD}" fill="${ink('--accent-wash')}"/>`,
 		backdrop.band !== null && `<rect x="${LEFT}" y="${short(y(backdrop.band))}" width="${right - LEFT}" height="${short(y(-backdrop.band) - y(backdrop.band))}" fill="${ink('--sunk')}"/>`,
 		...backdrop.lines.map((line) => path(lineOf(line), line.stroke, `stroke-dasharray="${line.dash.join(' ')}"`)),
@@ -69,7 +69,7 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 		return curve.mark === 'dot' ? `<path d="${dots}" fill="${ink(curve.stroke)}"/>` : path(dots, curve.stroke);
 	});
 	let from = LEFT;
-	const lines = backdrop.lines.map(({ label, said, stroke, dash }) => ({ label: `${label} ${said}`.trim(), stroke, dash, mark: 'line' as const }));
+	const lines = backdrop.lines.map(({ label, valueText, stroke, dash }) => ({ label: `${label} ${valueText}`.trim(), stroke, dash, mark: 'line' as const }));
 	const legend = [...curves, ...lines].map(({ label, stroke, mark, dash }) => {
 		const d = mark === 'dot' || mark === 'ring' ? `M${from + 7.5} 13a2.5 2.5 0 1 0 5 0a2.5 2.5 0 1 0 -5 0` : `M${from} 13h20`;
 		const entry = path(d, stroke, `stroke-width="2" stroke-dasharray="${dash?.join(' ') || 'none'}"`) + text([from + 26, 17], label);
@@ -81,7 +81,7 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 		`<title>${escaped(drawing.yTitle)}</title>`,
 		`<clipPath id="inside"><rect x="${LEFT}" y="${HEAD}" width="${right - LEFT}" height="${foot - HEAD}"/></clipPath>`,
 		`<rect width="${width}" height="${height}" fill="${ink('--panel')}"/>`,
-		`<g clip-path="url(#inside)">${behind.join('')}</g>`,
+		`<g clip-path="url(#inside)">${backdropShapes.join('')}</g>`,
 		...axes,
 		`<g clip-path="url(#inside)">${drawn.join('\n')}</g>`,
 		...legend,
@@ -104,17 +104,17 @@ function pointsOf(xs: ArrayLike<number | null>, ys: ArrayLike<number | null>, [f
 }
 
 function joined(points: readonly Point[], at: readonly (readonly [number, number] | null)[], gaps: Backdrop['gaps']): string {
-	let apart = true;
+	let isFirst = true;
 	return at
 		.map((one, i) => {
 			const [last, here] = [points[i - 1]?.[0], points[i]?.[0]];
-			if (last !== undefined && here !== undefined && gaps.some(([begin, end]) => last <= begin && here >= end)) apart = true;
+			if (last !== undefined && here !== undefined && gaps.some(([begin, end]) => last <= begin && here >= end)) isFirst = true;
 			if (one === null) {
-				apart = true;
+				isFirst = true;
 				return '';
 			}
-			const step = `${apart ? 'M' : 'L'}${short(one[0])} ${short(one[1])}`;
-			apart = false;
+			const step = `${isFirst ? 'M' : 'L'}${short(one[0])} ${short(one[1])}`;
+			isFirst = false;
 			return step;
 		})
 		.join('');

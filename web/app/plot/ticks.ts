@@ -1,7 +1,7 @@
-import { figure } from '../format/number';
+import { formatNumber } from '../format/number';
 
 /** The smallest number of ticks for a readable scale. */
-const FEWEST = 3;
+const MIN_TICKS = 3;
 
 /** About `count` round positions for an axis, at least three: steps of 1, 2, 2.5 or 5 times a power of ten. */
 export function ticks(low: number, high: number, count: number): number[] {
@@ -14,7 +14,7 @@ export function ticks(low: number, high: number, count: number): number[] {
 	const reach = (step: number) => [Math.ceil(low / step - 1e-9), Math.floor(high / step + 1e-9)] as const;
 	const enough = [wanted, ...finer].find((one) => {
 		const [first, last] = reach(one * power);
-		return last - first + 1 >= FEWEST;
+		return last - first + 1 >= MIN_TICKS;
 	})!;
 	const step = enough * power;
 	const [first, last] = reach(step);
@@ -24,9 +24,9 @@ export function ticks(low: number, high: number, count: number): number[] {
 /** A tick without unnecessary zeros. */
 export function tickText(tick: number): string {
 	const size = Math.abs(tick);
-	if (size !== 0 && (size < 1e-4 || size >= 1e6)) return figure(tick, 2);
+	if (size !== 0 && (size < 1e-4 || size >= 1e6)) return formatNumber(tick, 2);
 	return String(Number(tick.toPrecision(6))).replace('-', '−');
 }
 
 /** A tick of a logarithmic scale: ten to the given power. */
-export const powerText = (power: number): string => figure(10 ** power, Number.isInteger(power) ? 1 : 2);
+export const powerText = (power: number): string => formatNumber(10 ** power, Number.isInteger(power) ? 1 : 2);

@@ -1,11 +1,11 @@
 import type uPlot from 'uplot';
-import type { Asked } from './gestures';
+import type { OnView } from './gestures';
 
 /**
  * Touch gestures on a plot (uPlot issue 13): one finger along x selects a range, two fingers zoom and move. Vertical
  * movement scrolls the page.
  */
-export function touch(u: uPlot, asked: Asked): void {
+export function touchGestures(u: uPlot, onview: OnView): void {
 	const { over } = u;
 	const fingers = new Map<number, number>();
 	let pinch: { span: number; at: number; min: number; max: number } | null = null;
@@ -33,16 +33,16 @@ export function touch(u: uPlot, asked: Asked): void {
 		if (pinch && a !== undefined && b !== undefined) {
 			const width = over.clientWidth;
 			const scale = (pinch.max - pinch.min) * (pinch.span / Math.max(20, Math.abs(a - b)));
-			const held = pinch.min + ((pinch.max - pinch.min) * pinch.at) / width;
-			const begin = held - (scale * (a + b)) / 2 / width;
-			asked([begin, begin + scale], 'zoom');
+			const anchorValue = pinch.min + ((pinch.max - pinch.min) * pinch.at) / width;
+			const begin = anchorValue - (scale * (a + b)) / 2 / width;
+			onview([begin, begin + scale], 'zoom');
 		} else if (from !== null) select(from, a!);
 	});
 	const lift = (event: PointerEvent) => {
 		if (!fingers.delete(event.pointerId)) return;
 		const to = place(event);
 		if (event.type === 'pointerup' && !pinch && from !== null && Math.abs(to - from) > 12) {
-			asked([u.posToVal(Math.min(from, to), 'x'), u.posToVal(Math.max(from, to), 'x')], 'box');
+			onview([u.posToVal(Math.min(from, to), 'x'), u.posToVal(Math.max(from, to), 'x')], 'box');
 		}
 		select(0, 0);
 		from = null;

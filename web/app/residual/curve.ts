@@ -1,31 +1,31 @@
 import { binOf } from './bins';
-import { Sums, type Tally } from './tally';
+import { BlockSums, type BlockMean } from './blockMeans';
 
-export interface Point extends Tally {
+export interface Point extends BlockMean {
 	from: number;
 	to: number;
 }
 
 /** Mean residual along one axis. */
-export function curve(values: readonly number[], edges: number[], residual: readonly number[], kept: Uint8Array, noise: number, piece: readonly number[]): Point[] {
-	const sums = edges.slice(1).map(() => new Sums());
+export function curve(values: readonly number[], edges: number[], residual: readonly number[], counted: Uint8Array, noise: number, piece: readonly number[]): Point[] {
+	const sums = edges.slice(1).map(() => new BlockSums());
 	for (let i = 0; i < residual.length; i++) {
-		if (kept[i]) sums[binOf(edges, values[i]!)]?.add(residual[i]!, piece[i]!);
+		if (counted[i]) sums[binOf(edges, values[i]!)]?.add(residual[i]!, piece[i]!);
 	}
-	return sums.map((s, i) => ({ ...s.tally(noise), from: edges[i]!, to: edges[i + 1]! }));
+	return sums.map((s, i) => ({ ...s.mean(noise), from: edges[i]!, to: edges[i + 1]! }));
 }
 
 /**
  * Fraction of the residual's variance that depends on the axis: ω² of a one-way analysis of variance, which does not
  * favour axes with many bins (Hays, Statistics, 1963).
  */
-export function explainedShare(values: readonly number[], edges: number[], residual: readonly number[], kept: Uint8Array): number {
+export function explainedShare(values: readonly number[], edges: number[], residual: readonly number[], counted: Uint8Array): number {
 	const groups = new Map<number, { n: number; sum: number }>();
 	let n = 0;
 	let sum = 0;
 	let squares = 0;
 	for (let i = 0; i < residual.length; i++) {
-		const bin = kept[i] ? binOf(edges, values[i]!) : -1;
+		const bin = counted[i] ? binOf(edges, values[i]!) : -1;
 		if (bin < 0) continue;
 		const group = groups.get(bin) ?? { n: 0, sum: 0 };
 		const r = residual[i]!;

@@ -1,11 +1,11 @@
 import { type Bins, binOf } from './bins';
-import { Sums, type Tally } from './tally';
+import { BlockSums, type BlockMean } from './blockMeans';
 
 export interface ResidualMap {
 	x: Bins;
 	y: Bins;
 	/** Row by row from the smallest y. */
-	cells: Tally[];
+	cells: BlockMean[];
 }
 
 /** Mean residual in every cell of two axes. */
@@ -13,20 +13,20 @@ export function residualMap(
 	x: { values: readonly number[]; bins: Bins },
 	y: { values: readonly number[]; bins: Bins },
 	residual: readonly number[],
-	kept: Uint8Array,
+	counted: Uint8Array,
 	noise: number,
 	piece: readonly number[],
 ): ResidualMap {
 	const columns = Math.max(0, x.bins.edges.length - 1);
 	const rows = Math.max(0, y.bins.edges.length - 1);
-	const sums = Array.from({ length: columns * rows }, () => new Sums());
+	const sums = Array.from({ length: columns * rows }, () => new BlockSums());
 	for (let i = 0; i < residual.length; i++) {
-		if (!kept[i]) continue;
+		if (!counted[i]) continue;
 		const column = binOf(x.bins.edges, x.values[i]!);
 		const row = binOf(y.bins.edges, y.values[i]!);
 		if (column >= 0 && row >= 0) sums[row * columns + column]!.add(residual[i]!, piece[i]!);
 	}
-	return { x: x.bins, y: y.bins, cells: sums.map((s) => s.tally(noise)) };
+	return { x: x.bins, y: y.bins, cells: sums.map((s) => s.mean(noise)) };
 }
 
 /** Indices of the cells that contain a selected sample. */

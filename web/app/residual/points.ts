@@ -1,12 +1,12 @@
 import type { ResidualSet } from '../api/types';
 
-export type Side = 'both' | 'positive' | 'negative';
+export type DirectionFilter = 'both' | 'positive' | 'negative';
 
 /**
  * Points that count: those of the fit in the selected direction of motion, without those that the user excluded. Ramps
  * and reversals are not part of the fit; they count only on request.
  */
-export function keep(set: ResidualSet, side: Side, ramps = false): Uint8Array {
+export function pointMask(set: ResidualSet, side: DirectionFilter, ramps = false): Uint8Array {
 	const direction = directionOf(set);
 	return Uint8Array.from(set.error, (_, i) => {
 		if (set.excluded[i]) return 0;
@@ -21,7 +21,7 @@ export function keep(set: ResidualSet, side: Side, ramps = false): Uint8Array {
  * Folds a position of more than one turn into one turn, as the diagnosis does, because position errors repeat with
  * every turn.
  */
-export function inOneTurn(set: ResidualSet): ResidualSet {
+export function foldPositions(set: ResidualSet): ResidualSet {
 	const turn = 2 * Math.PI;
 	const fold = (values: number[]) => {
 		const [low, high] = values.reduce(([low, high], at) => [Math.min(low, at), Math.max(high, at)], [Infinity, -Infinity]);
@@ -35,7 +35,7 @@ export function inOneTurn(set: ResidualSet): ResidualSet {
  * in friction runs. The residual would have a slope over its own noise, so this torque is the model's, shifted to the
  * measured mean of each block.
  */
-export function withMore(set: ResidualSet): ResidualSet {
+export function withDerivedAxes(set: ResidualSet): ResidualSet {
 	const named = (name: string) => set.axes.find((axis) => axis.name === name);
 	const direction = named('direction')?.values;
 	const more: ResidualSet['axes'] = [];
@@ -70,10 +70,10 @@ export function directionOf(set: ResidualSet): readonly number[] | null {
 }
 
 /** Axes along which the points differ; `segment` and `repeat` are only numbers. */
-export function usefulAxes(set: ResidualSet, kept: Uint8Array): ResidualSet['axes'] {
+export function usefulAxes(set: ResidualSet, counted: Uint8Array): ResidualSet['axes'] {
 	return set.axes.filter((axis) => {
 		if (axis.name === 'segment' || axis.name === 'repeat') return false;
-		const finite = axis.values.filter((value, i) => kept[i] && Number.isFinite(value));
+		const finite = axis.values.filter((value, i) => counted[i] && Number.isFinite(value));
 		return finite.length > 1 && finite.some((value) => Math.abs(value - finite[0]!) > 1e-12 * Math.max(1, Math.abs(value)));
 	});
 }

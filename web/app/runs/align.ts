@@ -1,20 +1,20 @@
 import type { Channel, ChannelStatistics, RunEvent, Samples } from '../api/types';
 
 /** One channel of a run over time. */
-export interface Course {
+export interface ChannelCurve {
 	x: number[];
 	low: (number | null)[];
 	high: (number | null)[];
 }
 
 /** A channel over time, starting at a time of the run. */
-export function courseOf(samples: Samples, channel: string, zero_s = 0): Course | null {
+export function channelCurve(samples: Samples, channel: string, zero_s = 0): ChannelCurve | null {
 	const values = samples.channels.find((one) => one.name === channel);
 	return values ? { x: zero_s === 0 ? samples.time_s : samples.time_s.map((t) => t - zero_s), low: values.min, high: values.max } : null;
 }
 
 /** Events that occur in every run, by their text, and their first times. */
-export function sharedMoments(runs: readonly (readonly Pick<RunEvent, 'text' | 'at_s' | 'kind'>[])[]): Map<string, number[]> {
+export function sharedEvents(runs: readonly (readonly Pick<RunEvent, 'text' | 'at_s' | 'kind'>[])[]): Map<string, number[]> {
 	const first = runs.map((events) => {
 		const times = new Map<string, number>();
 		for (const { text, at_s, kind } of events) if (kind !== 'step_finished' && !times.has(text)) times.set(text, at_s);
@@ -29,7 +29,7 @@ export function sharedMoments(runs: readonly (readonly Pick<RunEvent, 'text' | '
  * The event for the typed text: an exact match, or the first that contains the text; `null` for no text, `undefined`
  * without a match.
  */
-export function momentOf(typed: string, moments: readonly string[]): string | null | undefined {
+export function matchingEvent(typed: string, moments: readonly string[]): string | null | undefined {
 	const words = typed.trim().toLowerCase();
 	if (words === '') return null;
 	return moments.find((one) => one.toLowerCase() === words) ?? moments.find((one) => one.toLowerCase().includes(words));
@@ -39,7 +39,7 @@ export function momentOf(typed: string, moments: readonly string[]): string | nu
  * All courses on one x, for a plot with a single x: minimum and maximum of each run in each bin, both at the same x, so
  * that a spike stays visible. `null` where a run has no data.
  */
-export function alignCourses(courses: readonly (Course | null)[], most = 500): { x: number[]; columns: (number | null)[][] } {
+export function alignCurves(courses: readonly (ChannelCurve | null)[], most = 500): { x: number[]; columns: (number | null)[][] } {
 	const there = courses.filter((one) => one !== null);
 	const xs = there.flatMap((one) => one.x.filter(Number.isFinite));
 	if (xs.length === 0) return { x: [], columns: courses.map(() => []) };
@@ -76,11 +76,11 @@ export function factTable(facts: readonly Record<string, unknown>[]): { name: st
  */
 export function meanRow(name: string, found: readonly (Pick<ChannelStatistics, 'mean' | 'deviation'> | undefined)[], least: number) {
 	const means = found.flatMap((one) => one?.mean ?? []);
-	const apart = Math.max(...means) - Math.min(...means);
+	const range = Math.max(...means) - Math.min(...means);
 	return {
 		name,
 		values: found.map((one) => (one?.mean == null ? '–' : one.mean.toFixed(1))),
-		differs: apart > Math.max(least, ...found.map((one) => 2 * (one?.deviation ?? 0))),
+		differs: range > Math.max(least, ...found.map((one) => 2 * (one?.deviation ?? 0))),
 	};
 }
 

@@ -1,9 +1,9 @@
 import { expect, it } from 'vitest';
 import type { Samples } from '../api/types';
-import { alignCourses, chosenChannels, courseOf, factTable, meanRow, momentOf, sharedMoments } from './align';
-import { completions } from './complete';
-import { against, differ } from './differ';
-import { readMarked, toggleMarked, withBase } from './marked';
+import { alignCurves, chosenChannels, channelCurve, factTable, meanRow, matchingEvent, sharedEvents } from './align';
+import { searchCompletions } from './searchCompletions';
+import { changeFrom, estimatesDiffer } from './differences';
+import { readComparedRuns, toggleComparedRun, withBase } from './comparedRuns';
 
 const samples = {
 	time_s: [0, 1, 2, 3],
@@ -14,36 +14,36 @@ const samples = {
 } as unknown as Samples;
 
 it('puts runs on one axis and keeps a spike', () => {
-	const course = courseOf(samples, 'torque');
-	const { x, columns } = alignCourses([course, null]);
+	const course = channelCurve(samples, 'torque');
+	const { x, columns } = alignCurves([course, null]);
 	expect(x).toEqual([0.75, 0.75, 2.25, 2.25]);
 	expect(columns[0]).toEqual([1, 2, 3, 9]);
 	expect(columns[1]).toEqual([null, null, null, null]);
 });
 
 it('leaves out a channel that a run does not have', () => {
-	expect(courseOf(samples, 'absent')).toBeNull();
-	expect(alignCourses([null])).toEqual({ x: [], columns: [[]] });
+	expect(channelCurve(samples, 'absent')).toBeNull();
+	expect(alignCurves([null])).toEqual({ x: [], columns: [[]] });
 });
 
 it('aligns by a moment that all runs have', () => {
 	const at = (at_s: number, text: string, kind = 'step_started') => ({ text, at_s, kind });
 	const first = [at(0, 'running', 'state'), at(4, 'step'), at(8, 'step 1 done, 9 rows', 'step_finished'), at(9, 'step'), at(5, 'limit')];
 	const second = [at(0, 'running', 'state'), at(2.5, 'step'), at(7, 'step 1 done, 9 rows', 'step_finished')];
-	expect([...sharedMoments([first, second])]).toEqual([['step', [4, 2.5]]]);
-	expect(courseOf(samples, 'torque', 2)!.x).toEqual([-2, -1, 0, 1]);
+	expect([...sharedEvents([first, second])]).toEqual([['step', [4, 2.5]]]);
+	expect(channelCurve(samples, 'torque', 2)!.x).toEqual([-2, -1, 0, 1]);
 });
 
 it('finds the event that was meant', () => {
 	const moments = ['step 12: hold', 'step 1', 'Limit torque'];
-	expect(['step 1', 'hold', 'limit', ' ', 'oil'].map((typed) => momentOf(typed, moments))).toEqual(['step 1', 'step 12: hold', 'Limit torque', null, undefined]);
+	expect(['step 1', 'hold', 'limit', ' ', 'oil'].map((typed) => matchingEvent(typed, moments))).toEqual(['step 1', 'step 12: hold', 'Limit torque', null, undefined]);
 });
 
 it('tells figures that differ from those that only look different', () => {
 	const given = (value: number, half: number) => ({ value, ci95: [value - half, value + half] });
-	expect(differ([given(1, 0.3), given(1.4, 0.3)])).toBe(false);
-	expect(differ([given(1, 0.3), given(1.5, 0.3)])).toBe(true);
-	expect(differ([given(1, 0.3), null, { value: 9, ci95: [null, 10] }, { value: 9 }])).toBeNull();
+	expect(estimatesDiffer([given(1, 0.3), given(1.4, 0.3)])).toBe(false);
+	expect(estimatesDiffer([given(1, 0.3), given(1.5, 0.3)])).toBe(true);
+	expect(estimatesDiffer([given(1, 0.3), null, { value: 9, ci95: [null, 10] }, { value: 9 }])).toBeNull();
 });
 
 it('shows where settings differ', () => {
@@ -68,25 +68,25 @@ it('tells means apart where the runs do not scatter as far', () => {
 });
 
 it('compares at most six runs', () => {
-	expect(readMarked('3,1,x,3')).toEqual([3, 1]);
-	expect(toggleMarked([3, 1], 1)).toEqual([3]);
-	expect(toggleMarked([1, 2, 3, 4, 5, 6], 7)).toEqual([1, 2, 3, 4, 5, 6]);
+	expect(readComparedRuns('3,1,x,3')).toEqual([3, 1]);
+	expect(toggleComparedRun([3, 1], 1)).toEqual([3]);
+	expect(toggleComparedRun([1, 2, 3, 4, 5, 6], 7)).toEqual([1, 2, 3, 4, 5, 6]);
 });
 
 it('completes the last term of a search', () => {
 	const values = { tag: ['oil', 'warm oil'], state: ['failed', 'completed'] };
-	expect(completions('joint ta', values)).toEqual(['joint tag:']);
-	expect(completions('-state:f', values)).toEqual(['-state:failed']);
-	expect(completions('tag:', values)).toEqual(['tag:oil', 'tag:"warm oil"']);
-	expect(completions('tag:oil', values)).toEqual([]);
+	expect(searchCompletions('joint ta', values)).toEqual(['joint tag:']);
+	expect(searchCompletions('-state:f', values)).toEqual(['-state:failed']);
+	expect(searchCompletions('tag:', values)).toEqual(['tag:oil', 'tag:"warm oil"']);
+	expect(searchCompletions('tag:oil', values)).toEqual([]);
 });
 
 it('holds the others against the base, which comes first', () => {
 	expect(withBase([3, 1, 2], 2)).toEqual([2, 3, 1]);
-	expect(against({ value: -2 }, { value: -1.5 })).toBe('+25 %');
-	expect(against({ value: 4 }, { value: 3.9 })).toBe('−2.5 %');
-	expect(against({ value: 0.1, ci95: [-0.1, 0.3] }, { value: 0.4 }, 1000)).toBe('+300');
-	expect([against(null, { value: 1 }), against({ value: 0 }, { value: 1 })]).toEqual(['', '']);
+	expect(changeFrom({ value: -2 }, { value: -1.5 })).toBe('+25 %');
+	expect(changeFrom({ value: 4 }, { value: 3.9 })).toBe('−2.5 %');
+	expect(changeFrom({ value: 0.1, ci95: [-0.1, 0.3] }, { value: 0.4 }, 1000)).toBe('+300');
+	expect([changeFrom(null, { value: 1 }), changeFrom({ value: 0 }, { value: 1 })]).toEqual(['', '']);
 });
 
 it('compares the channels that the address names, or a torque', () => {

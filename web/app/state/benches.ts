@@ -1,4 +1,4 @@
 /** The list with one updated bench, in the order of the daemon. */
-export function renewed<B extends { name: string }>(benches: readonly B[], bench: B): B[] {
+export function withBench<B extends { name: string }>(benches: readonly B[], bench: B): B[] {
 	return benches.some(({ name }) => name === bench.name) ? benches.map((one) => (one.name === bench.name ? bench : one)) : [...benches, bench];
 }

@@ -5,7 +5,7 @@ export interface Key {
 	/** The value of `KeyboardEvent.key`. */
 	key: string;
 	/** Description for the help sheet. */
-	does: string;
+	description: string;
 	run: () => void;
 }
 

@@ -1,12 +1,12 @@
 import { api } from '../api/client';
 import { connectLive } from '../api/live';
-import { asRefusal } from '../api/problem';
+import { toApiError } from '../api/apiError';
 import type { Bench, Channel, LiveMessage, Progress, RunEvent, RunState } from '../api/types';
 import type { Frame } from '../api/frame';
-import { chase } from '../plot/chase';
-import { Tape } from '../plot/tape';
-import { renewed } from './benches';
-import { entry } from './entry.svelte';
+import { smoothFollow } from '../plot/smoothFollow';
+import { SampleBuffer } from '../plot/sampleBuffer';
+import { withBench } from './benches';
+import { tokenRequest } from './tokenRequest.svelte';
 import { role } from './role.svelte';
 
 /** After this time without a message the page sends a request. */
@@ -14,7 +14,7 @@ const QUIET_MS = 1500;
 /** After this time without a message the contact is lost. */
 export const STALE_MS = 4000;
 
-const calm = matchMedia('(prefers-reduced-motion: reduce)');
+const reducedMotion = matchMedia('(prefers-reduced-motion: reduce)');
 
 /** The last state from the daemon, which all pages display. */
 class LabState {
@@ -22,7 +22,7 @@ class LabState {
 	progress: Record<number, Progress> = $state({});
 	runStates: Record<number, RunState> = $state({});
 	events: RunEvent[] = $state.raw([]);
-	/** The run of `events` and `tape`. */
+	/** The run of `events` and `samples`. */
 	liveRun: number | null = $state(null);
 	channels: Channel[] = $state.raw([]);
 	/** Incremented with every frame, so that plots redraw. */
@@ -34,11 +34,11 @@ class LabState {
 	effects = $state(0);
 	/** Incremented when an autopilot makes a step or ends. */
 	autopilots = $state(0);
-	line = $state(false);
-	heard_ms = $state(performance.now());
+	connected = $state(false);
+	lastMessage_ms = $state(performance.now());
 	now_ms = $state(performance.now());
 	/** Samples of the active run. The columns grow in place; `frames` signals changes. */
-	tape: Tape | null = $state.raw(null);
+	samples: SampleBuffer | null = $state.raw(null);
 	/** End time of plots that follow the run [s]. */
 	shown_s: number | null = $state(null);
 
@@ -46,80 +46,80 @@ class LabState {
 	chosen: string | null = $state(null);
 	bench: Bench | null = $derived(this.benches?.find((bench) => bench.name === this.chosen) ?? this.benches?.[0] ?? null);
 	/** Milliseconds since the last message of the daemon. */
-	silence_ms = $derived(Math.max(0, this.now_ms - this.heard_ms));
-	lost = $derived(!this.line || this.silence_ms > STALE_MS);
+	silence_ms = $derived(Math.max(0, this.now_ms - this.lastMessage_ms));
+	contactLost = $derived(!this.connected || this.silence_ms > STALE_MS);
 
 	/**
 	 * Times of the last report on a bench and of the last samples. They give the age of the displayed data, on every
 	 * page.
 	 */
-	readonly told_ms = new WeakMap<Bench, number>();
-	framed_ms = 0;
+	readonly reported_ms = new WeakMap<Bench, number>();
+	lastFrame_ms = 0;
 
 	/** Stores a bench from a message of the daemon. */
-	put(bench: Bench): void {
-		this.told_ms.set(bench, performance.now());
-		this.benches = renewed(this.benches ?? [], bench);
+	updateBench(bench: Bench): void {
+		this.reported_ms.set(bench, performance.now());
+		this.benches = withBench(this.benches ?? [], bench);
 	}
 
 	start(): () => void {
-		const hangUp = connectLive({
-			message: (message) => this.take(message),
-			frame: (frame) => this.takeFrame(frame),
-			line: (up) => this.setLine(up),
+		const disconnect = connectLive({
+			message: (message) => this.handleMessage(message),
+			frame: (frame) => this.handleFrame(frame),
+			connected: (up) => this.setConnected(up),
 		});
 		const clock = setInterval(() => this.tick(), 250);
-		void this.ask();
+		void this.requestBenches();
 		return () => {
-			hangUp();
+			disconnect();
 			clearInterval(clock);
-			this.line = false;
+			this.connected = false;
 		};
 	}
 
 	private tick(): void {
 		this.now_ms = performance.now();
-		if (this.now_ms - Math.max(this.heard_ms, this.asked_ms) > QUIET_MS && !this.asking) void this.ask();
+		if (this.now_ms - Math.max(this.lastMessage_ms, this.lastRequest_ms) > QUIET_MS && !this.isRequesting) void this.requestBenches();
 	}
 
-	private asking = false;
-	private asked_ms = 0;
+	private isRequesting = false;
+	private lastRequest_ms = 0;
 
-	private async ask(): Promise<void> {
-		this.asking = true;
-		this.asked_ms = performance.now();
+	private async requestBenches(): Promise<void> {
+		this.isRequesting = true;
+		this.lastRequest_ms = performance.now();
 		try {
 			const benches = await api.benches(AbortSignal.timeout(2500));
-			this.hear();
-			for (const bench of benches) this.told_ms.set(bench, this.heard_ms);
+			this.noteMessage();
+			for (const bench of benches) this.reported_ms.set(bench, this.lastMessage_ms);
 			this.benches = benches;
 		} catch (failure) {
 			// The age of the data shows a missing answer.
-			entry.wanted ||= asRefusal(failure).status === 401;
+			tokenRequest.isOpen ||= toApiError(failure).status === 401;
 		}
-		this.asking = false;
+		this.isRequesting = false;
 	}
 
-	private hear(): void {
-		this.heard_ms = performance.now();
-		this.now_ms = this.heard_ms;
+	private noteMessage(): void {
+		this.lastMessage_ms = performance.now();
+		this.now_ms = this.lastMessage_ms;
 	}
 
-	private setLine(up: boolean): void {
-		this.line = up;
+	private setConnected(up: boolean): void {
+		this.connected = up;
 		if (!up) return;
 		// The daemon may have restarted without the active run, so the former states are discarded.
 		this.runStates = {};
 		this.progress = {};
-		void this.ask();
-		void api.health().then(({ access }) => (role.reads = access === 'read'), () => {});
+		void this.requestBenches();
+		void api.health().then(({ access }) => (role.isReadOnly = access === 'read'), () => {});
 	}
 
-	private take(message: LiveMessage): void {
-		this.hear();
+	private handleMessage(message: LiveMessage): void {
+		this.noteMessage();
 		switch (message.type) {
 			case 'bench': {
-				this.put(message.bench);
+				this.updateBench(message.bench);
 				break;
 			}
 			case 'state':
@@ -129,15 +129,15 @@ class LabState {
 				this.progress[message.run] = message.progress;
 				break;
 			case 'event':
-				this.follow(message.run);
+				this.resetForRun(message.run);
 				if (this.events.some((event) => event.sequence === message.event.sequence)) break;
 				this.events = [...this.events, message.event];
 				break;
 			case 'channels':
-				this.follow(message.run);
+				this.resetForRun(message.run);
 				this.channels = message.channels;
-				if (this.tape?.names.join() !== message.channels.map((c) => c.name).join()) {
-					this.tape = new Tape(message.channels.map((channel) => channel.name));
+				if (this.samples?.names.join() !== message.channels.map((c) => c.name).join()) {
+					this.samples = new SampleBuffer(message.channels.map((channel) => channel.name));
 				}
 				break;
 			case 'model':
@@ -153,26 +153,26 @@ class LabState {
 		}
 	}
 
-	private follow(run: number): void {
+	private resetForRun(run: number): void {
 		if (run === this.liveRun) return;
 		this.liveRun = run;
 		this.events = [];
-		this.tape = null;
+		this.samples = null;
 		this.shown_s = null;
 		this.dropped = 0;
 	}
 
 	private drawing = false;
-	private fresh = false;
+	private hasNewFrame = false;
 	private drawn_ms = 0;
 
 	/** Plots are drawn once per image of the screen, at any rate of frames, and never in a hidden tab. */
-	private takeFrame(frame: Frame): void {
-		this.hear();
-		this.framed_ms = this.heard_ms;
-		this.tape?.push(frame);
+	private handleFrame(frame: Frame): void {
+		this.noteMessage();
+		this.lastFrame_ms = this.lastMessage_ms;
+		this.samples?.push(frame);
 		this.dropped = frame.dropped;
-		this.fresh = true;
+		this.hasNewFrame = true;
 		if (this.drawing) return;
 		this.drawing = true;
 		this.drawn_ms = performance.now();
@@ -184,12 +184,12 @@ class LabState {
 	 * frames.
 	 */
 	private readonly draw = (now_ms: number): void => {
-		const newest_s = this.tape?.last_s ?? null;
-		const passed_ms = calm.matches ? Infinity : Math.max(0, now_ms - this.drawn_ms);
-		this.shown_s = newest_s === null ? null : chase(this.shown_s, newest_s, passed_ms);
+		const newest_s = this.samples?.last_s ?? null;
+		const passed_ms = reducedMotion.matches ? Infinity : Math.max(0, now_ms - this.drawn_ms);
+		this.shown_s = newest_s === null ? null : smoothFollow(this.shown_s, newest_s, passed_ms);
 		this.drawn_ms = now_ms;
-		if (this.fresh) this.frames += 1;
-		this.fresh = false;
+		if (this.hasNewFrame) this.frames += 1;
+		this.hasNewFrame = false;
 		this.drawing = this.shown_s !== newest_s;
 		if (this.drawing) requestAnimationFrame(this.draw);
 	};

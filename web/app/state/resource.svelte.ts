@@ -1,9 +1,9 @@
 import { untrack } from 'svelte';
-import { type Refusal, asRefusal } from '../api/problem';
+import { type ApiError, toApiError } from '../api/apiError';
 
 export interface Resource<T> {
 	readonly data: T | undefined;
-	readonly error: Refusal | null;
+	readonly error: ApiError | null;
 	readonly loading: boolean;
 	reload: () => void;
 	/** Stores a newer value, such as the answer to a change. */
@@ -16,7 +16,7 @@ export interface Resource<T> {
  */
 export function resource<K, T>(key: () => K | null, load: (key: K, signal: AbortSignal) => Promise<T>): Resource<T> {
 	let data: T | undefined = $state.raw();
-	let error: Refusal | null = $state.raw(null);
+	let error: ApiError | null = $state.raw(null);
 	let loading = $state(false);
 	let turn = $state(0);
 
@@ -39,7 +39,7 @@ export function resource<K, T>(key: () => K | null, load: (key: K, signal: Abort
 			},
 			(failure: unknown) => {
 				if (abort.signal.aborted) return;
-				error = asRefusal(failure);
+				error = toApiError(failure);
 				loading = false;
 			},
 		);

@@ -1,4 +1,4 @@
-const KEPT = 'jointbench.role';
+const STORAGE_KEY = 'jointbench.role';
 
 /**
  * A protection against accidental clicks, stored in the browser: an observer sees everything and can stop, but cannot
@@ -6,17 +6,17 @@ const KEPT = 'jointbench.role';
  * observer.
  */
 class Role {
-	private chosen = $state(globalThis.localStorage?.getItem(KEPT) === 'observer');
+	private chosen = $state(globalThis.localStorage?.getItem(STORAGE_KEY) === 'observer');
 	/** The token is read-only. */
-	reads = $state(false);
-	observing = $derived(this.reads || this.chosen);
+	isReadOnly = $state(false);
+	isObserver = $derived(this.isReadOnly || this.chosen);
 
 	/** Why nothing can be started or changed. */
-	barred = $derived(this.reads ? 'your token only reads: look, and stop' : 'this browser only observes: press o to operate');
+	observerReason = $derived(this.isReadOnly ? 'your token only reads: look, and stop' : 'this browser only observes: press o to operate');
 
 	toggle(): void {
 		this.chosen = !this.chosen;
-		localStorage.setItem(KEPT, this.chosen ? 'observer' : 'operator');
+		localStorage.setItem(STORAGE_KEY, this.chosen ? 'observer' : 'operator');
 	}
 }
 

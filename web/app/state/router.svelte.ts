@@ -1,4 +1,4 @@
-import type { Hand } from '../plot/gestures';
+import type { Gesture } from '../plot/gestures';
 import { type Route, parseRoute, withQuery } from './route';
 
 /**
@@ -17,7 +17,7 @@ class Router {
 	route: Route = $derived(parseRoute(this.path));
 	query = $derived(new URLSearchParams(this.search));
 
-	private late: ReturnType<typeof setTimeout> | undefined;
+	private pendingWrite: ReturnType<typeof setTimeout> | undefined;
 	private replaced_ms = Number.NEGATIVE_INFINITY;
 
 	constructor() {
@@ -42,7 +42,7 @@ class Router {
 		this.search = next;
 		const wait_ms = this.replaced_ms + REST_MS - performance.now();
 		if (wait_ms <= 0) this.write();
-		else this.late ??= setTimeout(() => this.write(), wait_ms);
+		else this.pendingWrite ??= setTimeout(() => this.write(), wait_ms);
 	}
 
 	private moved_ms = Number.NEGATIVE_INFINITY;
@@ -51,7 +51,7 @@ class Router {
 	 * Changes the range of a plot. Each gesture is one step in the browser's history, and a double click returns one
 	 * step.
 	 */
-	look(changes: Record<string, string | null>, hand: Hand): void {
+	setRange(changes: Record<string, string | null>, hand: Gesture): void {
 		if (hand === 'back' && history.state === STEP) return history.back();
 		const goes_on = hand !== 'box' && performance.now() - this.moved_ms < PAUSE_MS;
 		this.moved_ms = performance.now();
@@ -63,23 +63,23 @@ class Router {
 	}
 
 	/** A double click returns at most to this point. */
-	root(): void {
+	clearRangeHistory(): void {
 		this.write();
 		history.replaceState(null, '');
 	}
 
 	/** Writes the present view to the address. */
 	private write(): void {
-		clearTimeout(this.late);
-		this.late = undefined;
+		clearTimeout(this.pendingWrite);
+		this.pendingWrite = undefined;
 		if (location.search === this.search || location.pathname !== this.path) return;
 		history.replaceState(history.state, '', this.path + this.search);
 		this.replaced_ms = performance.now();
 	}
 
 	private read(): void {
-		clearTimeout(this.late);
-		this.late = undefined;
+		clearTimeout(this.pendingWrite);
+		this.pendingWrite = undefined;
 		const left = this.path;
 		this.path = location.pathname;
 		this.search = location.search;

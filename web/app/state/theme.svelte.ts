@@ -1,10 +1,10 @@
 export type Theme = 'light' | 'dark';
 
 const dark = matchMedia('(prefers-color-scheme: dark)');
-const KEPT = 'jointbench.theme';
+const STORAGE_KEY = 'jointbench.theme';
 
 function read(): Theme {
-	const chosen = localStorage.getItem(KEPT);
+	const chosen = localStorage.getItem(STORAGE_KEY);
 	if (chosen === 'light' || chosen === 'dark') return chosen;
 	return dark.matches ? 'dark' : 'light';
 }
@@ -20,7 +20,7 @@ class ThemeState {
 
 	toggle(): void {
 		const next = this.now === 'dark' ? 'light' : 'dark';
-		localStorage.setItem(KEPT, next);
+		localStorage.setItem(STORAGE_KEY, next);
 		this.put(next);
 	}
 

@@ -1,29 +1,35 @@
-export type Mood = 'good' | 'busy' | 'warn' | 'bad' | 'calm';
+export type Tone = 'good' | 'busy' | 'warn' | 'bad' | 'calm';
+
+export interface StatusLabel {
+	label: string;
+	icon: string;
+	tone: Tone;
+}
 
 /** Every state as word, icon and colour; an unknown state is displayed as a word. */
-const STATES: Record<string, { word: string; icon: string; mood: Mood }> = {
-	idle: { word: 'IDLE', icon: '○', mood: 'good' },
-	queued: { word: 'QUEUED', icon: '◌', mood: 'calm' },
-	arming: { word: 'ARMING', icon: '◔', mood: 'busy' },
-	running: { word: 'RUNNING', icon: '▶', mood: 'busy' },
-	paused: { word: 'PAUSED', icon: 'Ⅱ', mood: 'warn' },
-	securing: { word: 'SECURING', icon: '◑', mood: 'warn' },
-	completed: { word: 'DONE', icon: '✓', mood: 'good' },
-	stopped: { word: 'STOPPED', icon: '■', mood: 'warn' },
-	aborted: { word: 'ABORTED', icon: '■', mood: 'bad' },
-	failed: { word: 'FAILED', icon: '✕', mood: 'bad' },
-	interrupted: { word: 'INTERRUPTED', icon: '⚡', mood: 'bad' },
-	fault: { word: 'FAULT', icon: '✕', mood: 'bad' },
-	offline: { word: 'OFFLINE', icon: '⊘', mood: 'bad' },
-	blocked: { word: 'BLOCKED', icon: '⊘', mood: 'bad' },
-	no_contact: { word: 'NO CONTACT', icon: '⊘', mood: 'bad' },
-	safe_verified: { word: 'safe, verified', icon: '✓', mood: 'good' },
-	safe_commanded: { word: 'safe, not read back', icon: '◔', mood: 'warn' },
-	unsafe_unknown: { word: 'NOT KNOWN SAFE', icon: '⚠', mood: 'bad' },
+const STATES: Record<string, StatusLabel> = {
+	idle: { label: 'IDLE', icon: '○', tone: 'good' },
+	queued: { label: 'QUEUED', icon: '◌', tone: 'calm' },
+	arming: { label: 'ARMING', icon: '◔', tone: 'busy' },
+	running: { label: 'RUNNING', icon: '▶', tone: 'busy' },
+	paused: { label: 'PAUSED', icon: 'Ⅱ', tone: 'warn' },
+	securing: { label: 'SECURING', icon: '◑', tone: 'warn' },
+	completed: { label: 'DONE', icon: '✓', tone: 'good' },
+	stopped: { label: 'STOPPED', icon: '■', tone: 'warn' },
+	aborted: { label: 'ABORTED', icon: '■', tone: 'bad' },
+	failed: { label: 'FAILED', icon: '✕', tone: 'bad' },
+	interrupted: { label: 'INTERRUPTED', icon: '⚡', tone: 'bad' },
+	fault: { label: 'FAULT', icon: '✕', tone: 'bad' },
+	offline: { label: 'OFFLINE', icon: '⊘', tone: 'bad' },
+	blocked: { label: 'BLOCKED', icon: '⊘', tone: 'bad' },
+	no_contact: { label: 'NO CONTACT', icon: '⊘', tone: 'bad' },
+	safe_verified: { label: 'safe, verified', icon: '✓', tone: 'good' },
+	safe_commanded: { label: 'safe, not read back', icon: '◔', tone: 'warn' },
+	unsafe_unknown: { label: 'NOT KNOWN SAFE', icon: '⚠', tone: 'bad' },
 };
 
-export function sayState(state: string): { word: string; icon: string; mood: Mood } {
-	return STATES[state] ?? { word: state.replaceAll('_', ' ').toUpperCase(), icon: '?', mood: 'warn' };
+export function stateLabel(state: string): StatusLabel {
+	return STATES[state] ?? { label: state.replaceAll('_', ' ').toUpperCase(), icon: '?', tone: 'warn' };
 }
 
 const FINAL = new Set(['completed', 'stopped', 'aborted', 'failed', 'interrupted']);

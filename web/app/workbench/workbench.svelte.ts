@@ -1,35 +1,35 @@
 import { untrack } from 'svelte';
 import { api } from '../api/client';
-import { type Refusal, asRefusal } from '../api/problem';
+import { type ApiError, toApiError } from '../api/apiError';
 import type { Exclusion, Model, Run } from '../api/types';
-import { change, quantity } from '../format/number';
-import { words } from '../format/label';
+import { formatChange, formatQuantity } from '../format/number';
+import { idText } from '../format/label';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
-import { readMarked } from '../runs/marked';
+import { readComparedRuns } from '../runs/comparedRuns';
 import { role } from '../state/role.svelte';
 import { router } from '../state/router.svelte';
 import { reveal } from '../ui/reveal';
 import { isFinal } from '../ui/states';
-import { type Side, inOneTurn, withMore } from '../residual/points';
-import { selected } from '../residual/selected';
-import { usualAxes } from './ranked';
+import { type DirectionFilter, foldPositions, withDerivedAxes } from '../residual/points';
+import { regionSamples } from '../residual/regionSamples';
+import { defaultAxes } from './rankedAxes';
 import { readRegion } from './region';
-import { WORTH, childWith, gain, isAside, sameData, undecided, worded } from './tree';
+import { MIN_GAIN, childWith, gain, isTrial, sameData, undecided, gainText } from './versionTree';
 
 /** The model of one run in the workbench. Call during component initialization. */
 export function openWorkbench(id: number) {
 	let busy: string | null = $state(null);
 	let notice: { text: string; good: boolean } | null = $state.raw(null);
-	let refused: Refusal | null = $state.raw(null);
+	let error: ApiError | null = $state.raw(null);
 	let undone: number[] = $state.raw([]);
 
 	const run = resource(
-		() => `${id} ${lab.runStates[id] ?? ''} ${lab.line}`,
+		() => `${id} ${lab.runStates[id] ?? ''} ${lab.connected}`,
 		(_key, signal) => api.run(id, signal),
 	);
 	const models = resource(
-		() => `${id} ${lab.models} ${lab.line}`,
+		() => `${id} ${lab.models} ${lab.connected}`,
 		(_key, signal) => api.models(id, signal),
 	);
 	const effects = resource(
@@ -37,66 +37,66 @@ export function openWorkbench(id: number) {
 		(_key, signal) => api.effects(run.data?.kind ?? '', signal),
 	);
 	/** Runs of the same kind. */
-	const alike = resource(
+	const similarRuns = resource(
 		() => (run.data ? `kind:${run.data.kind}` : null),
 		(search, signal) => api.runs({ limit: 100, search }, signal),
 	);
 	const versions: Model[] = $derived(models.data ?? []);
-	const asked = $derived(router.query.get('model'));
-	const named = $derived(versions.find((one) => String(one.id) === asked));
+	const requestedVersion = $derived(router.query.get('model'));
+	const named = $derived(versions.find((one) => String(one.id) === requestedVersion));
 	/** A version made elsewhere may be in the address before it is in the list: the list is requested once more. */
-	let sought: string | null = $state(null);
+	let reloadedFor: string | null = $state(null);
 	$effect(() => {
-		if (models.data && asked !== null && !named && asked !== sought) untrack(() => ((sought = asked), models.reload()));
+		if (models.data && requestedVersion !== null && !named && requestedVersion !== reloadedFor) untrack(() => ((reloadedFor = requestedVersion), models.reload()));
 	});
-	const awaited = $derived(asked !== null && !named && (asked !== sought || models.loading));
+	const isAwaited = $derived(requestedVersion !== null && !named && (requestedVersion !== reloadedFor || models.loading));
 	/** While the version in the address loads, the former version stays; no other version replaces it. */
 	let former: Model | null = null;
 	const model: Model | null = $derived(
-		(former = awaited ? former : (named ?? versions.findLast((one) => !isAside(one)) ?? versions.at(-1) ?? null)),
+		(former = isAwaited ? former : (named ?? versions.findLast((one) => !isTrial(one)) ?? versions.at(-1) ?? null)),
 	);
 	/** Writes the version to the address, so that a version made elsewhere does not replace it. */
 	$effect(() => {
 		if (model && !router.query.has('model')) untrack(() => router.set({ model: model.id }));
 	});
 	/** A second version for comparison: an effect under trial, or any version. */
-	const other: Model | null = $derived(
+	const comparison: Model | null = $derived(
 		versions.find((one) => String(one.id) === router.query.get('with') && one.id !== model?.id) ?? null,
 	);
-	const load = async (version: number, signal: AbortSignal) => ({ version, set: inOneTurn(withMore(await api.residuals(version, signal))) });
+	const load = async (version: number, signal: AbortSignal) => ({ version, set: foldPositions(withDerivedAxes(await api.residuals(version, signal))) });
 	const residuals = resource(() => model?.id ?? null, load);
-	const otherResiduals = resource(() => other?.id ?? null, load);
-	const side = $derived((router.query.get('side') ?? 'both') as Side);
+	const otherResiduals = resource(() => comparison?.id ?? null, load);
+	const side = $derived((router.query.get('side') ?? 'both') as DirectionFilter);
 	const ramps = $derived(router.query.has('ramps'));
 	/** Text first: a zoom changes the address too, and must not cause a new selection. */
 	const regionText = $derived(router.query.get('region'));
 	const region = $derived(readRegion(regionText));
-	const chosen = $derived(residuals.data ? selected(residuals.data.set, region, side, ramps) : null);
-	const usual = $derived(residuals.data ? usualAxes(residuals.data.set, run.data?.kind) : []);
+	const selectedSamples = $derived(residuals.data ? regionSamples(residuals.data.set, region, side, ramps) : null);
+	const defaultAxisNames = $derived(residuals.data ? defaultAxes(residuals.data.set, run.data?.kind) : []);
 	const diagnosis = resource(
 		() => (model ? `${model.id} ${lab.effects}` : null),
 		(_key, signal) => api.diagnose(model?.id ?? 0, signal),
 	);
 
 	/** All data that determines the layout has arrived once. Before that, nothing that it would move is displayed. */
-	let laid = $state(false);
+	let isLaidOut = $state(false);
 	$effect(() => {
-		laid ||= model !== null && [run, effects, residuals, diagnosis, alike].every((one) => one.data ?? one.error);
+		isLaidOut ||= model !== null && [run, effects, residuals, diagnosis, similarRuns].every((one) => one.data ?? one.error);
 	});
 
-	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? words(effect);
+	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? idText(effect);
 
 	/** One fit at a time; its result is a version. */
-	async function fitted(what: string, fit: () => Promise<Model>): Promise<Model | null> {
+	async function runFit(what: string, fit: () => Promise<Model>): Promise<Model | null> {
 		if (busy !== null) return null;
 		busy = what;
-		refused = null;
+		error = null;
 		try {
 			const made = await fit();
 			models.put([...versions.filter((one) => one.id !== made.id), made]);
 			return made;
 		} catch (failure) {
-			refused = asRefusal(failure);
+			error = toApiError(failure);
 			return null;
 		} finally {
 			busy = null;
@@ -107,99 +107,99 @@ export function openWorkbench(id: number) {
 	async function version(set: string[], parent: Model, what: string, { anew = false, tried = false } = {}): Promise<Model | null> {
 		if (busy !== null) return null;
 		const known = anew ? undefined : childWith(versions, parent, set);
-		return known ?? fitted(what, () => api.fit({ run: id, effects: set, parent: parent.id, more_runs: parent.more_runs, tried }));
+		return known ?? runFit(what, () => api.fit({ run: id, effects: set, parent: parent.id, more_runs: parent.more_runs, tried }));
 	}
 
 	async function refit(set: string[], parent: Model, what: string, anew = false): Promise<void> {
 		const next = await version(set, parent, what, { anew });
 		if (!next) return;
 		// A version without gain is displayed for comparison; the user keeps or drops it.
-		if (next.idle && parent.id === model?.id) return stand(next);
+		if (next.idle && parent.id === model?.id) return showComparison(next);
 		await show(next, parent);
 	}
 
 	async function show(next: Model, parent: Model | null): Promise<void> {
-		if (isAside(next) && !role.observing && !(await fitted('Keeping', () => api.keepModel(next.id)))) return;
+		if (isTrial(next) && !role.isObserver && !(await runFit('Keeping', () => api.keepModel(next.id)))) return;
 		router.set({ model: next.id, with: null, region: null, side: null, zoom: null }, parent === null ? 'replace' : 'push');
 		undone = [];
-		notice = parent ? told(parent, next) : null;
-		if (notice?.good === false) void reveal('said');
+		notice = parent ? changeNotice(parent, next) : null;
+		if (notice?.good === false) void reveal('workbench-status');
 	}
 
 	/** Fits with the effect and compares the result with the current version, which stays displayed. */
-	async function attempt(effect: string): Promise<void> {
+	async function tryEffect(effect: string): Promise<void> {
 		const from = model;
 		if (!from) return;
 		const next = await version([...from.effects, effect], from, `Trying ${titleOf(effect)}`, { tried: true });
-		if (next) stand(next);
+		if (next) showComparison(next);
 	}
 
-	function stand(next: Model): void {
-		beside(next.id);
+	function showComparison(next: Model): void {
+		compareWith(next.id);
 		void reveal('beside');
 	}
 
 	/** Displays a version that was made meanwhile, starting at its verdict. */
-	function arrive(version: number, text: string): void {
+	function showNewVersion(version: number, text: string): void {
 		router.set({ model: version, with: null, region: null, side: null, zoom: null }, 'push');
 		notice = { text, good: true };
 		void reveal('verdict');
 	}
 
-	const beside = (version: number | null) => router.set({ with: version }, 'push');
+	const compareWith = (version: number | null) => router.set({ with: version }, 'push');
 
 	/**
 	 * The change in the words of a comparison. For a trial, only the undetermined results, because the comparison shows
 	 * the rest.
 	 */
-	function told(before: Model, after: Model, kept = true): { text: string; good: boolean } | null {
+	function changeNotice(before: Model, after: Model, isKept = true): { text: string; good: boolean } | null {
 		if (!sameData(before, after)) return null;
 		const share = gain(before, after);
-		const open = share > WORTH ? undecided(before, after) : [];
-		if (!kept && open.length === 0) return null;
-		const stays = after.added.length === 0 && Math.abs(share) <= WORTH;
-		const [was, is] = [before, after].map((one) => quantity(one.validation_rms, one.fit.unit));
-		const said = `Validation error ${was} → ${is}: ${stays ? '≈ as before' : worded(share)} (${change(-share)})`;
-		if (open.length > 0) return { text: `${said}, but this data does not decide ${open.join(', ')}: ${kept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
-		const good = stays || share > WORTH;
-		return { text: `${said}.${good ? '' : ' Undo with z.'}`, good };
+		const open = share > MIN_GAIN ? undecided(before, after) : [];
+		if (!isKept && open.length === 0) return null;
+		const stays = after.added.length === 0 && Math.abs(share) <= MIN_GAIN;
+		const [was, is] = [before, after].map((one) => formatQuantity(one.validation_rms, one.fit.unit));
+		const errorText = `Validation error ${was} → ${is}: ${stays ? '≈ as before' : gainText(share)} (${formatChange(-share)})`;
+		if (open.length > 0) return { text: `${errorText}, but this data does not decide ${open.join(', ')}: ${isKept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
+		const good = stays || share > MIN_GAIN;
+		return { text: `${errorText}.${good ? '' : ' Undo with z.'}`, good };
 	}
 
-	const standing = $derived.by(() => {
+	const currentNotice = $derived.by(() => {
 		const before = model?.added.length ? versions.find((one) => one.id === model.parent) : undefined;
-		const said = before && model ? told(before, model) : null;
-		return said?.good ? null : said;
+		const change = before && model ? changeNotice(before, model) : null;
+		return change?.good ? null : change;
 	});
-	const trying = $derived(other !== null && other.parent === model?.id && isAside(other));
+	const isTrying = $derived(comparison !== null && comparison.parent === model?.id && isTrial(comparison));
 	/** Suggestions from contradictory columns are not reliable. */
-	const contradicts = $derived(diagnosis.data?.undecided_reason === 'contradictory_columns');
+	const hasContradictoryColumns = $derived(diagnosis.data?.undecided_reason === 'contradictory_columns');
 
 	/** Fits the same effects to other data; without `excluded` it has the same exclusions as this version. */
-	async function refitOn(more: number[], what: string, excluded?: Exclusion[], told?: string): Promise<void> {
+	async function refitOn(more: number[], what: string, excluded?: Exclusion[], noticeText?: string): Promise<void> {
 		const from = model;
-		const made = from && (await fitted(what, () => api.fit({ run: id, effects: from.effects, parent: from.id, more_runs: more, exclude: excluded })));
+		const made = from && (await runFit(what, () => api.fit({ run: id, effects: from.effects, parent: from.id, more_runs: more, exclude: excluded })));
 		if (!made) return;
 		await show(made, from);
-		if (told) notice = { text: `${told} Undo with z.`, good: true };
+		if (noticeText) notice = { text: `${noticeText} Undo with z.`, good: true };
 	}
 	const others = $derived(model?.more_runs ?? []);
 	/** Additional runs in the address: used once, afterwards the address names the version. */
-	const wanted = () => readMarked(router.query.get('more')).filter((one) => one !== id);
-	const together = (more: number[]) => `Fitting run #${[id, ...more].join(' and #')} together`;
+	const additionalRuns = () => readComparedRuns(router.query.get('more')).filter((one) => one !== id);
+	const fitText = (more: number[]) => `Fitting run #${[id, ...more].join(' and #')} together`;
 	$effect(() => {
-		const more = wanted();
+		const more = additionalRuns();
 		if (!model || busy !== null || !more.length) return;
 		const from = model;
 		untrack(() => {
 			router.set({ more: null });
 			const known = versions.find((one) => one.effects.join() === from.effects.join() && one.more_runs.join() === more.join());
 			if (known) router.set({ model: known.id });
-			else void refitOn(more, together(more));
+			else void refitOn(more, fitText(more));
 		});
 	});
-	const join = (more: number) => refitOn([...others, more], `Fitting run #${more} with the others`);
-	const leave = (less: number) => refitOn(others.filter((one) => one !== less), `Fitting without run #${less}`);
-	const refitWithout = (excluded: Exclusion[], what: string, told: string) => refitOn(others, what, excluded, told);
+	const addRun = (more: number) => refitOn([...others, more], `Fitting run #${more} with the others`);
+	const removeRun = (less: number) => refitOn(others.filter((one) => one !== less), `Fitting without run #${less}`);
+	const refitWithout = (excluded: Exclusion[], what: string, noticeText: string) => refitOn(others, what, excluded, noticeText);
 	const exclude = (stretches: Exclusion[], reason: string) =>
 		refitWithout([...(model?.excluded ?? []), ...stretches], 'Refitting without the chosen samples', `Fitted without the chosen samples (${reason}).`);
 	/** Includes the samples again that were excluded for a reason. */
@@ -216,10 +216,10 @@ export function openWorkbench(id: number) {
 	const remove = (effect: string) =>
 		model && refit(model.effects.filter((one) => one !== effect), model, `Refitting without ${titleOf(effect)}`);
 	/** Fits all runs in the address at once. If they cannot be combined, no run gets an unwanted version. */
-	async function begin(set: string[]): Promise<void> {
-		const more = wanted();
+	async function fitFirst(set: string[]): Promise<void> {
+		const more = additionalRuns();
 		router.set({ more: null });
-		const made = await fitted(more.length ? together(more) : 'Fitting the first model', () => api.fit({ run: id, effects: set, more_runs: more }));
+		const made = await runFit(more.length ? fitText(more) : 'Fitting the first model', () => api.fit({ run: id, effects: set, more_runs: more }));
 		if (made) await show(made, null);
 		else router.set({ more: more.join() || null });
 	}
@@ -240,9 +240,9 @@ export function openWorkbench(id: number) {
 	}
 
 	const baseline: string[] = $derived(baselineOf(run.data));
-	const fresh = $derived(models.data !== undefined && versions.length === 0 && run.data !== undefined && run.data.rows > 0);
+	const isNew = $derived(models.data !== undefined && versions.length === 0 && run.data !== undefined && run.data.rows > 0);
 	$effect(() => {
-		if (fresh && run.data && isFinal(run.data.state) && baseline.length > 0 && !refused) untrack(() => void begin(baseline));
+		if (isNew && run.data && isFinal(run.data.state) && baseline.length > 0 && !error) untrack(() => void fitFirst(baseline));
 	});
 
 	return {
@@ -255,21 +255,21 @@ export function openWorkbench(id: number) {
 		diagnosis,
 		add,
 		addOwn,
-		arrive,
-		attempt,
-		beside,
+		showNewVersion,
+		tryEffect,
+		compareWith,
 		exclude,
 		include,
 		/** Makes the comparison version the current one. */
-		keep: () => other && model && void show(other, model),
+		keep: () => comparison && model && void show(comparison, model),
 		remove,
-		begin,
-		join,
-		leave,
+		fitFirst,
+		addRun,
+		removeRun,
 		undo,
 		redo,
-		get alike() {
-			return (alike.data?.runs ?? []).filter((one) => one.rows > 0 && isFinal(one.state));
+		get similarRuns() {
+			return (similarRuns.data?.runs ?? []).filter((one) => one.rows > 0 && isFinal(one.state));
 		},
 		get versions() {
 			return versions;
@@ -277,22 +277,22 @@ export function openWorkbench(id: number) {
 		get model() {
 			return model;
 		},
-		get other() {
-			return other;
+		get comparison() {
+			return comparison;
 		},
 		/** File names of the current version. */
-		get file() {
+		get filePrefix() {
 			return `run-${id}-model-${model?.id}`;
 		},
 		/** Residuals of the comparison version, if both versions have the same samples. */
-		get otherSet() {
-			const [mine, theirs] = [residuals.data, otherResiduals.data];
-			const alike = theirs?.version === other?.id && theirs?.set.error.length === mine?.set.error.length;
-			return other && alike ? (theirs?.set ?? null) : null;
+		get comparisonSet() {
+			const [current, compared] = [residuals.data, otherResiduals.data];
+			const alike = compared?.version === comparison?.id && compared?.set.error.length === current?.set.error.length;
+			return comparison && alike ? (compared?.set ?? null) : null;
 		},
 		/** The comparison version is a trial of an effect on the current version. */
-		get trying() {
-			return trying;
+		get isTrying() {
+			return isTrying;
 		},
 		get side() {
 			return side;
@@ -304,8 +304,8 @@ export function openWorkbench(id: number) {
 			return region;
 		},
 		/** The samples of the region, one flag each: the same in every plot. */
-		get chosen() {
-			return chosen;
+		get selectedSamples() {
+			return selectedSamples;
 		},
 		get baseline() {
 			return baseline;
@@ -313,39 +313,39 @@ export function openWorkbench(id: number) {
 		get busy() {
 			return busy;
 		},
-		get usual() {
-			return usual;
+		get defaultAxisNames() {
+			return defaultAxisNames;
 		},
-		get laid() {
-			return laid;
+		get isLaidOut() {
+			return isLaidOut;
 		},
 		/** The last action or trial, else a note that the last step had no gain. */
 		get notice() {
-			return trying && model && other ? told(model, other, false) : (notice ?? standing);
+			return isTrying && model && comparison ? changeNotice(model, comparison, false) : (notice ?? currentNotice);
 		},
 		get error() {
-			return refused;
+			return error;
 		},
 		/** The number of a version in the address that this run does not have. */
-		get unknown() {
-			return asked !== null && !named && !awaited ? asked : null;
+		get unknownVersion() {
+			return requestedVersion !== null && !named && !isAwaited ? requestedVersion : null;
 		},
-		get contradicts() {
-			return contradicts;
+		get hasContradictoryColumns() {
+			return hasContradictoryColumns;
 		},
 		get suggestions() {
-			return contradicts ? [] : (diagnosis.data?.suggestions ?? []);
+			return hasContradictoryColumns ? [] : (diagnosis.data?.suggestions ?? []);
 		},
 		get canRedo() {
 			return undone.length > 0;
 		},
 		/** The displayed residuals belong to the displayed version. */
-		get settled() {
-			return !awaited && residuals.data?.version === model?.id;
+		get residualsAreCurrent() {
+			return !isAwaited && residuals.data?.version === model?.id;
 		},
 		/** The displayed diagnosis belongs to the displayed version. */
-		get diagnosed() {
-			return !awaited && diagnosis.data?.model_id === model?.id;
+		get diagnosisIsCurrent() {
+			return !isAwaited && diagnosis.data?.model_id === model?.id;
 		},
 	};
 }
@@ -355,4 +355,4 @@ function baselineOf(run: Run | undefined): string[] {
 	return Array.isArray(given) ? given.map(String) : [];
 }
 
-export type Bench = ReturnType<typeof openWorkbench>;
+export type Workbench = ReturnType<typeof openWorkbench>;

@@ -1,14 +1,14 @@
 import { describe, expect, it } from 'vitest';
 import type { Model, Parameter, ResidualSet, Suggestion } from '../api/types';
-import { forest } from './forest';
+import { parameterRows } from './parameterRows';
 import { overlay } from './overlay';
-import { rankAxes } from './ranked';
-import { readView, writeView } from './lens';
-import { readRegion, strength, writeRegion, writeStretch } from './region';
-import { sharesOf } from '../residual/line';
-import { selected } from '../residual/selected';
-import { branches, chain, childWith, gain, stepName, undecided } from './tree';
-import { barsOf, lossesOf, markOf, topOf } from './waterfall';
+import { rankAxes } from './rankedAxes';
+import { readZoom, writeZoom } from './zoom';
+import { readRegion, evidenceKind, writeRegion, writeAxisRange } from './region';
+import { selectedShares } from '../residual/meanCurves';
+import { regionSamples } from '../residual/regionSamples';
+import { branches, pathTo, childWith, gain, stepName, undecided } from './versionTree';
+import { barsOf, effectLosses, lossMark, axisTop } from './waterfall';
 
 const version = (id: number, parent: number | null, effects: string[], held: number, added: string[] = []): Model =>
 	({ id, parent, effects, added, removed: [], run: 1, more_runs: [], excluded: [], validation_rms: held, rms: held * 0.9 }) as unknown as Model;
@@ -22,8 +22,8 @@ const models = [
 
 describe('the tree of versions', () => {
 	it('knows the way from the root', () => {
-		expect(chain(models, 4).map((model) => model.id)).toEqual([1, 2, 4]);
-		expect(chain(models, 99)).toEqual([]);
+		expect(pathTo(models, 4).map((model) => model.id)).toEqual([1, 2, 4]);
+		expect(pathTo(models, 99)).toEqual([]);
 	});
 
 	it('visits a set that was fitted before instead of fitting it again', () => {
@@ -73,19 +73,19 @@ describe('the tree of versions', () => {
 
 it('lets the waterfall end with what would come next', () => {
 	const next = { effect: 'gravity', validation_rms: 0.5, error_reduction: 0.5 } as Suggestion;
-	const bars = barsOf(chain(models, 4), next);
-	expect(bars.map((bar) => [bar.label, bar.held])).toEqual([
+	const bars = barsOf(pathTo(models, 4), next);
+	expect(bars.map((bar) => [bar.label, bar.validation])).toEqual([
 		['start', 10],
 		['+ stribeck', 4],
 		['+ load linear', 1],
 		['+ gravity?', 0.5],
 	]);
 	expect(bars[1]!.change).toBeCloseTo(-0.6, 12);
-	expect(topOf(bars, 0.3)).toBeGreaterThan(10);
+	expect(axisTop(bars, 0.3)).toBeGreaterThan(10);
 });
 
 it('says what would be lost, the most first', () => {
-	const losses = lossesOf([
+	const losses = effectLosses([
 		{ effect: 'viscous', without_rms: 2 },
 		{ effect: 'coulomb', without_rms: 9 },
 		{ effect: 'inertia', without_rms: null, reason: 'nothing to fit' },
@@ -94,19 +94,19 @@ it('says what would be lost, the most first', () => {
 		{ effect: 'coulomb', without: 9 },
 		{ effect: 'viscous', without: 2 },
 	]);
-	expect([markOf(['viscous'], losses), markOf(['inertia'], losses), markOf(['viscous', 'coulomb'], losses)]).toEqual([2, null, null]);
+	expect([lossMark(['viscous'], losses), lossMark(['inertia'], losses), lossMark(['viscous', 'coulomb'], losses)]).toEqual([2, null, null]);
 });
 
 describe('regions', () => {
 	it('live in the address', () => {
 		const stretch = { axis: 'motor_velocity_rad_s', from: -3.25, to: 8 };
-		expect(readRegion(writeStretch(stretch))).toEqual([stretch]);
+		expect(readRegion(writeAxisRange(stretch))).toEqual([stretch]);
 		const rectangle = [stretch, { axis: 'load', from: 0, to: 1 }];
 		expect(readRegion(writeRegion(rectangle))).toEqual(rectangle);
 		expect(readRegion('motor_velocity_rad_s:1')).toBeNull();
 		expect(readRegion(null)).toBeNull();
-		expect(readView(writeView([1.5, 2]))).toEqual([1.5, 2]);
-		expect(readView('2:1')).toBeNull();
+		expect(readZoom(writeZoom([1.5, 2]))).toEqual([1.5, 2]);
+		expect(readZoom('2:1')).toBeNull();
 	});
 
 	it('are the samples for which all stretches hold, on the chosen side', () => {
@@ -124,11 +124,11 @@ describe('regions', () => {
 			{ axis: 'load', from: 4, to: 6 },
 			{ axis: 'measured', from: 1.5, to: 3 },
 		];
-		expect([...selected(set, region, 'both', false)!]).toEqual([0, 1, 1, 0]);
-		expect([...selected(set, region, 'negative', false)!]).toEqual([0, 0, 1, 0]);
-		expect(selected(set, [{ axis: 'absent', from: 0, to: 1 }], 'both', false)).toBeNull();
-		const bins = { edges: [0, 4, 10], levels: null };
-		expect(sharesOf(set.axes[1]!.values, bins, new Uint8Array([1, 1, 1, 1]), new Uint8Array([0, 1, 1, 0]))).toEqual([0, 0.5]);
+		expect([...regionSamples(set, region, 'both', false)!]).toEqual([0, 1, 1, 0]);
+		expect([...regionSamples(set, region, 'negative', false)!]).toEqual([0, 0, 1, 0]);
+		expect(regionSamples(set, [{ axis: 'absent', from: 0, to: 1 }], 'both', false)).toBeNull();
+		const bins = { edges: [0, 4, 10], setPoints: null };
+		expect(selectedShares(set.axes[1]!.values, bins, new Uint8Array([1, 1, 1, 1]), new Uint8Array([0, 1, 1, 0]))).toEqual([0, 0.5]);
 	});
 
 	it('are seen in the overlay, whatever its axis', () => {
@@ -143,7 +143,7 @@ describe('regions', () => {
 			held_out: [false, true, false],
 			excluded: [],
 		} as unknown as ResidualSet;
-		const chosen = selected(set, [{ axis: 'load', from: 4, to: 6 }], 'both', true);
+		const chosen = regionSamples(set, [{ axis: 'load', from: 4, to: 6 }], 'both', true);
 		const times = set.axes[0]!.values;
 		const drawn = overlay(set, times, chosen, 1000, true);
 		expect(drawn.x).toEqual([1, 2, 3]);
@@ -155,12 +155,12 @@ describe('regions', () => {
 });
 
 it('says how strong the evidence is', () => {
-	expect(strength({ evidence: 'small', confounded_with: [] })).toBe('SMALL');
-	expect(strength({ evidence: 'strong', confounded_with: ['drift'] })).toBe('CONFOUNDED');
+	expect(evidenceKind({ evidence: 'small', confounded_with: [] })).toBe('small');
+	expect(evidenceKind({ evidence: 'strong', confounded_with: ['drift'] })).toBe('confounded');
 });
 
 it('flags parameters in words', () => {
-	const rows = forest([
+	const rows = parameterRows([
 		{ value: 2, ci95: [1, 3], state: 'ok' },
 		{ value: -2, ci95: [-5, 1], state: 'at_bound' },
 		{ value: 1, ci95: [null, null], state: 'unidentified' },
@@ -169,7 +169,7 @@ it('flags parameters in words', () => {
 	expect(rows.map((row) => row.interval)).toEqual([[0.5, 1.5], [-0.5, 2.5], null, null]);
 	expect(rows.map((row) => row.flags)).toEqual([[], ['at its bound', 'may be zero'], ['not decided by this data', 'no interval'], []]);
 	const pair = ['a', 'b'].map((name) => ({ effect: 'e', name, value: 1, ci95: [0.5, 1.5], state: 'ok' })) as Parameter[];
-	const [first] = forest(pair, [{ first: 'e.a', second: 'e.b', correlation: -0.96 }]);
+	const [first] = parameterRows(pair, [{ first: 'e.a', second: 'e.b', correlation: -0.96 }]);
 	expect(first!.flags).toEqual(['ρ −0.96 with e.b']);
 });
 
@@ -188,7 +188,7 @@ describe('the axes that explain the residual', () => {
 			piece: points.map((i) => i >> 3),
 		}) as unknown as ResidualSet;
 	const shares = (set: ResidualSet) =>
-		rankAxes(set, set.error, 'both', false, 0).map(({ axis, share, split }) => [axis.name, Math.round(100 * share), Math.round(100 * split)]);
+		rankAxes(set, set.error, 'both', false, 0).map(({ axis, share, splitShare: split }) => [axis.name, Math.round(100 * share), Math.round(100 * split)]);
 
 	it('tells what shows only with each direction for itself', () => {
 		expect(shares(left((i) => (pressure[i] === 2 ? way[i]! : 0)))).toEqual([['oil_pressure_pa', 0, 80], ['direction', 20, 0]]);

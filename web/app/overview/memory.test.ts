@@ -1,9 +1,0 @@
-import { expect, test } from 'vitest';
-import { address, digits } from './memory';
-
-test('addresses and bytes are hexadecimal, and long rows are cut', () => {
-	expect(address(4)).toBe('0x04');
-	expect(address(0x5c)).toBe('0x5C');
-	expect(digits([0, 255, 16])).toBe('00 FF 10');
-	expect(digits([1, 2, 3, 4, 5], 4)).toBe('01 02 03 04 …');
-});

@@ -1,0 +1,23 @@
+import { expect, it } from 'vitest';
+import type { ProcedureParameter } from '../api/types';
+import { parseValue, planHref } from './parameterValues';
+
+const speeds: ProcedureParameter = { name: 'speeds', title: 'Speeds', unit: '', default: 8, min: 2, max: 30, type: 'integer' };
+
+it.each([
+	['8', 8, null],
+	[' 12 ', 12, null],
+	['2.5', 2.5, 'a whole number'],
+	['1', 1, 'at least 2.000'],
+	['40', 40, 'at most 30.00'],
+])('%s', (text, value, error) => expect(parseValue(speeds, text)).toEqual({ value, error }));
+
+it('says what is needed where there is no number', () => {
+	expect(parseValue(speeds, 'fast').error).toBe('a number');
+	expect(parseValue(speeds, '').error).toBe('a number');
+	expect(parseValue({ ...speeds, type: 'number' }, '2,5')).toEqual({ value: 2.5, error: null });
+});
+
+it('plans again what was planned before', () => {
+	expect(planHref('friction', { top_speed_rad_s: 180, loads: [0, 0.5] })).toBe('/?procedure=friction&p.top_speed_rad_s=180&p.loads=0%2C+0.5');
+});

@@ -1,0 +1,34 @@
+import { formatNumber } from '../format/number';
+import type { ProcedureParameter } from '../api/types';
+
+export interface ParsedValue {
+	value: number;
+	/** Why the text cannot be sent. */
+	error: string | null;
+}
+
+/** Converts the user's text to the number of the procedure. A decimal comma is accepted. */
+export function parseValue({ type, min, max }: ProcedureParameter, text: string): ParsedValue {
+	const plain = text.trim().replace(',', '.');
+	const value = plain === '' ? Number.NaN : Number(plain);
+	return { value, error: wrong() };
+
+	function wrong(): string | null {
+		if (!Number.isFinite(value)) return 'a number';
+		if (type === 'integer' && !Number.isInteger(value)) return 'a whole number';
+		if (value < min) return `at least ${formatNumber(min)}`;
+		return value > max ? `at most ${formatNumber(max)}` : null;
+	}
+}
+
+/** A value as the text of its field. */
+export function valueText(value: unknown): string {
+	if (value === null || value === undefined) return '';
+	return Array.isArray(value) ? value.join(', ') : String(value);
+}
+
+/** The bench page with a procedure and its settings filled in; it starts nothing. */
+export function planHref(procedure: string, parameters: Record<string, unknown>): string {
+	const settings = Object.entries(parameters).map(([name, value]) => [`p.${name}`, valueText(value)]);
+	return `/?${new URLSearchParams([['procedure', procedure], ...settings] as [string, string][]).toString()}`;
+}

@@ -1,0 +1,50 @@
+import { expect, it } from 'vitest';
+import { resultVerdict, campaignParts, formatResult, configurationTable } from './presentation';
+
+it('says a quantity with one prefix for value and interval', () => {
+	expect(formatResult({ value: 3.2e-5, unit: 'Nm·s/rad', ci95: [3.16e-5, 3.24e-5] })).toEqual({ value: '32.00', interval: '± 0.40', unit: 'µNm·s/rad' });
+	expect(formatResult({ value: 41_230, unit: 'Nm/rad', ci95: [40_920, 41_540] })).toEqual({ value: '41.23', interval: '± 0.31', unit: 'kNm/rad' });
+});
+
+it('says an uneven interval by its ends, and none where there is none', () => {
+	expect(formatResult({ value: 0.0506, unit: 'rad/s', ci95: [0.047, 0.0561] }).interval).toBe('[47.0, 56.1]');
+	expect(formatResult({ value: 7, unit: '', ci95: null })).toEqual({ value: '7', interval: '', unit: '' });
+	expect(formatResult({ value: 0.9987, unit: '' }).value).toBe('0.9987');
+});
+
+it('sets what was found for several ways side by side, and nothing else', () => {
+	const made = (symbol: string, what: string) => ['none', 'Coulomb, interpolated', 'observer'].map((way, i) => ({ name: `${symbol}${i}`, symbol, title: `${what}, ${way}`, unit: 'rad', value: i }));
+	const found = [...made('ρ_1', 'Sum of the errors'), ...made('ρ_1/ρ_10', 'Sum of the errors, share of none')];
+	const table = configurationTable(found);
+	expect(table?.configurations).toEqual(['none', 'Coulomb, interpolated', 'observer']);
+	expect(table?.rows.map(({ title, of }) => [title, ...of.map((one) => one.value)])).toEqual([
+		['Sum of the errors', 0, 1, 2],
+		['Sum of the errors, share of none', 0, 1, 2],
+	]);
+	expect(configurationTable(found.slice(1))).toBeNull();
+	expect(configurationTable(found.map((one) => ({ ...one, ci95: [0, 1] })))).toBeNull();
+});
+
+it('takes a campaign apart into its parts, and nothing else', () => {
+	const k = { name: 'stiffness.k', symbol: 'k', title: 'Stiffness: Stiffness of the joint', unit: 'Nm/rad', value: 678 };
+	const axis = { label: 'torque', unit: 'Nm' };
+	const loop = { name: 'stiffness.torsion_over_torque', title: 'Torsion over torque', form: 'cartesian' as const, x: axis, y: axis, series: [] };
+	const summary = 'The run did not come to its end (stopped), this is what its part says:\nStiffness: It is 678 Nm/rad; it is: linear.\nFriction compensation (failed): The run ended before this part.';
+	const told = [
+		{ id: 'stiffness', title: 'Stiffness', verdict: 'identified' as const, summary: 'It is 678 Nm/rad; it is: linear.' },
+		{ id: 'compensation', title: 'Friction compensation', verdict: 'failed' as const, summary: 'The run ended before this part.' },
+	];
+	const { lead, parts } = campaignParts({ summary, quantities: [k], figures: [loop], parts: told });
+	expect(lead).toBe('The run did not come to its end (stopped), this is what its part says:');
+	expect(parts).toEqual([
+		{ ...told[0], quantities: [{ ...k, title: 'Stiffness of the joint' }], figures: [loop] },
+		{ ...told[1], quantities: [], figures: [] },
+	]);
+	expect(campaignParts({ summary: 'PASS: every way is consistent.', quantities: [], figures: [] }).parts).toEqual([]);
+});
+
+it('takes the word from a result that was held against a data sheet', () => {
+	expect(resultVerdict({ verdict: 'identified', passes: true }, 'PASS: every way is consistent.')).toMatchObject({ label: 'PASS', tone: 'good', rest: 'every way is consistent.' });
+	expect(resultVerdict({ verdict: 'identified', passes: false }, 'OUT OF TOLERANCE on X.')).toMatchObject({ label: 'OUT OF TOLERANCE', tone: 'bad', rest: 'on X.' });
+	expect(resultVerdict({ verdict: 'inconclusive' }, 'NOT SURE: X.')).toMatchObject({ label: 'INCONCLUSIVE', rest: 'NOT SURE: X.' });
+});

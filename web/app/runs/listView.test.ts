@@ -1,0 +1,56 @@
+import { expect, it } from 'vitest';
+import type { RunSummary } from '../api/types';
+import { nextSort, readListView, readBase, readHidden, readSavedViews, runsTable, sortOrder, toggleBase, toggleColumn, toggleSavedView, listViewText, writeListView } from './listView';
+
+function storage() {
+	const kept = new Map<string, string>();
+	return { getItem: (key: string) => kept.get(key) ?? null, setItem: (key: string, value: string) => void kept.set(key, value) };
+}
+
+it('remembers the columns, and lets the address have the last word', () => {
+	const kept = storage();
+	expect(readHidden(null, kept)).toEqual([]);
+	expect(toggleColumn([], 'safe', kept)).toBe('safe');
+	expect(readHidden(null, kept)).toEqual(['safe']);
+	expect(readHidden('rows,bench,nonsense', kept)).toEqual(['bench', 'rows']);
+	expect(toggleColumn(['safe'], 'safe', kept)).toBe('none');
+	expect(readHidden(null, kept)).toEqual([]);
+});
+
+it('keeps views and forgets them again', () => {
+	const kept = storage();
+	kept.setItem('jointbench.runs.views', 'tag:oil -state:failed');
+	const [old] = readSavedViews(kept);
+	expect(readListView(old!)).toEqual({ search: 'tag:oil -state:failed', sort: null, base: 'none', hide: 'none' });
+	const view = writeListView('rows>1000', '-error', 180, ['bench', 'safe']);
+	toggleSavedView(view, kept);
+	expect(readSavedViews(kept)).toEqual([old, view]);
+	expect(readSavedViews(kept).map(listViewText)).toEqual(['tag:oil -state:failed', 'rows>1000 · by error, largest first · against #180 · without bench, safe']);
+	expect(readListView(view)).toEqual({ search: 'rows>1000', sort: '-error', base: '180', hide: 'bench,safe' });
+	toggleSavedView(old!, kept);
+	expect(readSavedViews(kept)).toEqual([view]);
+});
+
+it('orders by a column, the other way round, and no longer', () => {
+	expect([null, '-error', 'error'].map((sort) => nextSort(sort, 'error'))).toEqual(['-error', 'error', null]);
+	expect([null, 'bench', '-bench'].map((sort) => nextSort(sort, 'bench'))).toEqual(['bench', '-bench', null]);
+	expect([sortOrder('-error', 'error'), sortOrder('error', 'error'), sortOrder('error', 'rows'), sortOrder(null, 'note')]).toEqual(['descending', 'ascending', 'none', null]);
+});
+
+it('remembers the base, and lets the address have the last word', () => {
+	const kept = storage();
+	expect(readBase(null, kept)).toBeNull();
+	expect(toggleBase(null, 7, kept)).toBe('7');
+	expect([readBase(null, kept), readBase('9', kept), readBase('none', kept)]).toEqual([7, 9, null]);
+	expect(toggleBase(7, 7, kept)).toBe('none');
+	expect(readBase(null, kept)).toBeNull();
+});
+
+it('writes the list as a table', () => {
+	const run = { id: 3, state: 'failed', procedure: 'friction', kind: 'friction', bench: 'a', simulated: true, created_at: '2026-01-02T03:04:05Z', duration_s: 1.5, rows: 7, safe: null, reason: 'no "contact", twice', tags: ['cold', 'new oil'], model: { validation_rms: 0.002, unit: 'Nm', coulomb: { value: 0.03, ci95: [0.029, null] } } };
+	const { head, rows } = runsTable([run as unknown as RunSummary]);
+	expect(head.slice(-5)).toEqual(['held_out_rms', 'unit', 'coulomb', 'coulomb_low', 'coulomb_high']);
+	expect(rows).toEqual([
+		[3, 'failed', 'friction', 'friction', 'a', 'true', '2026-01-02T03:04:05Z', 1.5, 7, null, 'no "contact", twice', 'cold new oil', null, 0.002, 'Nm', 0.03, 0.029, null],
+	]);
+});

@@ -1,0 +1,97 @@
+import type { RunSummary, Table } from '../api/types';
+import { withQuery } from '../state/route';
+
+/**
+ * Columns of the list in addition to the number and state of a run. The user selects them, and the browser stores them.
+ */
+export const COLUMNS = ['procedure', 'bench', 'started', 'duration', 'rows', 'safe', 'error', 'change', 'Coulomb', 'note'] as const;
+export type Column = (typeof COLUMNS)[number];
+
+const HIDDEN = 'jointbench.runs.hidden';
+const VIEWS = 'jointbench.runs.views';
+const BASE = 'jointbench.runs.base';
+
+/** Hidden columns: from the address, or from this browser; `none` hides nothing. */
+export function readHidden(address: string | null, kept: Pick<Storage, 'getItem'>): Column[] {
+	const names = (address ?? kept.getItem(HIDDEN) ?? '').split(',');
+	return COLUMNS.filter((one) => names.includes(one));
+}
+
+/** Shows or hides a column and stores it. Returns the value for the address. */
+export function toggleColumn(hidden: readonly Column[], column: Column, kept: Pick<Storage, 'setItem'>): string {
+	const next = hidden.includes(column) ? hidden.filter((one) => one !== column) : [...hidden, column];
+	const text = next.join(',') || 'none';
+	kept.setItem(HIDDEN, text);
+	return text;
+}
+
+/** The base run for comparisons: from the address, or from this browser; `none` for none. */
+export function readBase(address: string | null, kept: Pick<Storage, 'getItem'>): number | null {
+	const id = Number(address ?? kept.getItem(BASE));
+	return Number.isInteger(id) && id > 0 ? id : null;
+}
+
+/** Selects or clears the base run and stores it. Returns the value for the address. */
+export function toggleBase(base: number | null, id: number, kept: Pick<Storage, 'setItem'>): string {
+	const text = base === id ? 'none' : String(id);
+	kept.setItem(BASE, text);
+	return text;
+}
+
+/** Sort keys of the list under the daemon's names; numbers start with the largest. */
+const SORTS: Partial<Record<Column | 'state', string>> = { state: 'state', procedure: 'procedure', bench: 'bench', started: 'started', duration: '-duration', rows: '-rows', safe: 'safe', error: '-error', Coulomb: '-coulomb' };
+const reversed = (sort: string) => (sort.startsWith('-') ? sort.slice(1) : `-${sort}`);
+
+/** Present sort order of a column; `null` if it cannot be sorted. */
+export function sortOrder(sort: string | null, column: Column | 'state'): 'ascending' | 'descending' | 'none' | null {
+	const own = SORTS[column];
+	if (own === undefined) return null;
+	return sort === own || sort === reversed(own) ? (sort.startsWith('-') ? 'descending' : 'ascending') : 'none';
+}
+
+/** Order after another click on a column: its own order, then reversed, then newest first. */
+export function nextSort(sort: string | null, column: Column | 'state'): string | null {
+	const own = SORTS[column]!;
+	return sort === own ? reversed(own) : sort === reversed(own) ? null : own;
+}
+
+/** A view of the list as an address: search, order, base run and columns. */
+export const writeListView = (search: string, sort: string | null, base: number | null, hidden: readonly Column[]): string =>
+	withQuery(new URLSearchParams(), { search, sort, base: base ?? 'none', hide: hidden.join(',') || 'none' });
+
+/** All settings of a view's address, for the router. */
+export function readListView(view: string): Record<string, string | null> {
+	const query = new URLSearchParams(view);
+	return Object.fromEntries(['search', 'sort', 'base', 'hide'].map((key) => [key, query.get(key)]));
+}
+
+/** A view in words. */
+export function listViewText(view: string): string {
+	const { search, sort, base, hide } = readListView(view);
+	const hidden = readHidden(hide ?? 'none', { getItem: () => null });
+	return [
+		search || 'all runs',
+		...(sort ? [`by ${sort.replace('-', '')}${sort.startsWith('-') ? ', largest first' : ''}`] : []),
+		...(base && base !== 'none' ? [`against #${base}`] : []),
+		...(hidden.length > 0 ? [`without ${hidden.join(', ')}`] : []),
+	].join(' · ');
+}
+
+/** Saved views, in the order of saving. Earlier versions saved only the search. */
+export const readSavedViews = (kept: Pick<Storage, 'getItem'>): string[] =>
+	(kept.getItem(VIEWS) ?? '').split('\n').filter(Boolean).map((line) => (line.startsWith('?') ? line : writeListView(line, null, null, [])));
+
+export function toggleSavedView(view: string, kept: Pick<Storage, 'getItem' | 'setItem'>): void {
+	const views = readSavedViews(kept);
+	kept.setItem(VIEWS, (views.includes(view) ? views.filter((one) => one !== view) : [...views, view]).join('\n'));
+}
+
+const FIELDS = ['id', 'state', 'procedure', 'kind', 'bench', 'simulated', 'created_at', 'duration_s', 'rows', 'safe', 'reason', 'tags', 'note'] as const;
+
+/** The list as a table for other programs. */
+export function runsTable(runs: readonly RunSummary[]): Table {
+	const cell = (value: unknown) => (Array.isArray(value) ? value.join(' ') : typeof value === 'number' ? value : value == null ? null : String(value));
+	const model = ({ model }: RunSummary) => [model?.validation_rms, model?.unit, model?.coulomb?.value, ...(model?.coulomb?.ci95 ?? [null, null])];
+	const head = [...FIELDS, 'held_out_rms', 'unit', 'coulomb', 'coulomb_low', 'coulomb_high'];
+	return { head, rows: runs.map((run) => [...FIELDS.map((field) => run[field]), ...model(run)].map(cell)) };
+}
