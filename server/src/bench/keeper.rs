@@ -1,41 +1,25 @@
 //! Stores the commits of a bench worker in order, and retries until the disk accepts them. Only this task waits for the
 //! disk.
 
-use super::shared::Shared;
+use super::item::Item;
+use super::shared::{RETRY_INTERVAL, Shared};
 use super::status::New;
 use super::wire::{Entry, Order};
-use crate::lab::{run_event, safe_view, state_view};
 use crate::store::{RunCommit, SafetyRecord, StoreError};
-use crate::view::LiveMessage;
+use crate::view::{LiveMessage, run_event, safe_view, state_view};
 use jointbench_procedure::{RunId, RunState, Safe};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 use tokio::sync::mpsc::UnboundedReceiver;
-use tokio::sync::oneshot;
 use tokio::time::{sleep, timeout};
 
-/// Retry interval.
-const AGAIN_EVERY: Duration = Duration::from_millis(500);
 /// A disk that needs longer than this is reported as slow.
 const SLOW: Duration = Duration::from_millis(500);
 pub(super) const NEVER_BEGAN: &str = "the bench became unavailable before the run started";
 /// Maximum number of commits in one transaction.
 const MOST_TOGETHER: usize = 64;
-
-pub(super) enum Item {
-    Entry(Arc<Entry>),
-    /// The worker ended: the keeper stores the end of its run.
-    Interrupted {
-        run: RunId,
-        safe: Safe,
-        reason: &'static str,
-    },
-    Fault(New),
-    /// Answered when all earlier items are stored.
-    Flush(oneshot::Sender<()>),
-}
 
 /// Data of one transaction.
 enum Work {
@@ -131,7 +115,7 @@ impl Keeper {
                     // A run continues while another program locks the database; other faults end the run.
                     self.set_trouble(Some((fault.to_string(), !matches!(fault, StoreError::Held))));
                     tokio::select! {
-                        () = sleep(AGAIN_EVERY) => {}
+                        () = sleep(RETRY_INTERVAL) => {}
                         () = self.shared.disk_changed.notified() => {}
                     }
                 }
@@ -220,15 +204,4 @@ impl Keeper {
             reason: underway.reason,
         });
     }
-}
-
-/// Stores a block as soon as possible, before other waiting data.
-pub(super) fn keep_block(shared: Arc<Shared>, block: SafetyRecord) {
-    shared.runtime.clone().spawn(async move {
-        while let Err(fault) = shared.store.keep_block(shared.name(), &block).await {
-            tracing::error!(bench = shared.name(), %fault, "the block of the bench is not yet stored");
-            sleep(AGAIN_EVERY).await;
-        }
-        shared.block_is_stored(&block.at);
-    });
 }

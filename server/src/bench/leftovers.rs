@@ -2,7 +2,6 @@
 //! folder holds it; the next start stores the data and removes the file.
 
 use super::wire::{Entry, receive, send};
-use super::worker::file_name;
 use crate::store::{SafetyRecord, Store, StoreError};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -62,6 +61,11 @@ fn write(folder: &Path, left: &Leftovers) -> io::Result<PathBuf> {
     fs::rename(&unfinished, &path)?;
     File::open(folder)?.sync_all()?;
     Ok(path)
+}
+
+/// The name of a bench as a file name.
+pub(super) fn file_name(bench: &str) -> String {
+    percent_encoding::utf8_percent_encode(bench, percent_encoding::NON_ALPHANUMERIC).to_string()
 }
 
 fn read(path: &Path) -> io::Result<Leftovers> {

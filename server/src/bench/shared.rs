@@ -1,8 +1,8 @@
 //! Shared state of a bench in the server: its status, the connection to its worker, and its block.
 
-use super::display::Display;
-use super::keeper::Item;
+use super::item::Item;
 use super::status::{Status, Underway};
+use super::view::bench_view;
 use super::wire::{self, MemoryRead, Order};
 use crate::config::BenchDescription;
 use crate::live::Hub;
@@ -15,9 +15,14 @@ use std::path::PathBuf;
 use std::process::ChildStdin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::sync::mpsc::UnboundedSender;
 use tokio::sync::{Notify, oneshot, watch};
+use tokio::time::sleep;
+
+/// Retry interval of storing.
+pub(super) const RETRY_INTERVAL: Duration = Duration::from_millis(500);
 
 pub(super) struct Shared {
     pub description: BenchDescription,
@@ -30,7 +35,6 @@ pub(super) struct Shared {
     pub status: watch::Sender<Status>,
     /// Queue of the data to store, in order.
     pub to_keep: UnboundedSender<Item>,
-    pub display: Mutex<Option<Display>>,
     /// The bench is reserved for a run without a number.
     pub claimed: AtomicBool,
     /// The daemon ends: the worker is not restarted.
@@ -65,7 +69,6 @@ impl Shared {
             runtime: Handle::current(),
             status: watch::Sender::new(Status::offline()),
             to_keep,
-            display: Mutex::default(),
             claimed: AtomicBool::new(false),
             ending: AtomicBool::new(false),
             disk_is_full: AtomicBool::new(false),
@@ -126,7 +129,7 @@ impl Shared {
     }
 
     pub fn tell_bench(&self) {
-        let bench = crate::lab::bench_view(&self.description, &self.status.borrow());
+        let bench = bench_view(&self.description, &self.status.borrow());
         self.hub.tell(LiveMessage::Bench { bench: Box::new(bench) });
     }
 
@@ -153,7 +156,7 @@ impl Shared {
                 None => status.rest(),
             }
         });
-        super::keeper::keep_block(self.clone(), block);
+        keep_block(self.clone(), block);
     }
 
     /// Releases the block that began at `since`, no later block. Returns whether the bench is free.
@@ -193,6 +196,17 @@ impl Shared {
             }
         });
     }
+}
+
+/// Stores a block as soon as possible, before other waiting data.
+fn keep_block(shared: Arc<Shared>, block: SafetyRecord) {
+    shared.runtime.clone().spawn(async move {
+        while let Err(fault) = shared.store.keep_block(shared.name(), &block).await {
+            tracing::error!(bench = shared.name(), %fault, "the block of the bench is not yet stored");
+            sleep(RETRY_INTERVAL).await;
+        }
+        shared.block_is_stored(&block.at);
+    });
 }
 
 pub(super) fn blocked(block: &SafetyRecord, stored: bool) -> Blocked {

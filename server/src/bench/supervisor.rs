@@ -1,19 +1,20 @@
 //! Server thread that starts a worker, processes its reports, and restarts it after a crash.
 
+use super::display::Display;
 use super::instruments::unreached;
-use super::keeper::{Item, NEVER_BEGAN};
+use super::item::Item;
+use super::keeper::NEVER_BEGAN;
 use super::shared::{Shared, lock};
 use super::status::{FAULTS, Met, New, Underway};
 use super::wire::{self, Entry, Order, Report, Setup};
-use crate::lab::state_view;
 use crate::store::SafetyRecord;
-use crate::view::{self, BenchState, InstrumentFault, LiveMessage};
+use crate::view::{self, BenchState, InstrumentFault, LiveMessage, state_view};
 use jiff::Timestamp;
 use jointbench_procedure::{EventKind, RunEnd, RunId, RunState, Safe};
 use std::io::{self, BufReader};
 use std::process::{Child, ChildStdout, Stdio};
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 
@@ -31,17 +32,18 @@ const LIVED: Duration = Duration::from_secs(60);
 
 pub(super) struct Supervisor {
     shared: Arc<Shared>,
+    display: Arc<Mutex<Option<Display>>>,
     /// Runs without a worker whose safe state is unknown.
     orphans: Vec<(RunId, &'static str)>,
 }
 
 impl Supervisor {
     /// `interrupted`: the runs that an earlier daemon left open on this bench.
-    pub fn new(shared: Arc<Shared>, interrupted: Vec<RunId>) -> Self {
+    pub fn new(shared: Arc<Shared>, display: Arc<Mutex<Option<Display>>>, interrupted: Vec<RunId>) -> Self {
         shared.status.send_modify(|status| {
             status.runs = interrupted.iter().map(|run| (*run, Underway::queued())).collect();
         });
-        Self { shared, orphans: interrupted.into_iter().map(|run| (run, DAEMON_ENDED)).collect() }
+        Self { shared, display, orphans: interrupted.into_iter().map(|run| (run, DAEMON_ENDED)).collect() }
     }
 
     /// Returns when the daemon ends.
@@ -128,7 +130,7 @@ impl Supervisor {
             Report::Memory { ticket, read } => shared.done(ticket, Some(read)),
             Report::Entry(entry) => self.entry(entry),
             Report::Live { run, rows, progress, .. } => {
-                if let Some(display) = lock(&shared.display).as_mut() {
+                if let Some(display) = lock(&self.display).as_mut() {
                     display.show(shared, run, rows, &progress);
                 }
             }
@@ -211,7 +213,7 @@ impl Supervisor {
         if end.safe == Safe::UnsafeUnknown {
             self.block_as_unsafe(end.reason.as_deref().unwrap_or_default(), Some(run));
         }
-        lock(&self.shared.display).take();
+        lock(&self.display).take();
         self.shared.change(|status| status.rest());
         self.shared.settle(run, |underway| underway.ended = true);
     }

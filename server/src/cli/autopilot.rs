@@ -4,8 +4,9 @@ use super::arguments::Autopilot as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::offline::decided;
+use super::outcome::is_over;
 use super::progress::RunProgress;
-use super::run::{LOOK_EVERY, choose_bench, is_over, parameters};
+use super::run::{LOOK_EVERY, choose_bench, parameters};
 use crate::view::{Autopilot, AutopilotState, AutopilotStep, Diagnosis, Model, NewAutopilot, NewExperiment, Run};
 
 pub fn autopilot(arguments: &Arguments) -> Done {

@@ -4,14 +4,14 @@ mod hidden;
 
 use super::arguments::Demo;
 use super::exit::{Done, Exit};
+use super::outcome::ending;
 use super::print;
 use super::progress::RunProgress;
-use super::run::ending;
 use super::serve::{runtime, settings};
 use crate::config::BenchDescription;
 use crate::daemon::{Daemon, asked_to_end};
-use crate::lab::{LOCAL, Lab, reread};
-use crate::view::{Model, Run, RunState, Suggestion};
+use crate::lab::{LOCAL, Lab};
+use crate::view::{Model, Run, RunState, Suggestion, reread};
 use hidden::{Hidden, Setup};
 use jointbench_devices::MockSettings;
 use serde_json::Map;

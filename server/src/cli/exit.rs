@@ -1,6 +1,7 @@
 //! Exit code and message of a failed command.
 
 use crate::lab::LabError;
+use crate::view::ConversionError;
 use jointbench_files::{FileError, OptionFault};
 use jointbench_model::{FormulaFault, ModelError, words};
 use std::path::Path;
@@ -47,6 +48,12 @@ impl Exit {
 impl From<LabError> for Exit {
     fn from(error: LabError) -> Self {
         Self { code: error.exit_code(), said: error.to_string() }
+    }
+}
+
+impl From<ConversionError> for Exit {
+    fn from(error: ConversionError) -> Self {
+        LabError::from(error).into()
     }
 }
 

@@ -3,8 +3,8 @@
 use super::arguments::Run as Arguments;
 use super::exit::Exit;
 use super::identify;
+use super::outcome::{Found, ending, title};
 use super::require::{Kept, Requirement};
-use super::run::{Found, ending, title};
 use crate::view::Run;
 
 /// The run's test case is a failure if it did not complete or has no result, and an error if there is no run. The other

@@ -10,12 +10,14 @@ mod demo;
 mod exit;
 mod files;
 mod identify;
+mod job;
 mod junit;
 mod library;
 mod log;
 mod memory;
 mod model;
 mod offline;
+mod outcome;
 mod own;
 mod ports;
 mod print;
@@ -52,7 +54,7 @@ pub fn main() -> ExitCode {
     let default_level = if matches!(arguments.command, Command::Serve(_) | Command::Worker) { "info" } else { "warn" };
     log::start(arguments.log, default_level);
     let done = match arguments.command {
-        Command::Job => return crate::job::main(),
+        Command::Job => return job::main(),
         Command::Demo(arguments) => demo::demo(arguments),
         Command::Serve(arguments) => serve::serve(arguments),
         Command::Worker => worker::serve().map_err(|fault| Exit::failed(fault.to_string())),

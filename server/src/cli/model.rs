@@ -7,9 +7,9 @@ use super::offline::{json_out, read};
 use super::print;
 use super::serve::runtime;
 use super::transfer::{self, Way};
-use crate::lab::{LOCAL, reread};
-use crate::view;
-use jointbench_model::export::{Format, ModelFile, export};
+use crate::lab::LOCAL;
+use crate::view::{self, reread};
+use jointbench_model::export::{ModelFile, export};
 use jointbench_model::{Fit, words};
 use std::path::Path;
 
@@ -80,10 +80,6 @@ fn import(model: &Path, run: i64, json: bool, store: &StorePlace) -> Done {
 }
 
 /// Writes a fit in the format of `fit --out`.
-pub fn save(fit: &Fit, path: &Path) -> Done {
-    write(path, export(fit, Format::Json)?.as_bytes())
-}
-
 fn open(path: &Path) -> Result<Fit, Exit> {
     let refuse = |fault: &dyn std::fmt::Display| Exit::bad_input(format!("{}: {fault}", path.display()));
     let bytes = files::read(path)?;

@@ -2,11 +2,13 @@
 
 use super::arguments::{Columns, Diagnose, Discover, Fit, Measured, Preparation};
 use super::exit::{Done, Exit};
-use super::files;
+use super::files::{self, write};
 use super::print;
-use crate::lab::{Offer, next_run, reread};
+use crate::lab::{Offer, next_run};
+use crate::view::reread;
 use jointbench_files::{ReadOptions, Understood, paragraph, understand};
 use jointbench_instrument::RunTable;
+use jointbench_model::export::{Format, export};
 use jointbench_model::{ModelSpec, Open, Options};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -64,7 +66,7 @@ pub fn fit(arguments: &Fit) -> Done {
     }
     let fit = jointbench_model::fit(&run, &spec, &options).map_err(|fault| Exit::of(&arguments.run.files, fault))?;
     if let Some(path) = &arguments.out {
-        super::model::save(&fit, path)?;
+        save(&fit, path)?;
     }
     let evaluation = match &arguments.evaluate {
         None => None,
@@ -87,6 +89,10 @@ pub fn fit(arguments: &Fit) -> Done {
         print::evaluation(file, evaluation);
     }
     Ok(())
+}
+
+fn save(fit: &jointbench_model::Fit, path: &Path) -> Done {
+    write(path, export(fit, Format::Json)?.as_bytes())
 }
 
 fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {

@@ -2,9 +2,8 @@
 
 use super::arguments::Reproduce;
 use super::exit::{Done, Exit};
-use crate::lab::reread;
 use crate::report::{svg, with_interval};
-use crate::view;
+use crate::view::{self, reread};
 use jointbench_devices::sim::{Load, Truth};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::identification::Quantity;

@@ -4,18 +4,16 @@ use super::arguments::Run as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::junit::junit;
+use super::outcome::{Found, ending, is_over};
 use super::progress::RunProgress;
 use super::require::{Kept, Requirement};
 use super::{files, identify};
-use crate::view::{Bench, Identification, NewRun, Run, RunState, word};
+use crate::view::{Bench, NewRun, Run, RunState};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
 use std::time::{Duration, Instant};
 
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
-
-/// Result of the run, or why it is not available.
-pub(super) type Found = Result<Identification, Exit>;
 
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach)?;
@@ -63,13 +61,6 @@ fn demand_what_can_be_found(client: &Client, arguments: &Arguments) -> Done {
         let wrong = |why| Exit::bad_input(format!("--require '{}': {why}", demand.text()));
         demand.could_be_kept_by(&id, &finds).map_err(wrong)
     })
-}
-
-pub(super) fn title(arguments: &Arguments) -> String {
-    match (&arguments.procedure, arguments.continues) {
-        (Some(procedure), _) => procedure.clone(),
-        (None, before) => format!("run {} continued", before.unwrap_or_default()),
-    }
 }
 
 fn shown(client: &Client, run: &Run) -> Found {
@@ -254,33 +245,6 @@ fn wait_at_most(client: &Client, id: i64, limit: Option<Duration>) -> Result<Run
 fn timed_out(mut run: Run, limit: Duration) -> Run {
     run.summary.reason = Some(format!("it took longer than --timeout {} s", limit.as_secs_f64()));
     run
-}
-
-pub(super) fn is_over(state: RunState) -> bool {
-    use RunState as S;
-    matches!(state, S::Completed | S::Stopped | S::Aborted | S::Failed | S::Interrupted)
-}
-
-pub(super) fn ending(run: &Run) -> String {
-    let summary = &run.summary;
-    let mut said = format!("run {} {}: {} rows", summary.id, word(summary.state), summary.rows);
-    if let Some(duration_s) = summary.duration_s {
-        said += &format!(" in {duration_s:.1} s of bench time");
-    }
-    if let Some(safe) = summary.safe {
-        said += &format!(", bench {}", word(safe));
-    }
-    if let Some(reason) = &summary.reason {
-        said += &format!(": {reason}");
-    }
-    if let Some(why) = &summary.not_stored {
-        said += &format!("; not yet stored: {why}");
-    }
-    let can_go_on = jointbench_procedure::procedure(&summary.procedure).is_some_and(|one| one.goes_on().is_ok());
-    if can_go_on && is_over(summary.state) && summary.state != RunState::Completed && summary.rows > 0 {
-        said += &format!("; complete it with `jointbench run --continue {}`", summary.id);
-    }
-    said
 }
 
 #[cfg(test)]

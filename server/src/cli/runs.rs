@@ -3,7 +3,7 @@
 use super::arguments::Runs;
 use super::exit::Done;
 use super::offline::json_out;
-use super::run::is_over;
+use super::outcome::is_over;
 use super::serve::runtime;
 use super::transfer::{Way, open};
 use crate::lab::{LabError, Order, RunFilter};

@@ -3,7 +3,8 @@
 use super::arguments::{Reset, Steer, Stop};
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::run::{LOOK_EVERY, choose_bench, ending, is_over, wait};
+use super::outcome::{ending, is_over};
+use super::run::{LOOK_EVERY, choose_bench, wait};
 use crate::view::{self, Acknowledgement, Bench, Run, RunList, RunState, Safe};
 
 pub fn stop(arguments: &Stop) -> Done {

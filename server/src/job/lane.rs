@@ -1,6 +1,6 @@
 //! Limits the number of simultaneous and waiting computations.
 
-use crate::lab::LabError;
+use crate::error::LabError;
 use std::sync::Arc;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 

@@ -10,15 +10,15 @@
 //! stdout     one line, answer or refusal; then the answer of the job
 //! ```
 
-mod inside;
 mod lane;
+mod parameters;
 mod process;
 mod reply;
 
-pub use inside::main;
+pub use parameters::{Alignment, ExportRequest, FileFormat, ImportRequest, Most, Offer};
 pub use process::{Jobs, Streamed};
+pub(crate) use reply::{Head, Refusal};
 
-use crate::lab::{Alignment, ExportRequest, ImportRequest, Most, Offer};
 use crate::view::{EffectTrial, Exclusion};
 use jointbench_procedure::Lesson;
 use serde::{Deserialize, Serialize};
@@ -148,8 +148,8 @@ impl Default for Limits {
 
 /// Input of the process.
 #[derive(Debug, Serialize, Deserialize)]
-struct Request<J> {
-    data: PathBuf,
-    limits: Limits,
-    job: J,
+pub(crate) struct Request<J> {
+    pub data: PathBuf,
+    pub limits: Limits,
+    pub job: J,
 }

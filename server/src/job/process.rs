@@ -3,7 +3,7 @@
 use super::lane::{Lane, Turn, ending};
 use super::reply::Head;
 use super::{GIB, Job, Limits, Request};
-use crate::lab::LabError;
+use crate::error::LabError;
 use axum::body::Bytes;
 use std::path::{Path, PathBuf};
 use std::process::{ExitStatus, Stdio};

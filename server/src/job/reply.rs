@@ -1,6 +1,6 @@
 //! The first line of a reply: an answer follows, or the refusal.
 
-use crate::lab::LabError;
+use crate::error::LabError;
 use jointbench_model::FormulaFault;
 use jointbench_model::formula::Also;
 use serde::{Deserialize, Serialize};

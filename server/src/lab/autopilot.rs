@@ -1,9 +1,9 @@
 //! Autopilots: create, list, stop. [`pilot`](super::pilot) contains their steps.
 
 use super::pilot::{Goal, Pilot};
-use super::{Answer, Lab, LabError, reread};
+use super::{Answer, Lab, LabError};
 use crate::store::AutopilotRecord;
-use crate::view::{Autopilot, AutopilotState, AutopilotStep, NewAutopilot, NewExperiment};
+use crate::view::{Autopilot, AutopilotState, AutopilotStep, NewAutopilot, NewExperiment, reread};
 use jointbench_instrument::Kind;
 use serde_json::{Map, Value};
 use std::collections::HashMap;

@@ -1,13 +1,12 @@
 //! Benches and requests to them.
 
 use super::calibrations::BRAKE_MODEL;
-use super::convert::{bench_view, safety_entry};
 use super::models::blocking;
 use super::{Answer, Lab, LabError};
-use crate::bench::BenchHandle;
+use crate::bench::{BenchHandle, bench_view};
 use crate::job::Job;
 use crate::store::RunFilter;
-use crate::view::{self, Bench, BenchState};
+use crate::view::{self, Bench, BenchState, reread, safety_entry};
 use jointbench_instrument::zero::TORQUE_ZERO;
 use jointbench_procedure::catalogue::{BrakeModel, brake_model};
 use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
@@ -192,7 +191,7 @@ impl Lab {
 
 /// Preview of a plan on its bench, with the conditions that prevent a start now.
 pub(super) fn previewed(bench: &BenchHandle, plan: &Plan) -> Answer<view::Preview> {
-    let mut preview: view::Preview = super::reread(&plan.preview(&bench.facts()))?;
+    let mut preview: view::Preview = reread(&plan.preview(&bench.facts()))?;
     preview.wait_s = bench.description().pace().map(|pace| preview.duration_s / pace);
     preview.checks.extend(readiness(bench));
     Ok(preview)

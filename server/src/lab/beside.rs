@@ -1,8 +1,8 @@
 //! Compares a run, also an active one, with the last model of its bench: does the model still explain the run?
 
-use super::{Answer, Lab, models::blocking, reread};
+use super::{Answer, Lab, models::blocking};
 use crate::job::Job;
-use crate::view::{Beside, Figure, FigureAxis, FigureForm, FigureSeries, Mark};
+use crate::view::{Beside, Figure, FigureAxis, FigureForm, FigureSeries, Mark, reread};
 use jointbench_model::{Fit, Options, ResidualSet, residuals};
 
 /// A plot cannot show more points.

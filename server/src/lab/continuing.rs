@@ -4,7 +4,7 @@ use super::benches::previewed;
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
 use crate::store::{EventRecord, RunRecord};
-use crate::view::{Preview, Run};
+use crate::view::{Preview, Run, reread};
 use jiff::Timestamp;
 use jointbench_instrument::{Meta, RunTable, TableFault};
 use jointbench_procedure::continuing::{Continues, Done, joined, learnt_from};
@@ -158,7 +158,7 @@ impl Lab {
 }
 
 fn continues(record: &RunRecord) -> Answer<Option<Continues>> {
-    let meta: Meta = super::reread(&record.meta)?;
+    let meta: Meta = reread(&record.meta)?;
     Ok(Continues::of(&meta))
 }
 

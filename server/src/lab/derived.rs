@@ -1,24 +1,14 @@
 //! Channels computed from those of a run, and their spectra.
 
 use super::{Answer, Lab, LabError};
-use crate::job::Job;
+use crate::job::{Job, Most};
 use crate::view::{SampleColumn, Samples, SpectrumView, finite};
 use jointbench_model::channels::{ChannelFormula, spectrum};
-use serde::{Deserialize, Serialize};
 
 /// Limit of curves in one plot.
 const FORMULAS: usize = 4;
 const POINTS: u32 = 20_000;
 const TIME: &str = "time_s";
-
-/// Limit of the returned points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Most {
-    /// Smallest and largest value of each pixel, so that a spike of one sample remains visible.
-    Pixels(u32),
-    /// Unchanged rows, evenly selected.
-    Rows(u32),
-}
 
 impl Lab {
     /// A channel for each formula in the window `[from_s, to_s]`.

@@ -2,11 +2,10 @@
 
 use super::statistics::ROWS_AT_ONCE;
 use super::{Answer, Lab, LabError};
-use crate::job::Job;
+use crate::job::{Alignment, Job};
 use crate::view::{Figure, FigureAxis, FigureForm, FigureSeries, Mark};
 use jointbench_instrument::Channel;
 use jointbench_model::words::spoken;
-use serde::{Deserialize, Serialize};
 
 /// Bins along the axis.
 const PLACES: usize = 60;
@@ -20,15 +19,6 @@ const LOAD: &str = "link_torque_nm";
 const LOADS: usize = 8;
 /// Below this share of the maximum speed, the direction is undefined.
 const AT_REST: f64 = 0.01;
-
-/// The compared channel and the alignment axis.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Alignment {
-    pub channel: String,
-    pub by: String,
-    /// The event that is the zero of time.
-    pub from: Option<String>,
-}
 
 impl Lab {
     /// The channel over the alignment axis (unless that is time), and the differences from the first run with two

@@ -2,11 +2,11 @@
 
 use super::calibrations::applies;
 use super::working::{Subject as Turn, patiently};
-use super::{Answer, Lab, LabError, reread};
+use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
 use crate::job::Job;
 use crate::store::Subject;
-use crate::view::{Earlier, FollowUp, Identification, LiveMessage, Quantity, Shown, word};
+use crate::view::{Earlier, FollowUp, Identification, LiveMessage, Quantity, Shown, reread, word};
 use jointbench_procedure::RunState;
 use jointbench_procedure::parameter::Values;
 use serde::Serialize;

@@ -1,9 +1,8 @@
 //! The log: safety records of the benches, events of runs, model versions and tokens in one list.
 
-use super::convert::run_event;
 use super::{Answer, Lab, LabError};
 use crate::store::{CalibrationRecord, RunFilter, RunRecord, SafetyRecord};
-use crate::view::{Effect, LogEntry};
+use crate::view::{Effect, LogEntry, run_event};
 use jiff::{SignedDuration, Timestamp};
 
 /// Number of runs in one request.

@@ -2,10 +2,12 @@
 
 use super::excluding;
 use super::working::{Subject as Turn, json, parsed};
-use super::{Answer, Lab, LabError, Offer, convert, next_run, reread};
+use super::{Answer, Lab, LabError, Offer, next_run};
 use crate::job::Job;
 use crate::store::{ModelRecord, NewModel, Subject, packed, unpacked};
-use crate::view::{self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ResidualSet, finite};
+use crate::view::{
+    self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ResidualSet, diagnosis_view, finite, model_view, reread,
+};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, OwnEffect};
 use serde::{Deserialize, Serialize};
@@ -81,7 +83,7 @@ impl Lab {
         if parent.is_none()
             && let Some(there) = self.first_version(run, more_runs, &spec, &excluded).await?
         {
-            return convert::model(there);
+            return Ok(model_view(there)?);
         }
         let offer = self.offer(runs, None).await?;
         let job = Job::Fit { runs: runs.to_vec(), effects: effects.to_vec(), excluded: excluded.clone(), offer };
@@ -101,7 +103,7 @@ impl Lab {
             "model fitted"
         );
         self.hub().tell(LiveMessage::Model { run, model: record.id });
-        convert::model(record)
+        Ok(model_view(record)?)
     }
 
     /// What a new version leaves out: the given exclusions, otherwise those of its parent.
@@ -176,7 +178,7 @@ impl Lab {
     pub async fn keep_model(&self, id: i64, by: &str) -> Answer<Model> {
         let record = self.inner.store.keep_model(id, by).await?;
         self.hub().tell(LiveMessage::Model { run: record.run, model: id });
-        convert::model(record)
+        Ok(model_view(record)?)
     }
 
     /// An existing version of the same effects, runs and exclusions without a parent. Pages that open a run at the same
@@ -202,11 +204,11 @@ impl Lab {
     }
 
     pub async fn models(&self, run: i64) -> Answer<Vec<Model>> {
-        self.inner.store.models(run).await?.into_iter().map(convert::model).collect()
+        self.inner.store.models(run).await?.into_iter().map(|record| Ok(model_view(record)?)).collect()
     }
 
     pub async fn model(&self, id: i64) -> Answer<Model> {
-        convert::model(self.inner.store.model(id).await?)
+        Ok(model_view(self.inner.store.model(id).await?)?)
     }
 
     /// The data that a version was fitted to.
@@ -252,7 +254,7 @@ impl Lab {
         let offer = self.offer(&record.runs(), None).await?;
         let diagnosis: Value = self.work_out(Job::Diagnose { model, offer }).await?;
         let kept = self.inner.store.save_diagnosis(model, &diagnosis).await?;
-        convert::diagnosis(kept, record.run)
+        Ok(diagnosis_view(kept, record.run)?)
     }
 
     /// The last diagnosis, if it is based on the current effects.
@@ -262,7 +264,7 @@ impl Lab {
         if known.own != self.own_of(&reread(&record.fit)?).await? {
             return Ok(None);
         }
-        convert::diagnosis(kept, record.run).map(Some)
+        Ok(Some(diagnosis_view(kept, record.run)?))
     }
 
     pub(super) async fn diagnose_here(&self, model: i64, offer: Option<Offer>) -> Answer<Value> {
@@ -272,7 +274,7 @@ impl Lab {
         let spec = ModelSpec::with_own(table.kind(), &record.effects, own)?;
         let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
         let diagnosis = blocking(move || diagnose(&table, &spec, &Options::default(), &offer)).await?;
-        reread(&diagnosis)
+        Ok(reread(&diagnosis)?)
     }
 
     /// Users' effects in their version of the fit, and the other effects of this kind.
@@ -285,13 +287,13 @@ impl Lab {
     pub async fn diagnosis(&self, id: i64) -> Answer<Diagnosis> {
         let record = self.inner.store.diagnosis(id).await?;
         let run = self.inner.store.model(record.model).await?.run;
-        convert::diagnosis(record, run)
+        Ok(diagnosis_view(record, run)?)
     }
 
     pub async fn diagnoses(&self, model: i64) -> Answer<Vec<Diagnosis>> {
         let run = self.inner.store.model(model).await?.run;
         let records = self.inner.store.diagnoses(model).await?;
-        records.into_iter().map(|record| convert::diagnosis(record, run)).collect()
+        records.into_iter().map(|record| Ok(diagnosis_view(record, run)?)).collect()
     }
 }
 

@@ -1,11 +1,12 @@
 //! Effects that users write: checked, stored, and available to every model of their kind.
 
 use super::models::{blocking, effect_view, find_kind};
-use super::{Answer, Lab, LabError, names, reread};
+use super::{Answer, Lab, LabError, names};
 use crate::job::Job;
 use crate::store::OwnEffectRecord;
 use crate::view::{
     Effect, EffectCheck, EffectDefinition, EffectTrial, FittedParameter, FormulaLanguage, FormulaSignal, LiveMessage,
+    reread,
 };
 use jointbench_instrument::Kind;
 use jointbench_model::formula::{self, Function};

@@ -4,10 +4,10 @@
 //! given effects: effects that were added with less data must prove significant again.
 
 use super::working::patiently;
-use super::{Answer, Lab, LabError, reread};
+use super::{Answer, Lab, LabError};
 use crate::view::{
     AutopilotAction, AutopilotState, AutopilotStep, Experiment, Finding, LiveMessage, Model, NewAutopilot, Run,
-    RunState, Suggestion,
+    RunState, Suggestion, reread,
 };
 use jointbench_instrument::Meta;
 use jointbench_procedure::Control;
@@ -77,10 +77,9 @@ impl Pilot {
         };
         let End { state, reason } = end.unwrap_or_else(|fault| End::new(AutopilotState::Failed, fault.to_string()));
         tracing::info!(autopilot.id = self.id, ?state, reason, "autopilot ended");
-        let word: Answer<String> = reread(&state);
-        let kept = match word {
+        let kept = match reread::<_, String>(&state) {
             Ok(word) => self.lab.inner.store.end_autopilot(self.id, &word, &reason).await.map_err(LabError::from),
-            Err(fault) => Err(fault),
+            Err(fault) => Err(fault.into()),
         };
         if let Err(fault) = kept {
             tracing::error!(autopilot.id = self.id, %fault, "how the autopilot ended could not be kept");

@@ -2,10 +2,10 @@
 
 use super::models::blocking;
 use super::working::Subject as Turn;
-use super::{Answer, Lab, LabError, convert, reread};
+use super::{Answer, Lab, LabError};
 use crate::job::Job;
 use crate::store::{NewModel, Subject};
-use crate::view::{Comparison, Evaluation, ImportedModel, LiveMessage, ModelImport, Worth, finite};
+use crate::view::{Comparison, Evaluation, ImportedModel, LiveMessage, ModelImport, Worth, finite, model_view, reread};
 use jointbench_model::export::{Format, ModelFile, export};
 use jointbench_model::{Fit, ModelSpec, Options, OwnEffect};
 
@@ -25,7 +25,7 @@ impl Lab {
     pub(super) async fn compare_here(&self, first: i64, second: i64, run: i64) -> Answer<Comparison> {
         let (first, second) = (self.fit(first).await?, self.fit(second).await?);
         let table = self.measurement(run).await?;
-        reread(&blocking(move || jointbench_model::compare(&first, &second, &table)).await?)
+        Ok(reread(&blocking(move || jointbench_model::compare(&first, &second, &table)).await?)?)
     }
 
     /// The validation error without each effect in turn; the order of addition has no influence. Cached, and computed
@@ -110,7 +110,7 @@ impl Lab {
     pub(super) async fn evaluate_here(&self, model: i64, run: i64) -> Answer<Evaluation> {
         let fit = self.fit(model).await?;
         let table = self.measurement(run).await?;
-        reread(&blocking(move || jointbench_model::evaluate(&fit, &table)).await?)
+        Ok(reread(&blocking(move || jointbench_model::evaluate(&fit, &table)).await?)?)
     }
 
     /// The exported model and the run that it was fitted to.
@@ -152,7 +152,7 @@ impl Lab {
         let record = self.inner.store.save_model(&new).await?;
         tracing::info!(run.id = import.run, model.id = record.id, "model imported");
         self.hub().tell(LiveMessage::Model { run: import.run, model: record.id });
-        Ok(ImportedModel { model: convert::model(record)?, notes: held.notes })
+        Ok(ImportedModel { model: model_view(record)?, notes: held.notes })
     }
 
     pub(super) async fn evaluate_file_here(&self, file: serde_json::Value, run: i64) -> Answer<Evaluation> {
@@ -163,11 +163,11 @@ impl Lab {
             let why = "predictions of this model on the run are not finite: check its parameters";
             return Err(LabError::Invalid(why.to_owned()));
         }
-        reread(&held)
+        Ok(reread(&held)?)
     }
 
     async fn fit(&self, model: i64) -> Answer<Fit> {
-        reread(&self.inner.store.model(model).await?.fit)
+        Ok(reread(&self.inner.store.model(model).await?.fit)?)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Access tokens. The tokens at the start of the daemon decide whether a token is required, and cannot be revoked here:
 //! a person who can start the daemon has access anyway.
 
-use super::{Answer, Lab, LabError, names, reread};
+use super::{Answer, Lab, LabError, names};
 use crate::store::TokenRecord;
-use crate::view::{Access, MadeToken, NewToken, Token, word};
+use crate::view::{Access, MadeToken, NewToken, Token, reread, word};
 use jiff::{SignedDuration, Timestamp};
 use sha2::{Digest, Sha256};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};

@@ -3,9 +3,9 @@
 
 use super::statistics::ROWS_AT_ONCE;
 use super::{Answer, Lab, LabError, UPLOADS};
-use crate::job::Job;
+use crate::job::{ImportRequest, Job};
 use crate::store::{BLOCK_ROWS, NewRun, RunFilter};
-use crate::view::Run;
+use crate::view::{Run, reread};
 use jointbench_files::{
     Bounds, Choices, Note, Preview, ReadOptions, paragraph, parse_meta, preview, understand_upload,
 };
@@ -26,19 +26,6 @@ pub const ATTENTION: &str = "attention";
 pub const UNDERSTOOD: &str = "understood";
 /// Exported metadata of a simulated run, so that an import does not show it as a hardware run.
 pub(super) const SIMULATED: &str = "simulated";
-
-/// A measured file and the data needed to read it.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct ImportRequest {
-    /// Name of the run; default: name of the file.
-    pub name: Option<String>,
-    /// Determines the format, and appears in messages.
-    pub file_name: String,
-    /// Path of the data.
-    pub file: PathBuf,
-    pub meta: Option<String>,
-    pub choices: Choices,
-}
 
 /// Content of a file except for its rows.
 #[derive(Debug, Serialize, Deserialize)]
@@ -127,8 +114,8 @@ impl Lab {
             kind,
             simulated,
             parameters: serde_json::Map::new(),
-            provenance: super::reread(&provenance)?,
-            meta: super::reread(&meta)?,
+            provenance: reread(&provenance)?,
+            meta: reread(&meta)?,
         };
         let run = self.inner.store.import_parts(&new, parts(rows, channels, count)).await?;
         tracing::info!(run.id = run, name, rows = count, "run imported");

@@ -2,8 +2,7 @@
 //! commit waits for it.
 
 use super::mark::{Mark, MarkFile};
-use super::open::PATIENCE;
-use super::runs::now;
+use super::values::now;
 use super::{Store, StoreError};
 use serde::{Deserialize, Serialize};
 use sqlx::sqlite::SqliteConnectOptions;
@@ -13,6 +12,9 @@ use std::time::Duration;
 use tokio::sync::{Mutex, watch};
 use tokio::task::JoinHandle;
 use utoipa::ToSchema;
+
+/// Waiting time for a database that another program has locked, and for the one writer connection.
+pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The hook runs before its commit is on the disk. The keeper checks after this pause and doubles it each time.
 const FIRST_PAUSE: Duration = Duration::from_millis(2);

@@ -9,6 +9,7 @@ mod backup;
 mod calibrations;
 pub mod codec;
 mod commit;
+mod ends;
 mod error;
 mod faults;
 mod full_disk;
@@ -32,6 +33,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 mod tokens;
+mod values;
 mod verify;
 mod view;
 

@@ -1,7 +1,8 @@
 //! Model versions, a tree that only grows, and the diagnoses of the versions.
 
-use super::runs::{exists, json, now};
+use super::runs::exists;
 use super::seal::{DIAGNOSES, MODELS, whole};
+use super::values::{json, now};
 use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError, Subject, VersionRecord, kept};
 use jointbench_procedure::RunId;
 use serde_json::Value;

@@ -1,7 +1,7 @@
 //! Effects that users write. New models use the latest version of each effect.
 
-use super::runs::{json, now};
 use super::seal::{OWN_EFFECTS, whole};
+use super::values::{json, now};
 use super::{OwnEffectRecord, Store, StoreError};
 use serde_json::Value;
 use sqlx::Row;

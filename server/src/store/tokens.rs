@@ -1,7 +1,7 @@
 //! Tokens that were created while the daemon ran. The store receives only hashes of their secrets.
 
-use super::runs::now;
 use super::seal::whole;
+use super::values::now;
 use super::{Store, StoreError, TokenRecord};
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;

@@ -1,6 +1,6 @@
 //! A window of a run reduced to a plot width: no more points than pixels, and no hidden spikes.
 
-use super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
+use super::pyramid::{self, COARSE_ROWS, Extremes, FINE_ROWS};
 use super::samples::{Chosen, choose, read, tail};
 use super::seal::{COARSE, FINE, SPANS};
 use super::{Store, StoreError, View, ViewColumn};
@@ -8,22 +8,6 @@ use jointbench_procedure::RunId;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{Row, SqliteConnection};
 use std::ops::Range;
-
-/// Smallest and largest values of consecutive bins.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Extremes {
-    pub min: Vec<f64>,
-    pub max: Vec<f64>,
-}
-
-impl Extremes {
-    /// A bin that is empty or contains only NaN arrives as (∞, −∞) and is stored as NaN.
-    pub fn push(&mut self, min: f64, max: f64) {
-        let empty = min > max;
-        self.min.push(if empty { f64::NAN } else { min });
-        self.max.push(if empty { f64::NAN } else { max });
-    }
-}
 
 impl Store {
     /// Samples from `from_s` to `to_s`, both included, as at most `px` points with the smallest and largest value of

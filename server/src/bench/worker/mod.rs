@@ -12,7 +12,6 @@ mod press_file;
 mod recorder;
 mod seat;
 
-pub(super) use seat::file_name;
 pub use seat::wait_until_gone;
 
 use super::leftovers;

@@ -2,6 +2,7 @@
 
 use super::Command;
 use super::desk::Desk;
+use crate::bench::leftovers::file_name;
 use jointbench_procedure::Control;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
@@ -47,11 +48,6 @@ pub fn wait_until_gone(data: &Path) {
             std::thread::sleep(LOOK_EVERY);
         }
     }
-}
-
-/// The name of a bench as a file name.
-pub fn file_name(bench: &str) -> String {
-    percent_encoding::utf8_percent_encode(bench, percent_encoding::NON_ALPHANUMERIC).to_string()
 }
 
 /// Gives control priority over fits and requests, if the system allows it. A bench in real time gets the real-time

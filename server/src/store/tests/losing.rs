@@ -1,6 +1,6 @@
 //! A removed or truncated write-ahead log, and its detection by the mark.
 
-use super::super::runs::now;
+use super::super::values::now;
 use super::super::{Loss, StoreError, verify};
 use super::*;
 use std::fs;

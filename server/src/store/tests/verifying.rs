@@ -1,6 +1,6 @@
 //! Tests of the complete check and of backups.
 
-use super::super::runs::now;
+use super::super::values::now;
 use super::super::{StoreError, VerifyReport, backup, restore, verify};
 use super::damage::damage;
 use super::*;

@@ -2,9 +2,9 @@
 
 use super::super::StoreError;
 use super::super::codec;
+use super::super::pyramid::Extremes;
 use super::super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
 use super::super::seal::{BLOCKS, COARSE, FINE, SPANS, Sealed, TAIL};
-use super::super::view::Extremes;
 use super::VerifyReport;
 use super::records::what;
 use jointbench_procedure::RunId;

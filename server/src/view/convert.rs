@@ -1,24 +1,24 @@
 //! Converts records of the store and types of the lower crates to views.
 
-use super::LabError;
-use crate::bench::Status;
-use crate::config::BenchDescription;
 use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyRecord};
 use crate::view;
-use jiff::Timestamp;
 use jointbench_instrument::Motion;
-use jointbench_instrument::limits::Limited;
 use jointbench_procedure::{Control, EventKind, RunState, Safe};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+/// A value that is not valid in a view, such as NaN.
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("{0}")]
+pub struct ConversionError(String);
+
 /// Converts a type to another through JSON. NaN becomes `null`, which a number refuses, so non-finite values cause an
 /// error.
-pub fn reread<T: Serialize, U: DeserializeOwned>(value: &T) -> Result<U, LabError> {
-    let json = serde_json::to_value(value).map_err(|fault| LabError::Internal(fault.to_string()))?;
+pub fn reread<T: Serialize, U: DeserializeOwned>(value: &T) -> Result<U, ConversionError> {
+    let json = serde_json::to_value(value).map_err(|fault| ConversionError(fault.to_string()))?;
     serde_json::from_value(json)
-        .map_err(|fault| LabError::Internal(format!("a result is not finite or not whole: {fault}")))
+        .map_err(|fault| ConversionError(format!("a result is not finite or not whole: {fault}")))
 }
 
 pub fn state_view(state: RunState) -> view::RunState {
@@ -44,48 +44,12 @@ pub fn safe_view(safe: Safe) -> view::Safe {
     }
 }
 
-pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Bench {
-    let constants = description.constants;
-    view::Bench {
-        name: description.name.clone(),
-        simulated: description.is_simulated(),
-        state: status.state,
-        blocked: status.blocked.clone(),
-        run: status.run,
-        instruments: status.instruments.clone(),
-        limits: Limited::ALL
-            .iter()
-            .map(|quantity| view::Limit {
-                quantity: quantity.name().to_owned(),
-                unit: quantity.unit().to_owned(),
-                limit: description.limits.of(*quantity),
-                value: status.reading(*quantity),
-            })
-            .collect(),
-        unstored: (status.unstored.rows > 0 || status.unstored.fault.is_some()).then(|| view::Unstored {
-            rows: status.unstored.rows as u64,
-            since: status.unstored.since.map(|since| format!("{since:.3}")),
-            fault: status.unstored.fault.clone(),
-        }),
-        channels: status.channels.iter().map(|channel| channel.told(Timestamp::now())).collect(),
-        constants: view::Constants {
-            torque_constant_nm_per_a: constants.torque_constant_nm_per_a,
-            gear_ratio: constants.gear_ratio,
-            rotor_inertia_kg_m2: constants.rotor_inertia_kg_m2,
-            brake_compliance_v: constants.brake_compliance_v,
-            brake_rated_current_a: constants.brake_rated_current_a,
-            brake_rated_torque_nm: constants.brake_rated_torque_nm,
-            link_range_rad: constants.link_range_rad,
-        },
-    }
-}
-
-pub(super) fn safety_entry(record: SafetyRecord) -> view::SafetyEntry {
+pub fn safety_entry(record: SafetyRecord) -> view::SafetyEntry {
     let SafetyRecord { blocked, stopped, reason, run, by, at } = record;
     view::SafetyEntry { blocked, stopped, reason, run, by, at }
 }
 
-pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
+pub fn run_summary(record: &RunRecord) -> view::RunSummary {
     let is_modelled =
         jointbench_procedure::procedure(&record.procedure).is_none_or(|procedure| procedure.is_modelled());
     view::RunSummary {
@@ -113,23 +77,14 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
     }
 }
 
-/// A run whose end is not stored is shown with the state of its worker.
-pub(super) fn as_it_is(run: &mut view::RunSummary, status: &Status) {
-    let Some((underway, fault)) = status.not_stored(run.id) else { return };
-    run.state = state_view(underway.state);
-    run.safe = underway.safe.map(safe_view);
-    run.reason = underway.reason.clone();
-    run.not_stored = Some(fault.to_owned());
-}
-
-pub(super) fn run(record: RunRecord, progress: Option<view::Progress>) -> view::Run {
+pub fn run_view(record: RunRecord, progress: Option<view::Progress>) -> view::Run {
     let motion: Motion = record.meta.get("motion").and_then(|motion| reread(motion).ok()).unwrap_or_default();
     let channel = |channel| {
         let told = view::ChannelInfo::from(channel);
         view::ChannelInfo { unit: told.unit.map(|unit| motion.label(&unit)), ..told }
     };
     view::Run {
-        summary: summary(&record),
+        summary: run_summary(&record),
         channels: record.channels.iter().map(channel).collect(),
         parameters: record.parameters,
         provenance: record.provenance,
@@ -186,7 +141,7 @@ fn sentence(kind: &EventKind) -> String {
     }
 }
 
-pub(super) fn model(record: ModelRecord) -> Result<view::Model, LabError> {
+pub fn model_view(record: ModelRecord) -> Result<view::Model, ConversionError> {
     Ok(view::Model {
         id: record.id,
         run: record.run,
@@ -210,7 +165,7 @@ pub(super) fn model(record: ModelRecord) -> Result<view::Model, LabError> {
     })
 }
 
-pub(super) fn diagnosis(record: DiagnosisRecord, run: i64) -> Result<view::Diagnosis, LabError> {
+pub fn diagnosis_view(record: DiagnosisRecord, run: i64) -> Result<view::Diagnosis, ConversionError> {
     Ok(view::Diagnosis {
         id: record.id,
         model_id: record.model,

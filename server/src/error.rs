@@ -70,17 +70,35 @@ impl LabError {
 impl From<crate::store::StoreError> for LabError {
     fn from(error: crate::store::StoreError) -> Self {
         use crate::store::StoreError as E;
-        let said = error.to_string();
+        let message = error.to_string();
         match error {
             E::NoRun(id) => LabError::no_run(id),
             E::NoModel(id) => LabError::no_model(id),
-            _ if error.is_not_found() => LabError::NotFound(said),
-            _ if error.is_setup() => LabError::Setup(said),
-            E::OtherRun { .. } | E::Search { .. } | E::Order { .. } | E::TokenExists(_) => LabError::Invalid(said),
-            E::RunOver { .. } | E::EffectUsed { .. } => LabError::Conflict(said),
-            E::Held | E::DiskFull => LabError::Busy(said),
-            _ => LabError::Internal(said),
+            _ if error.is_not_found() => LabError::NotFound(message),
+            _ if error.is_setup() => LabError::Setup(message),
+            E::OtherRun { .. } | E::Search { .. } | E::Order { .. } | E::TokenExists(_) => LabError::Invalid(message),
+            E::RunOver { .. } | E::EffectUsed { .. } => LabError::Conflict(message),
+            E::Held | E::DiskFull => LabError::Busy(message),
+            _ => LabError::Internal(message),
         }
+    }
+}
+
+impl From<crate::bench::BenchError> for LabError {
+    fn from(error: crate::bench::BenchError) -> Self {
+        use crate::bench::BenchError as E;
+        let message = error.to_string();
+        match error {
+            E::Busy(_) => LabError::Conflict(message),
+            E::Instrument(_) => LabError::Bench(message),
+            E::NoServo(_) => LabError::Invalid(message),
+        }
+    }
+}
+
+impl From<crate::view::ConversionError> for LabError {
+    fn from(error: crate::view::ConversionError) -> Self {
+        LabError::Internal(error.to_string())
     }
 }
 

@@ -1,7 +1,6 @@
 //! The process of a job: `jointbench job`.
 
-use super::reply::{Head, Refusal};
-use super::{Job, Limits, Request};
+use crate::job::{Head, Job, Limits, Refusal, Request};
 use crate::lab::{Lab, LabError};
 use crate::store::Store;
 use std::io::{self, BufRead, Read, Write};
