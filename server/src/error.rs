@@ -140,9 +140,9 @@ impl From<jointbench_instrument::TableFault> for LabError {
     }
 }
 
-impl From<crate::config::Mistakes> for LabError {
-    fn from(mistakes: crate::config::Mistakes) -> Self {
-        let line = mistakes.mistakes.first().map(|mistake| mistake.line as u64);
-        LabError::File { detail: mistakes.to_string(), line, column: None }
+impl From<crate::config::ConfigErrors> for LabError {
+    fn from(errors: crate::config::ConfigErrors) -> Self {
+        let line = errors.errors.first().map(|error| error.line as u64);
+        LabError::File { detail: errors.to_string(), line, column: None }
     }
 }

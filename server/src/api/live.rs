@@ -46,14 +46,14 @@ pub async fn stream(
     Ok(upgrade.on_upgrade(async move |socket| {
         tokio::select! {
             () = serve(socket, lab.clone()) => {}
-            () = lab.shut_out(&caller) => {}
+            () = lab.until_revoked(&caller) => {}
         }
     }))
 }
 
 /// Serves one client until it disconnects.
 async fn serve(mut socket: WebSocket, lab: Lab) {
-    let mut pieces = lab.hub().listen();
+    let mut pieces = lab.hub().subscribe();
     let mut outbox = Outbox::default();
     for bench in lab.benches() {
         outbox.text(&LiveMessage::Bench { bench: Box::new(bench) });

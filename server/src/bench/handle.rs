@@ -122,7 +122,7 @@ impl BenchHandle {
     pub async fn stop(&self, by: &str) {
         let run = self.shared.status.borrow().run;
         let block = self.shared.new_block(true, STOPPED, run, Some(by));
-        let known = self.shared.order_and_hear(|ticket| Order::Stop { block: block.clone(), ticket });
+        let known = self.shared.order_with_reply(|ticket| Order::Stop { block: block.clone(), ticket });
         let at = block.at.clone();
         self.shared.enter(block);
         match known {
@@ -145,7 +145,7 @@ impl BenchHandle {
             let status = self.shared.status.borrow();
             status.instruments.iter().filter(|one| !one.ready).map(|one| one.name.clone()).collect()
         };
-        let done = self.shared.order_and_hear(|ticket| Order::Reopen { wanting, ticket }).map_err(|_| self.gone())?;
+        let done = self.shared.order_with_reply(|ticket| Order::Reopen { wanting, ticket }).map_err(|_| self.gone())?;
         done.await.map(drop).map_err(|_| self.gone())
     }
 
@@ -153,7 +153,7 @@ impl BenchHandle {
     pub async fn read_memory(&self, ranges: Vec<(u8, u8)>) -> Result<Vec<Vec<u8>>, BenchError> {
         let _claim = self.claim()?;
         let done =
-            self.shared.order_and_hear(|ticket| Order::ReadMemory { ranges, ticket }).map_err(|_| self.gone())?;
+            self.shared.order_with_reply(|ticket| Order::ReadMemory { ranges, ticket }).map_err(|_| self.gone())?;
         match done.await.map_err(|_| self.gone())? {
             Some(MemoryRead::Read(bytes)) => Ok(bytes),
             Some(MemoryRead::Failed(why)) => Err(BenchError::Instrument(format!("bench {}: {why}", self.name()))),

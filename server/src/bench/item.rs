@@ -1,6 +1,6 @@
 //! Queue entries of the [`keeper`](super::keeper).
 
-use super::status::New;
+use super::status::NewFault;
 use super::wire::Entry;
 use jointbench_procedure::{RunId, Safe};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ pub(super) enum Item {
         safe: Safe,
         reason: &'static str,
     },
-    Fault(New),
+    Fault(NewFault),
     /// Answered when all earlier items are stored.
     Flush(oneshot::Sender<()>),
 }

@@ -98,7 +98,7 @@ impl Shared {
     }
 
     /// Sends an order and returns a receiver for its completion, with the data that was read.
-    pub fn order_and_hear(
+    pub fn order_with_reply(
         &self,
         order: impl FnOnce(u64) -> Order,
     ) -> Result<oneshot::Receiver<Option<MemoryRead>>, NoWorker> {
@@ -122,15 +122,15 @@ impl Shared {
     }
 
     pub fn change<T: Default>(&self, change: impl FnOnce(&mut Status) -> T) -> T {
-        let mut told = T::default();
-        self.status.send_modify(|status| told = change(status));
-        self.tell_bench();
-        told
+        let mut result = T::default();
+        self.status.send_modify(|status| result = change(status));
+        self.publish_bench();
+        result
     }
 
-    pub fn tell_bench(&self) {
+    pub fn publish_bench(&self) {
         let bench = bench_view(&self.description, &self.status.borrow());
-        self.hub.tell(LiveMessage::Bench { bench: Box::new(bench) });
+        self.hub.publish(LiveMessage::Bench { bench: Box::new(bench) });
     }
 
     /// A block from now on. It keeps an earlier software stop and its reason.
@@ -153,7 +153,7 @@ impl Shared {
             match status.run {
                 Some(_) if block.stopped => status.state = BenchState::Securing,
                 Some(_) => {}
-                None => status.rest(),
+                None => status.set_idle(),
             }
         });
         keep_block(self.clone(), block);
@@ -164,7 +164,7 @@ impl Shared {
         let is_free = self.change(|status| {
             status.blocked.take_if(|blocked| blocked.since == since);
             if status.run.is_none() {
-                status.rest();
+                status.set_idle();
             }
             status.blocked.is_none()
         });

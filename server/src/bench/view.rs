@@ -29,7 +29,7 @@ pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Benc
             since: status.unstored.since.map(|since| format!("{since:.3}")),
             fault: status.unstored.fault.clone(),
         }),
-        channels: status.channels.iter().map(|channel| channel.told(Timestamp::now())).collect(),
+        channels: status.channels.iter().map(|channel| channel.view(Timestamp::now())).collect(),
         constants: view::Constants {
             torque_constant_nm_per_a: constants.torque_constant_nm_per_a,
             gear_ratio: constants.gear_ratio,

@@ -22,19 +22,19 @@ pub fn main() -> ExitCode {
         eprintln!("jointbench job: internal command of the daemon, with a request on standard input");
         return ExitCode::from(2);
     };
-    stay_small(request.limits);
+    limit_resources(request.limits);
     // The daemon learns about this process from its standard error and exit code.
     std::panic::set_hook(Box::new(|panic| eprintln!("{panic}")));
-    end_with_whoever_asked();
-    let begun = Arc::<AtomicBool>::default();
-    let out = Answering { begun: begun.clone() };
+    exit_with_daemon();
+    let has_begun = Arc::<AtomicBool>::default();
+    let out = Answering { has_begun: has_begun.clone() };
     match answer(request, out) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(fault) if begun.load(Ordering::Acquire) => {
+        Err(fault) if has_begun.load(Ordering::Acquire) => {
             eprintln!("{fault}");
             ExitCode::FAILURE
         }
-        Err(fault) => match said(&Head::Refused(Box::new(Refusal::from(fault))).line()) {
+        Err(fault) => match write_stdout(&Head::Refused(Box::new(Refusal::from(fault))).line()) {
             Ok(()) => ExitCode::SUCCESS,
             Err(_) => ExitCode::FAILURE,
         },
@@ -60,7 +60,7 @@ fn answer(request: Request<Job>, mut out: Answering) -> Result<(), LabError> {
 /// Limits the memory of this process and lowers its priority. If memory is short, the system kills this process before
 /// the daemon.
 #[cfg(unix)]
-fn stay_small(limits: Limits) {
+fn limit_resources(limits: Limits) {
     use rustix::process::{Resource, Rlimit, nice, setrlimit};
     let limit = Rlimit { current: Some(limits.memory_bytes), maximum: Some(limits.memory_bytes) };
     if let Err(fault) = setrlimit(Resource::As, limit) {
@@ -76,10 +76,10 @@ fn stay_small(limits: Limits) {
 
 /// Only the time limit applies on such a system.
 #[cfg(not(unix))]
-fn stay_small(_: Limits) {}
+fn limit_resources(_: Limits) {}
 
 /// The daemon holds the other end of standard input. If it closes, also by `kill -9`, no client waits for the result.
-fn end_with_whoever_asked() {
+fn exit_with_daemon() {
     let watch = || {
         let _ = io::stdin().lock().read(&mut [0]);
         std::process::exit(1);
@@ -89,15 +89,15 @@ fn end_with_whoever_asked() {
 
 /// Standard output; the head of an answer is written before the first byte.
 struct Answering {
-    begun: Arc<AtomicBool>,
+    has_begun: Arc<AtomicBool>,
 }
 
 impl Write for Answering {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if !self.begun.swap(true, Ordering::AcqRel) {
-            said(&Head::Answer.line())?;
+        if !self.has_begun.swap(true, Ordering::AcqRel) {
+            write_stdout(&Head::Answer.line())?;
         }
-        said(bytes)?;
+        write_stdout(bytes)?;
         Ok(bytes.len())
     }
 
@@ -107,7 +107,7 @@ impl Write for Answering {
 }
 
 /// Avoids the line buffer of standard output, which would search tables for line ends.
-fn said(bytes: &[u8]) -> io::Result<()> {
+fn write_stdout(bytes: &[u8]) -> io::Result<()> {
     let out = io::stdout();
     let mut out = out.lock();
     out.write_all(bytes)?;

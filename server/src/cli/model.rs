@@ -54,7 +54,7 @@ fn import(model: &Path, run: i64, json: bool, store: &StorePlace) -> Done {
     let fit = open(model)?;
     let file = reread(&ModelFile::new(fit.clone()))?;
     let import = view::ModelImport { run, model: file };
-    let refused = |exit: Exit| Exit { said: format!("{}: {}", model.display(), exit.said), ..exit };
+    let refused = |exit: Exit| Exit { message: format!("{}: {}", model.display(), exit.message), ..exit };
     let (imported, page) = match transfer::open(&runtime, store, false)? {
         Way::Folder(lab) => {
             (runtime.block_on(lab.import_model(import, LOCAL)).map_err(|fault| refused(fault.into()))?, None)

@@ -41,7 +41,7 @@ pub fn discover(arguments: &Discover) -> Done {
     let open = Open { own: spec.own, ..Open::from(&discovery) };
     let next = next_run(&run, &open, &Offer::shown_by(&run), &options);
     discovery.experiment = next.experiment;
-    discovery.summary.extend(next.in_vain.map(|said| format!(" {said}")));
+    discovery.summary.extend(next.in_vain.map(|reason| format!(" {reason}")));
     if arguments.run.json {
         json_out(&discovery)?;
     } else {
@@ -78,8 +78,8 @@ pub fn fit(arguments: &Fit) -> Done {
     if arguments.run.json {
         let mut object: Value = reread(&fit)?;
         if let (Some((file, evaluation)), Some(object)) = (&evaluation, object.as_object_mut()) {
-            let told: Value = reread(evaluation)?;
-            object.insert("evaluation".to_owned(), json!({ "file": file.display().to_string(), "result": told }));
+            let result: Value = reread(evaluation)?;
+            object.insert("evaluation".to_owned(), json!({ "file": file.display().to_string(), "result": result }));
         }
         return json_out(&object);
     }

@@ -21,22 +21,22 @@ pub(super) fn is_over(state: RunState) -> bool {
 
 pub(super) fn ending(run: &Run) -> String {
     let summary = &run.summary;
-    let mut said = format!("run {} {}: {} rows", summary.id, word(summary.state), summary.rows);
+    let mut text = format!("run {} {}: {} rows", summary.id, word(summary.state), summary.rows);
     if let Some(duration_s) = summary.duration_s {
-        said += &format!(" in {duration_s:.1} s of bench time");
+        text += &format!(" in {duration_s:.1} s of bench time");
     }
     if let Some(safe) = summary.safe {
-        said += &format!(", bench {}", word(safe));
+        text += &format!(", bench {}", word(safe));
     }
     if let Some(reason) = &summary.reason {
-        said += &format!(": {reason}");
+        text += &format!(": {reason}");
     }
     if let Some(why) = &summary.not_stored {
-        said += &format!("; not yet stored: {why}");
+        text += &format!("; not yet stored: {why}");
     }
     let can_go_on = jointbench_procedure::procedure(&summary.procedure).is_some_and(|one| one.goes_on().is_ok());
     if can_go_on && is_over(summary.state) && summary.state != RunState::Completed && summary.rows > 0 {
-        said += &format!("; complete it with `jointbench run --continue {}`", summary.id);
+        text += &format!("; complete it with `jointbench run --continue {}`", summary.id);
     }
-    said
+    text
 }

@@ -58,7 +58,7 @@ impl Requirement {
     }
 
     /// Whether a procedure with these results can meet the requirement, or why not.
-    pub fn could_be_kept_by(&self, procedure: &str, finds: &[Findable]) -> Result<(), String> {
+    pub fn can_be_met_by(&self, procedure: &str, finds: &[Findable]) -> Result<(), String> {
         match finds.iter().find(|findable| findable.is(&self.name)) {
             Some(findable) => factor(&self.unit, findable.unit).map(drop).ok_or_else(|| self.in_unit(findable.unit)),
             None => {
@@ -102,16 +102,16 @@ impl Requirement {
             Side::Above => value >= limit,
         };
         let (value, interval) = crate::report::with_interval(quantity.value, quantity.ci95, &quantity.unit);
-        let said = match &interval {
+        let message = match &interval {
             Some(ends) => format!("{}: {} = {value} [{ends}]", self.text, self.name),
             None => format!("{}: {} = {value}", self.text, self.name),
         };
         if !keeps(quantity.value) {
-            Kept::No(said)
+            Kept::No(message)
         } else if quantity.ci95.is_some_and(|ends| !ends.into_iter().all(keeps)) {
-            Kept::Unsure(format!("{said}: the interval exceeds the limit"))
+            Kept::Unsure(format!("{message}: the interval exceeds the limit"))
         } else {
-            Kept::Yes(said)
+            Kept::Yes(message)
         }
     }
 }
@@ -164,11 +164,13 @@ pub(super) mod tests {
         assert!(matches!(check("tau_c<=35 mNm"), Kept::Yes(_)));
         assert!(matches!(check("tau_c > 0.02 Nm"), Kept::Yes(_)));
         assert!(matches!(check("tau_c < 0.030 Nm"), Kept::No(_)));
-        assert!(matches!(check("tau_c < 0.0308 Nm"), Kept::Unsure(said) if said.contains("30.60 mNm [30.20 … 31.00]")));
+        assert!(
+            matches!(check("tau_c < 0.0308 Nm"), Kept::Unsure(message) if message.contains("30.60 mNm [30.20 … 31.00]"))
+        );
     }
 
     #[test]
-    fn what_cannot_be_checked_says_why() {
+    fn an_unknown_requirement_has_a_reason() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
         let why = "--require 'tau_x < 1 Nm': the result does not contain tau_x; did you mean tau_c? available: tau_c";
         assert_eq!(check("tau_x < 1 Nm"), Kept::Unknown(why.to_owned()));

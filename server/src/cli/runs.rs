@@ -97,7 +97,7 @@ mod tests {
     use jiff::tz::TimeZone;
 
     #[test]
-    fn a_moment_is_told_on_the_clock_of_who_reads_it() {
+    fn times_are_shown_in_local_time() {
         let tokyo = TimeZone::fixed(jiff::tz::offset(9));
         assert_eq!(local("2026-11-26T18:13:02.602Z", &tokyo), "2026-11-27 03:13");
         assert_eq!(local("", &tokyo), "");

@@ -27,8 +27,8 @@ pub fn import(arguments: &Import) -> Done {
         if let Some(original) = run.provenance["imported"][COPY_OF].as_i64() {
             println!("  its samples are identical to those of run {original} (a copy, not a repeat)");
         }
-        if let Some(said) = run.provenance["imported"][UNDERSTOOD].as_str() {
-            println!("  {said}");
+        if let Some(note) = run.provenance["imported"][UNDERSTOOD].as_str() {
+            println!("  {note}");
         }
         for sentence in run.provenance["imported"][ATTENTION].as_array().into_iter().flatten() {
             println!("  warning: {}", sentence.as_str().unwrap_or_default());
@@ -60,9 +60,9 @@ pub fn export(arguments: &Export) -> Done {
     write(&path, &bytes)?;
     println!("{}", path.display());
     if format == FileFormat::Csv {
-        let beside = meta_path_of(&path);
-        write(&beside, meta.as_bytes())?;
-        println!("{}", beside.display());
+        let meta_file = meta_path_of(&path);
+        write(&meta_file, meta.as_bytes())?;
+        println!("{}", meta_file.display());
     }
     Ok(())
 }
@@ -70,20 +70,20 @@ pub fn export(arguments: &Export) -> Done {
 /// The requested format, or the format of the file extension.
 fn format(arguments: &Export) -> Result<FileFormat, Exit> {
     let ending = arguments.out.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
-    let said = [FileFormat::Csv, FileFormat::Parquet, FileFormat::Mat]
+    let by_name = [FileFormat::Csv, FileFormat::Parquet, FileFormat::Mat]
         .into_iter()
         .find(|format| Some(format.extension()) == ending);
-    match (arguments.format, said) {
-        (Some(asked), Some(said)) if asked != said => Err(Exit::bad_input(format!(
+    match (arguments.format, by_name) {
+        (Some(asked), Some(by_name)) if asked != by_name => Err(Exit::bad_input(format!(
             "--format {} contradicts the file extension .{}: omit one of them",
             asked.extension(),
-            said.extension()
+            by_name.extension()
         ))),
         (None, None) if ending.is_some() => Err(Exit::bad_input(format!(
             "unknown file extension .{}: use .csv, .parquet or .mat, or choose the format with --format",
             ending.unwrap_or_default()
         ))),
-        (asked, said) => Ok(asked.or(said).unwrap_or(FileFormat::Csv)),
+        (asked, by_name) => Ok(asked.or(by_name).unwrap_or(FileFormat::Csv)),
     }
 }
 
@@ -122,10 +122,10 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
 }
 
 fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportRequest, Exit> {
-    let beside = [meta_path_of(file), file.with_file_name("meta.json")].into_iter().find(|path| path.is_file());
+    let meta_file = [meta_path_of(file), file.with_file_name("meta.json")].into_iter().find(|path| path.is_file());
     let carries_its_own =
         matches!(file.extension().and_then(|end| end.to_str()), Some("parquet" | "arrow" | "feather"));
-    let meta = match (meta, beside) {
+    let meta = match (meta, meta_file) {
         (Some(path), _) => Some(files::read_text(path)?),
         (None, Some(path)) if !carries_its_own => Some(files::read_text(&path)?),
         _ => None,

@@ -45,7 +45,7 @@ pub enum Job {
     Residuals {
         model: i64,
     },
-    Compare {
+    CompareModels {
         first: i64,
         second: i64,
         run: i64,
@@ -74,7 +74,7 @@ pub enum Job {
         run: i64,
         step: Option<String>,
     },
-    Beside {
+    OverlayModel {
         run: i64,
     },
     /// The model that a run of `brake_hysteresis` has identified.
@@ -92,7 +92,7 @@ pub enum Job {
         from_s: Option<f64>,
         to_s: Option<f64>,
     },
-    Differences {
+    CompareRuns {
         runs: Vec<i64>,
         how: Alignment,
     },

@@ -84,7 +84,7 @@ impl Lab {
     /// The catalogue; with a bench, it includes the procedures' problems on that bench.
     pub async fn procedures(&self, bench: Option<&str>) -> Answer<Vec<view::Procedure>> {
         let facts = bench.map(|name| self.handle(name)).transpose()?.map(BenchHandle::facts);
-        let mut told = Vec::new();
+        let mut procedures = Vec::new();
         for one in catalogue() {
             let given = match bench {
                 Some(bench) => self.applied_choices(bench, one.id()).await?.map(|(_, given)| given),
@@ -92,9 +92,9 @@ impl Lab {
             }
             .unwrap_or_default();
             let refused = facts.as_ref().and_then(|facts| refusal(*one, &given, facts));
-            told.push(procedure_view(*one, &given, refused));
+            procedures.push(procedure_view(*one, &given, refused));
         }
-        Ok(told)
+        Ok(procedures)
     }
 
     /// Dry run. Nothing moves.
@@ -125,19 +125,19 @@ impl Lab {
             (source, facts.brake_model) = self.brake_model(bench.name(), i64::from(run)).await?.unzip();
         }
         let mut plan = procedure.plan(&choices, &facts)?;
-        let mut tell = |fact: &str, value: Value| plan.meta.other.insert(fact.to_owned(), value);
+        let mut add = |fact: &str, value: Value| plan.meta.other.insert(fact.to_owned(), value);
         if let Some(run) = source {
-            tell("brake_model_of_run", run.into());
+            add("brake_model_of_run", run.into());
         }
         let used = |(name, value): (&String, &Value)| choices[name].as_f64() == value.as_f64();
         if let Some(run) = friction.filter(|_| given.iter().any(used)) {
-            tell("friction_of_run", run.into());
+            add("friction_of_run", run.into());
         }
         if facts.has_torque_sensor
             && let Some((run, zero_nm)) = self.applied_zero(bench.name(), procedure).await?
         {
-            tell(TORQUE_ZERO, zero_nm.into());
-            tell("torque_sensor_zero_of_run", run.into());
+            add(TORQUE_ZERO, zero_nm.into());
+            add("torque_sensor_zero_of_run", run.into());
         }
         Ok((bench, plan))
     }
@@ -163,7 +163,7 @@ impl Lab {
                 "run {id} is not a {BRAKE_MODEL} run of bench {bench}: enter such a run, or 0 for the latest"
             )));
         }
-        let model: Option<BrakeModel> = self.work_out(Job::BrakeModel { run: id }).await?;
+        let model: Option<BrakeModel> = self.compute(Job::BrakeModel { run: id }).await?;
         let missing = || {
             LabError::Invalid(format!(
                 "run {id} ended before its model was identified: repeat \

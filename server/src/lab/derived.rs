@@ -26,7 +26,7 @@ impl Lab {
         if formulas.is_empty() || formulas.len() > FORMULAS {
             return Err(LabError::Invalid(format!("{} formulas: write 1 to {FORMULAS}", formulas.len())));
         }
-        self.work_out(Job::Derived { run, formulas, window, most }).await
+        self.compute(Job::Derived { run, formulas, window, most }).await
     }
 
     pub(super) async fn derived_here(
@@ -57,7 +57,7 @@ impl Lab {
     }
 
     pub async fn spectrum(&self, run: i64, formula: String, window: [Option<f64>; 2]) -> Answer<SpectrumView> {
-        self.work_out(Job::Spectrum { run, formula, window }).await
+        self.compute(Job::Spectrum { run, formula, window }).await
     }
 
     pub(super) async fn spectrum_here(

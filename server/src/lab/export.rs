@@ -31,7 +31,7 @@ impl Lab {
 
     pub(crate) async fn export_into(&self, request: ExportRequest, out: impl Write + Send + 'static) -> Answer<()> {
         let ExportRequest { run, format, from_s, to_s, spreadsheet_safe } = request;
-        let (meta, record) = self.leaving(run).await?;
+        let (meta, record) = self.export_facts(run).await?;
         let rows = self.inner.store.rows_between(run, from_s, to_s).await?;
         let channels = record.channels;
         match format {
@@ -75,7 +75,7 @@ impl Lab {
     }
 
     /// The metadata of a run for an export.
-    async fn leaving(&self, id: i64) -> Answer<(Meta, RunRecord)> {
+    async fn export_facts(&self, id: i64) -> Answer<(Meta, RunRecord)> {
         let (mut meta, record) = self.facts(id).await?;
         if record.simulated {
             meta.other.insert(SIMULATED.to_owned(), true.into());
@@ -85,7 +85,7 @@ impl Lab {
 
     /// The metadata of a run as `meta.json`, for a table format without metadata.
     pub async fn export_meta(&self, id: i64) -> Answer<String> {
-        let (meta, record) = self.leaving(id).await?;
+        let (meta, record) = self.export_facts(id).await?;
         Ok(meta_json(&meta, &record.channels))
     }
 }

@@ -1,7 +1,7 @@
 //! Model versions: comparison, evaluation on other runs, export and import.
 
+use super::computation::Subject as Turn;
 use super::models::blocking;
-use super::working::Subject as Turn;
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
 use crate::store::{NewModel, Subject};
@@ -19,7 +19,7 @@ impl Lab {
             Some(run) => run,
             None => self.inner.store.model(first).await?.run,
         };
-        self.work_out(Job::Compare { first, second, run }).await
+        self.compute(Job::CompareModels { first, second, run }).await
     }
 
     pub(super) async fn compare_here(&self, first: i64, second: i64, run: i64) -> Answer<Comparison> {
@@ -35,7 +35,7 @@ impl Lab {
         if let Some(kept) = self.inner.store.kept(Subject::Model(model), WORTH).await? {
             return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
         }
-        let worth: Vec<Worth> = self.work_out(Job::Worth { model }).await?;
+        let worth: Vec<Worth> = self.compute(Job::Worth { model }).await?;
         let json = serde_json::to_vec(&worth).map_err(|fault| LabError::Internal(fault.to_string()))?;
         self.inner.store.keep(Subject::Model(model), WORTH, &json).await?;
         Ok(worth)
@@ -51,14 +51,14 @@ impl Lab {
             jointbench_model::fit(&table, &spec, &Options::default())
         };
         let effects = fit.effects.clone();
-        let said = move |effect: String| {
+        let worth = move |effect: String| {
             let (without_rms, reason) = match refit(&effect) {
                 Ok(fit) => (finite(fit.validation_rms), None),
                 Err(fault) => (None, Some(fault.to_string())),
             };
             Worth { effect, without_rms, reason }
         };
-        blocking(move || Ok(effects.into_iter().map(said).collect())).await
+        blocking(move || Ok(effects.into_iter().map(worth).collect())).await
     }
 
     /// Change of the prediction at each point of the residuals if an effect is added and the model is fitted again.
@@ -69,8 +69,9 @@ impl Lab {
             return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
         }
         let record = self.inner.store.model(model).await?;
-        let changes = self.own_with(&reread(&record.fit)?, &effect).await?.iter().any(|one| one.id() == effect);
-        let added: Vec<f64> = self.work_out(Job::WithEffect { model, effect }).await?;
+        let changes =
+            self.user_effects_with(&reread(&record.fit)?, &effect).await?.iter().any(|one| one.id() == effect);
+        let added: Vec<f64> = self.compute(Job::WithEffect { model, effect }).await?;
         if !changes {
             let json = serde_json::to_vec(&added).map_err(|fault| LabError::Internal(fault.to_string()))?;
             self.inner.store.keep(Subject::Model(model), &kept_as, &json).await?;
@@ -79,9 +80,9 @@ impl Lab {
     }
 
     /// Users' effects of a fit, and the requested effect if a user wrote it.
-    async fn own_with(&self, fit: &Fit, effect: &str) -> Answer<Vec<OwnEffect>> {
+    async fn user_effects_with(&self, fit: &Fit, effect: &str) -> Answer<Vec<OwnEffect>> {
         let mut own = fit.own.clone();
-        let theirs = self.own_effects(fit.kind).await?;
+        let theirs = self.user_effects(fit.kind).await?;
         own.extend(theirs.into_iter().filter(|one| one.id() == effect && !fit.own.iter().any(|o| o.id() == effect)));
         Ok(own)
     }
@@ -91,7 +92,7 @@ impl Lab {
         let before: Fit = reread(&record.fit)?;
         let whole = self.tables(&record.runs()).await?;
         let fitted = self.fitted_table(&record).await?;
-        let own = self.own_with(&before, effect).await?;
+        let own = self.user_effects_with(&before, effect).await?;
         let effects = record.effects.iter().map(String::as_str).chain([effect]);
         let spec = ModelSpec::with_own(before.kind, effects, own)?;
         blocking(move || {
@@ -104,7 +105,7 @@ impl Lab {
     }
 
     pub async fn evaluate(&self, model: i64, run: i64) -> Answer<Evaluation> {
-        self.work_out(Job::Evaluate { model, run }).await
+        self.compute(Job::Evaluate { model, run }).await
     }
 
     pub(super) async fn evaluate_here(&self, model: i64, run: i64) -> Answer<Evaluation> {
@@ -131,8 +132,8 @@ impl Lab {
                 kept.kind, kept.kind
             )));
         }
-        let held: Evaluation = self.work_out(Job::EvaluateFile { file, run }).await?;
-        self.bring_effects(&kept.own).await?;
+        let held: Evaluation = self.compute(Job::EvaluateFile { file, run }).await?;
+        self.import_effects(&kept.own).await?;
         let new = NewModel {
             run: import.run,
             more_runs: Vec::new(),
@@ -151,7 +152,7 @@ impl Lab {
         };
         let record = self.inner.store.save_model(&new).await?;
         tracing::info!(run.id = import.run, model.id = record.id, "model imported");
-        self.hub().tell(LiveMessage::Model { run: import.run, model: record.id });
+        self.hub().publish(LiveMessage::Model { run: import.run, model: record.id });
         Ok(ImportedModel { model: model_view(record)?, notes: held.notes })
     }
 

@@ -45,7 +45,7 @@ impl Lab {
                 block.reason
             )));
         }
-        self.let_go(bench).await;
+        self.wait_for_stored_ends(bench).await;
         let claim = bench.claim()?;
         if bench.status().faults().is_some() {
             bench.reopen().await?;
@@ -57,12 +57,12 @@ impl Lab {
         let procedure = plan.procedure;
         tracing::info!(run.id = run, bench = bench.name(), procedure, by, planned_s = plan.duration_s(), "run queued");
         claim.start(run, plan).await?;
-        self.judge_at_its_end(bench, run);
+        self.judge_when_ended(bench, run);
         self.run(run).await
     }
 
     /// Waits until every ended run of this bench is stored and has released the bench.
-    pub(super) async fn let_go(&self, bench: &BenchHandle) {
+    pub(super) async fn wait_for_stored_ends(&self, bench: &BenchHandle) {
         let over: Vec<i64> =
             bench.status().runs.iter().filter(|(_, run)| run.state.is_final()).map(|(id, _)| *id).collect();
         let gone = |status: &Status| over.iter().all(|run| !status.runs.contains_key(run));
@@ -128,7 +128,7 @@ impl Lab {
         if px == 0 || px > 20_000 {
             return Err(LabError::Invalid(format!("px = {px}: choose 1 to 20000")));
         }
-        let window = self.inner.store.view(id, channels, from_s, to_s, px as usize).await?;
+        let window = self.inner.store.window(id, channels, from_s, to_s, px as usize).await?;
         let column = |values: Vec<f64>| values.into_iter().map(view::finite).collect();
         let channels = window.columns.into_iter().map(|found| view::SampleColumn {
             unit: found.channel.unit().map(str::to_owned),

@@ -30,7 +30,7 @@ use tokio::task::JoinSet;
 use wire::Wire;
 
 /// Interval of the check for clients that exceed a time limit.
-const LOOK_EVERY: Duration = Duration::from_millis(250);
+const CHECK_INTERVAL: Duration = Duration::from_millis(250);
 /// Pause after the system has refused a connection, usually because of too many open files.
 const REFUSED_PAUSE: Duration = Duration::from_millis(50);
 
@@ -51,7 +51,7 @@ pub async fn serve(listener: TcpListener, router: Router, tls: Option<Tls>, limi
         connections.spawn(async move { tls.follow().await });
     }
     let shared = Shared { router, tls, limits };
-    let mut look = tokio::time::interval(LOOK_EVERY);
+    let mut check = tokio::time::interval(CHECK_INTERVAL);
     loop {
         tokio::select! {
             accepted = listener.accept() => match accepted {
@@ -67,7 +67,7 @@ pub async fn serve(listener: TcpListener, router: Router, tls: Option<Tls>, limi
             Some(ended) = connections.join_next() => if let Err(fault) = ended {
                 tracing::error!(%fault, "a connection has panicked");
             },
-            _ = look.tick() => seats.close_overdue(),
+            _ = check.tick() => seats.close_overdue(),
         }
     }
 }
@@ -76,23 +76,23 @@ async fn connection(shared: Shared, stream: TcpStream, peer: SocketAddr, seat: S
     let close = seat.close.clone();
     tokio::select! {
         () = close.cancelled() => tracing::debug!(%peer, "connection closed: it has waited for its client for too long"),
-        () = greet(shared, stream, peer, seat) => {}
+        () = handshake(shared, stream, peer, seat) => {}
     }
 }
 
-async fn greet(shared: Shared, stream: TcpStream, peer: SocketAddr, seat: Seat) {
+async fn handshake(shared: Shared, stream: TcpStream, peer: SocketAddr, seat: Seat) {
     // Sends small answers immediately. This fails if the client has already disconnected, but its request still counts.
     let _ = stream.set_nodelay(true);
     match &shared.tls {
-        None => converse(&shared, stream, peer, seat).await,
+        None => serve_connection(&shared, stream, peer, seat).await,
         Some(tls) => match tls.accept(stream).await {
-            Ok(stream) => converse(&shared, stream, peer, seat).await,
+            Ok(stream) => serve_connection(&shared, stream, peer, seat).await,
             Err(fault) => tracing::debug!(%peer, %fault, "no TLS connection"),
         },
     }
 }
 
-async fn converse<S>(shared: &Shared, stream: S, peer: SocketAddr, seat: Seat)
+async fn serve_connection<S>(shared: &Shared, stream: S, peer: SocketAddr, seat: Seat)
 where
     S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
 {

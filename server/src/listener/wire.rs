@@ -45,7 +45,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Wire<S> {
         let before = into.filled().len();
         let polled = Pin::new(&mut self.stream).poll_read(context, into);
         if into.filled().len() > before {
-            self.seat.progress.heard();
+            self.seat.progress.received();
         }
         polled
     }

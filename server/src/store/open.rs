@@ -1,7 +1,7 @@
 //! Opening: one daemon for each data folder, one schema, durable commits.
 
-use super::full_disk::{give_back, limit};
-use super::keeper::{Keeper, PATIENCE, Signal, Signals, look_back, losses};
+use super::full_disk::{limit, release_pages};
+use super::keeper::{Keeper, PATIENCE, Signal, Signals, find_loss, losses};
 use super::lock::FolderLock;
 use super::migrations::Migrations;
 use super::{Store, StoreError, StoreHealth};
@@ -49,8 +49,8 @@ impl Store {
         let writer = writer(is_full.clone(), signals.clone());
         let writer = writer.connect_with(options.clone()).await.map_err(|fault| not_ours(fault, &file))?;
         migrate(&writer, &file).await?;
-        give_back(&mut *writer.acquire().await?).await?;
-        let missing = look_back(&mut *writer.acquire().await?, folder).await?;
+        release_pages(&mut *writer.acquire().await?).await?;
+        let missing = find_loss(&mut *writer.acquire().await?, folder).await?;
         let keeper = Keeper::start(&options, writer.clone(), folder.into(), signals).await?;
         let readers = pool(READERS).connect_with(options.read_only(true)).await?;
         let lost = losses(&mut *readers.acquire().await?).await?;

@@ -107,7 +107,7 @@ impl Store {
     pub async fn runs(&self, filter: &RunFilter) -> Result<(u64, Vec<RunRecord>), StoreError> {
         let search = Search::parse(filter.search.as_deref().unwrap_or_default())?;
         match self.page(&search, filter).await {
-            Err(StoreError::Damaged(_)) => self.one_by_one(&search, filter).await,
+            Err(StoreError::Damaged(_)) => self.list_individually(&search, filter).await,
             page => page,
         }
     }
@@ -126,7 +126,7 @@ impl Store {
     }
 
     /// The same, newest first, if SQLite cannot scan the table: reads each run by its id.
-    pub(super) async fn one_by_one(
+    pub(super) async fn list_individually(
         &self,
         search: &Search,
         filter: &RunFilter,

@@ -80,8 +80,8 @@ pub fn run_summary(record: &RunRecord) -> view::RunSummary {
 pub fn run_view(record: RunRecord, progress: Option<view::Progress>) -> view::Run {
     let motion: Motion = record.meta.get("motion").and_then(|motion| reread(motion).ok()).unwrap_or_default();
     let channel = |channel| {
-        let told = view::ChannelInfo::from(channel);
-        view::ChannelInfo { unit: told.unit.map(|unit| motion.label(&unit)), ..told }
+        let info = view::ChannelInfo::from(channel);
+        view::ChannelInfo { unit: info.unit.map(|unit| motion.label(&unit)), ..info }
     };
     view::Run {
         summary: run_summary(&record),

@@ -133,7 +133,8 @@ pub struct TrendRun {
 
 /// A run compared with the latest model of its kind from another run of the bench.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Beside {
+#[schema(as = Beside)]
+pub struct ModelOverlay {
     pub model: i64,
     /// The run that the model was fitted to first.
     pub model_run: i64,

@@ -16,11 +16,11 @@ mod live;
 mod log;
 mod memory;
 mod model;
-mod own;
 mod procedure;
 mod run;
 mod table;
 mod token;
+mod user_effect;
 
 pub use autopilot::*;
 pub use bench::*;
@@ -35,11 +35,11 @@ pub use live::*;
 pub use log::*;
 pub use memory::*;
 pub use model::*;
-pub use own::*;
 pub use procedure::*;
 pub use run::*;
 pub use table::*;
 pub use token::*;
+pub use user_effect::*;
 
 /// `None` for NaN and infinity, which JSON cannot carry.
 pub fn finite(value: f64) -> Option<f64> {

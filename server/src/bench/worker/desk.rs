@@ -93,10 +93,10 @@ impl Desk {
     }
 
     /// Reports a change of the mock bench's simulated full disk.
-    pub fn tell_disk(&self, mock: Option<&MockBench>) {
+    pub fn report_disk(&self, mock: Option<&MockBench>) {
         let full = mock.is_some_and(MockBench::disk_is_full);
         if self.disk_is_full.swap(full, Ordering::AcqRel) != full {
-            self.outbox.say(Report::DiskFull(full));
+            self.outbox.send(Report::DiskFull(full));
         }
     }
 

@@ -49,7 +49,7 @@ pub fn serve() -> io::Result<()> {
     let (outbox, reports) = Outbox::start(io::stdout())?;
     let desk = Arc::new(Desk::new(outbox, block));
     let (commands, to_do) = mpsc::channel();
-    seat::end_when_told(desk.clone(), commands.clone())?;
+    seat::end_on_signal(desk.clone(), commands.clone())?;
     let (listening, presses) = (desk.clone(), PressFiles::start(&data, &name)?);
     std::thread::Builder::new().name("orders".into()).spawn(move || listen(orders, &listening, &presses, &commands))?;
     // Held until the end: the next worker then finds the file of this one.
@@ -58,7 +58,7 @@ pub fn serve() -> io::Result<()> {
         Ok(_) => Owner::new(description, desk.clone()).serve(&to_do),
         Err(why) => owner::serve_nothing(&description, &desk, &to_do, why),
     }
-    desk.outbox.say(wire::Report::Finished);
+    desk.outbox.send(wire::Report::Finished);
     desk.outbox.close();
     if reports.join().is_err() {
         tracing::error!("the thread of the reports has panicked");
@@ -91,7 +91,7 @@ fn obey(order: Order, desk: &Desk, presses: &PressFiles, commands: &Sender<Comma
         Order::Stop { block, ticket } => {
             let secures_itself = desk.stop(block.clone());
             presses.pressed(block);
-            desk.outbox.say(wire::Report::Done { ticket });
+            desk.outbox.send(wire::Report::Done { ticket });
             if secures_itself {
                 return;
             }

@@ -31,7 +31,7 @@ impl Owner {
     }
 
     pub fn serve(mut self, commands: &Receiver<Command>) {
-        self.tell_opened();
+        self.report_opened();
         // An earlier worker may have been killed: the state of the bench is unknown until it is secured.
         self.secure();
         loop {
@@ -41,11 +41,11 @@ impl Owner {
                 Ok(Command::Reopen { wanting, ticket }) => {
                     self.let_time_pass();
                     self.reopen(&wanting);
-                    self.desk.outbox.say(Report::Done { ticket });
+                    self.desk.outbox.send(Report::Done { ticket });
                 }
                 Ok(Command::ReadMemory { ranges, ticket }) => {
                     let read = self.read_memory(&ranges);
-                    self.desk.outbox.say(Report::Memory { ticket, read });
+                    self.desk.outbox.send(Report::Memory { ticket, read });
                 }
                 Ok(Command::Quit) | Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) if self.desk.outbox.fault().is_some() => self.let_time_pass(),
@@ -60,10 +60,10 @@ impl Owner {
         let clock = mock.clock();
         let pace = self.description.pace().unwrap_or(1.0).max(1.0);
         clock.sleep_until_s(clock.now_s() + pace * IDLE_EVERY.as_secs_f64());
-        self.desk.tell_disk(Some(mock));
+        self.desk.report_disk(Some(mock));
     }
 
-    fn tell_opened(&self) {
+    fn report_opened(&self) {
         for instrument in &self.opened.instruments {
             let (bench, name, port) = (&self.description.name, &instrument.name, &instrument.port);
             match &instrument.fault {
@@ -71,7 +71,7 @@ impl Owner {
                 Some(fault) => tracing::warn!(bench, name, port, fault, "instrument not ready"),
             }
         }
-        self.desk.outbox.say(Report::Opened {
+        self.desk.outbox.send(Report::Opened {
             instruments: self.opened.instruments.clone(),
             channels: self.opened.bench.as_ref().map(expected).unwrap_or_default(),
             open: self.opened.bench.is_some(),
@@ -86,7 +86,7 @@ impl Owner {
             self.opened = Opened::default();
             self.opened = open(&self.description);
         }
-        self.tell_opened();
+        self.report_opened();
         self.secure();
     }
 
@@ -128,7 +128,7 @@ impl Owner {
         let mut recorder = OutboxRecorder::new(&self.desk, mock.as_ref(), stepped, run);
         let end = jointbench_procedure::run(bench, plan, run, controls, &mut recorder);
         self.desk.run_is_over();
-        self.desk.outbox.say(Report::Ended { run, end });
+        self.desk.outbox.send(Report::Ended { run, end });
     }
 
     fn secure(&mut self) {
@@ -143,21 +143,21 @@ impl Owner {
                 Report::Secured { safe: secured.safe, notes: secured.notes }
             }
         };
-        self.desk.outbox.say(report);
+        self.desk.outbox.send(report);
     }
 }
 
 fn not_begun(desk: &Desk, run: RunId) {
     desk.run_is_over();
-    desk.outbox.say(Report::NotBegun { run });
+    desk.outbox.send(Report::NotBegun { run });
 }
 
 /// Answers for a bench that another worker owns.
 pub(super) fn serve_nothing(description: &BenchDescription, desk: &Desk, commands: &Receiver<Command>, why: &str) {
     let say = || {
         let instruments: Vec<view::Instrument> = vec![unreached(description, why.to_owned())];
-        desk.outbox.say(Report::Opened { instruments, channels: Vec::new(), open: false });
-        desk.outbox.say(Report::Secured { safe: Safe::UnsafeUnknown, notes: Vec::new() });
+        desk.outbox.send(Report::Opened { instruments, channels: Vec::new(), open: false });
+        desk.outbox.send(Report::Secured { safe: Safe::UnsafeUnknown, notes: Vec::new() });
     };
     say();
     while let Ok(command) = commands.recv() {
@@ -165,10 +165,10 @@ pub(super) fn serve_nothing(description: &BenchDescription, desk: &Desk, command
             Command::Quit => return,
             Command::Reopen { ticket, .. } => {
                 say();
-                desk.outbox.say(Report::Done { ticket });
+                desk.outbox.send(Report::Done { ticket });
             }
             Command::ReadMemory { ticket, .. } => {
-                desk.outbox.say(Report::Memory { ticket, read: MemoryRead::Failed(why.to_owned()) });
+                desk.outbox.send(Report::Memory { ticket, read: MemoryRead::Failed(why.to_owned()) });
             }
             Command::Run { run, .. } => not_begun(desk, run),
             Command::Secure => say(),

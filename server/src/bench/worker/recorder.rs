@@ -33,7 +33,7 @@ impl Recorder for OutboxRecorder<'_> {
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
         let Commit { state, events, mut rows, .. } = commit;
         let outbox = &self.desk.outbox;
-        self.desk.tell_disk(self.mock);
+        self.desk.report_disk(self.mock);
         let backlog = outbox.backlog();
         let is_full = backlog.bytes >= MOST_BYTES;
         if is_full {
@@ -60,6 +60,6 @@ impl Recorder for OutboxRecorder<'_> {
 
     fn live(&mut self, live: Live<'_>) {
         let Live { run, state, rows, progress } = live;
-        self.desk.outbox.say(Report::Live { run, state, rows: rows.clone(), progress: progress.clone() });
+        self.desk.outbox.send(Report::Live { run, state, rows: rows.clone(), progress: progress.clone() });
     }
 }

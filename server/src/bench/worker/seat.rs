@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// Waiting time for the worker of a killed daemon, which first secures its bench.
 const PATIENCE: Duration = Duration::from_secs(20);
 const FOLDER: &str = "workers";
-const LOOK_EVERY: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Waits until no other worker owns the bench. The file is the lock. `Err` names the owner.
 pub(super) fn take(data: &Path, bench: &str) -> Result<File, String> {
@@ -28,7 +28,7 @@ pub(super) fn take(data: &Path, bench: &str) -> Result<File, String> {
     loop {
         match file.try_lock() {
             Ok(()) => return Ok(file),
-            Err(TryLockError::WouldBlock) if Instant::now() < give_up => std::thread::sleep(LOOK_EVERY),
+            Err(TryLockError::WouldBlock) if Instant::now() < give_up => std::thread::sleep(POLL_INTERVAL),
             Err(TryLockError::WouldBlock) => {
                 let why = "an earlier worker still uses this bench: end the process `jointbench worker`, then retry";
                 return Err(why.to_owned());
@@ -45,7 +45,7 @@ pub fn wait_until_gone(data: &Path) {
     for seat in seats.flatten() {
         let Ok(file) = File::open(seat.path()) else { continue };
         while matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)) && Instant::now() < give_up {
-            std::thread::sleep(LOOK_EVERY);
+            std::thread::sleep(POLL_INTERVAL);
         }
     }
 }
@@ -63,7 +63,7 @@ pub(super) fn raise_priority(is_real_time: bool) {
 }
 
 /// On a termination signal the worker ends as if its server were gone.
-pub(super) fn end_when_told(desk: Arc<Desk>, commands: Sender<Command>) -> io::Result<()> {
+pub(super) fn end_on_signal(desk: Arc<Desk>, commands: Sender<Command>) -> io::Result<()> {
     #[cfg(unix)]
     {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

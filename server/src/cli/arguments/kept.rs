@@ -1,4 +1,4 @@
-//! What is done with runs that are kept.
+//! Arguments for stored runs.
 
 use super::{Columns, Reach};
 use crate::lab::FileFormat;

@@ -109,7 +109,7 @@ async fn run_ids(database: &mut SqliteConnection, report: &mut VerifyReport) -> 
 /// SQLite's own check, including foreign keys.
 async fn check_file(database: &mut SqliteConnection, report: &mut VerifyReport) {
     match sqlx::query_scalar::<_, String>(MOST_FAULTS).fetch_all(&mut *database).await {
-        Ok(said) => said.into_iter().filter(|said| said != "ok").for_each(|said| report.add(None, "file", said)),
+        Ok(lines) => lines.into_iter().filter(|line| line != "ok").for_each(|line| report.add(None, "file", line)),
         Err(fault) => report.add(None, "file", fault.to_string()),
     }
     match sqlx::query("PRAGMA foreign_key_check").fetch_all(database).await {

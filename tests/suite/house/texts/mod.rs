@@ -68,8 +68,8 @@ fn procedures() -> Vec<Text> {
     let listed = stdout(&run(&["procedures"]));
     let ids = listed.lines().map_while(|line| line.split_whitespace().next());
     let described = |id: &str| {
-        let said = stdout(&run(&["procedures", id]));
-        said.lines().map(|line| (format!("procedure {id}"), line.to_owned())).collect::<Vec<_>>()
+        let text = stdout(&run(&["procedures", id]));
+        text.lines().map(|line| (format!("procedure {id}"), line.to_owned())).collect::<Vec<_>>()
     };
     ids.flat_map(described).collect()
 }

@@ -1,12 +1,13 @@
-//! Who may come in: on loopback every local program, elsewhere whoever has the token; a browser only from our own page.
+//! Authentication: on loopback every local program has access, elsewhere every client with a token. A browser has access
+//! only from the page of the daemon.
 //!
-//! A page of another site can send requests to a loopback port, and a foreign name can be made to point to it. So the
-//! `Host` of a daemon without token must be a loopback name, and the `Origin` of the live stream and of every changing
-//! request must be ours or absent (programs send none). Browsers differ in what they refuse by themselves.
+//! A page of another site can send requests to a loopback port, and a foreign name can point to it. Therefore the `Host`
+//! of a daemon without token must be a loopback name. The `Origin` of the live stream and of every changing request must
+//! be the daemon or absent (programs send none). Browsers differ in the requests that they refuse themselves.
 
 use super::problem::Problem;
 use super::rights::reader_may;
-use super::tries::{Slowed, Tries};
+use super::throttle::{Throttle, Throttled};
 use crate::lab::{Caller, Lab, Tokens};
 use crate::view::Access;
 use axum::extract::{ConnectInfo, MatchedPath, Request, State};
@@ -18,39 +19,39 @@ use std::borrow::Cow;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 
-/// What is around the daemon, as far as its doors have to know.
+/// Connection between the clients and the daemon.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Surroundings {
-    /// Clients come by TLS.
+pub struct Transport {
+    /// Clients connect by TLS.
     pub tls: bool,
-    /// Clients come through a reverse proxy, which says where from.
+    /// Clients connect through a reverse proxy, which adds their address.
     pub behind_proxy: bool,
 }
 
 /// Cheap to clone.
 #[derive(Clone)]
-pub struct Door {
+pub struct Auth {
     lab: Lab,
-    surroundings: Surroundings,
-    tries: Arc<Tries>,
+    transport: Transport,
+    throttle: Arc<Throttle>,
 }
 
-impl Door {
-    pub fn new(lab: Lab, surroundings: Surroundings) -> Self {
-        Self { lab, surroundings, tries: Arc::default() }
+impl Auth {
+    pub fn new(lab: Lab, transport: Transport) -> Self {
+        Self { lab, transport, throttle: Arc::default() }
     }
 
-    /// Where a request comes from.
+    /// Address of the client.
     fn source(&self, request: &Request) -> IpAddr {
-        // A proxy adds the address of its client behind those that the client claims.
-        let told = text(request.headers(), HeaderName::from_static("x-forwarded-for"));
-        let told = told.and_then(|list| list.rsplit(',').next()?.trim().parse().ok());
+        // A proxy appends the address of its client to the addresses in the request of the client.
+        let forwarded = text(request.headers(), HeaderName::from_static("x-forwarded-for"));
+        let forwarded = forwarded.and_then(|list| list.rsplit(',').next()?.trim().parse().ok());
         let peer = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|peer| peer.0.ip());
-        told.filter(|_| self.surroundings.behind_proxy).or(peer).unwrap_or(Ipv4Addr::UNSPECIFIED.into())
+        forwarded.filter(|_| self.transport.behind_proxy).or(peer).unwrap_or(Ipv4Addr::UNSPECIFIED.into())
     }
 }
 
-/// `route`: the pattern of the router that the request has met.
+/// `route`: the matching pattern of the router.
 fn check(
     tokens: &Tokens,
     method: &Method,
@@ -85,20 +86,20 @@ fn check(
     }
 }
 
-/// Middleware: refuses before anything is looked at, and tells handlers who calls.
-pub async fn guard(State(door): State<Door>, mut request: Request, next: Next) -> Response {
+/// Middleware: refuses a request before its handler, and passes the caller to the handler.
+pub async fn guard(State(auth): State<Auth>, mut request: Request, next: Next) -> Response {
     let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
-    let checked = check(door.lab.tokens(), request.method(), request.uri(), request.headers(), route);
+    let checked = check(auth.lab.tokens(), request.method(), request.uri(), request.headers(), route);
     let problem = match checked {
         Ok(caller) => {
-            door.lab.came_in(&caller);
+            auth.lab.record_token_use(&caller);
             request.extensions_mut().insert(caller);
             return next.run(request).await;
         }
         Err(problem) => problem,
     };
     let is_wrong = problem.status == 401 && secret(request.headers(), request.uri()).is_some();
-    if is_wrong && door.tries.slow(door.source(&request)).await == Slowed::TooMany {
+    if is_wrong && auth.throttle.delay_refusal(auth.source(&request)).await == Throttled::TooMany {
         return Problem::too_many("too many wrong tokens; a valid token is accepted immediately").into_response();
     }
     problem.into_response()
@@ -108,7 +109,7 @@ fn text(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     headers.get(name)?.to_str().ok()
 }
 
-/// A value that is no text is there all the same.
+/// A value that is not a text counts as present.
 fn text_or_garbage(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     headers.get(name).map(|value| value.to_str().unwrap_or("an unreadable origin"))
 }
@@ -127,8 +128,8 @@ fn same_origin(origin: &str, host: Option<&str>) -> bool {
     matches!((authority, host), (Some(authority), Some(host)) if authority.eq_ignore_ascii_case(host))
 }
 
-/// `Authorization: Bearer`; on the live stream, where a browser cannot set headers, also as the subprotocol `token.TOKEN` or as
-/// `?token=TOKEN`, percent-encoded both.
+/// `Authorization: Bearer`. On the live stream, where a browser cannot set headers, also the subprotocol `token.TOKEN`
+/// or `?token=TOKEN`, both percent-encoded.
 fn secret<'r>(headers: &'r HeaderMap, uri: &'r Uri) -> Option<Cow<'r, str>> {
     if let Some(bearer) = text(headers, header::AUTHORIZATION).and_then(|value| value.strip_prefix("Bearer ")) {
         return Some(Cow::Borrowed(bearer.trim()));
@@ -155,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_local_program_comes_in_and_a_foreign_page_does_not() {
-        let door = Tokens::default();
+        let tokens = Tokens::default();
         let host = ("host", "127.0.0.1:8080");
         for (method, headers, refused) in [
             (Method::GET, vec![host], None),
@@ -168,16 +169,16 @@ mod tests {
             (Method::POST, vec![host, ("origin", "null")], Some(403)),
             (Method::GET, vec![host, ("origin", "http://evil.example")], None),
             (Method::GET, vec![host, ("origin", "http://evil.example"), ("upgrade", "websocket")], Some(403)),
-            // A foreign name that was made to point to loopback.
+            // A foreign name that points to loopback.
             (Method::GET, vec![("host", "evil.example:8080")], Some(403)),
         ] {
-            assert_eq!(refusal(&door, method.clone(), "/api/v1/bench", &headers), refused, "{method} {headers:?}");
+            assert_eq!(refusal(&tokens, method.clone(), "/api/v1/bench", &headers), refused, "{method} {headers:?}");
         }
     }
 
     #[test]
     fn beyond_loopback_a_token_is_needed() {
-        let door = Tokens::given(Some("s3cret"), None);
+        let tokens = Tokens::given(Some("s3cret"), None);
         let host = ("host", "bench.lab:8080");
         for (path, headers, refused) in [
             ("/api/v1/bench", vec![host], Some(401)),
@@ -203,13 +204,13 @@ mod tests {
             ("/api/v1/bench", vec![host, ("sec-websocket-protocol", "token.s3cret")], Some(401)),
             ("/", vec![host], None),
         ] {
-            assert_eq!(refusal(&door, Method::GET, path, &headers), refused, "{path} {headers:?}");
+            assert_eq!(refusal(&tokens, Method::GET, path, &headers), refused, "{path} {headers:?}");
         }
     }
 
     #[test]
     fn a_token_that_reads_looks_and_stops() {
-        let door = Tokens::given(Some("s3cret"), Some("looker"));
+        let tokens = Tokens::given(Some("s3cret"), Some("looker"));
         let headers = [("host", "bench.lab:8080"), ("authorization", "Bearer looker")];
         for (method, path, refused) in [
             (Method::GET, "/api/v1/bench", None),
@@ -222,7 +223,7 @@ mod tests {
             (Method::POST, "/api/v1/runs/{id}/resume", Some(403)),
             (Method::DELETE, "/api/v1/effects/{kind}/{id}", Some(403)),
         ] {
-            assert_eq!(refusal(&door, method.clone(), path, &headers), refused, "{method} {path}");
+            assert_eq!(refusal(&tokens, method.clone(), path, &headers), refused, "{method} {path}");
         }
     }
 }

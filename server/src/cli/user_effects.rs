@@ -35,7 +35,7 @@ impl OwnEffects {
             all.push(OwnEffect::inline(kind, text)?);
         }
         for fault in all.iter().flat_map(|own| own.doubts(Some(motion))) {
-            eprintln!("note: {}", Exit::from(fault).said);
+            eprintln!("note: {}", Exit::from(fault).message);
         }
         Ok(all)
     }
@@ -57,7 +57,7 @@ fn read_file(file: &Path, kind: Kind) -> Result<Vec<OwnEffect>, Exit> {
         let definition: Definition = effect.try_into().map_err(|fault: toml::de::Error| refuse(&fault))?;
         let effect = OwnEffect::try_from(definition).map_err(|fault| {
             let exit = Exit::from(fault);
-            Exit { said: format!("{}: {}", file.display(), exit.said), ..exit }
+            Exit { message: format!("{}: {}", file.display(), exit.message), ..exit }
         })?;
         all.push(effect);
     }

@@ -11,12 +11,12 @@ use tokio::sync::OwnedMutexGuard;
 
 impl Lab {
     /// The result of a job, of the type that [`Lab::answer`] returns.
-    pub(super) async fn work_out<T: DeserializeOwned>(&self, job: Job) -> Answer<T> {
-        parsed(&self.worked_out(job).await?)
+    pub(super) async fn compute<T: DeserializeOwned>(&self, job: Job) -> Answer<T> {
+        parsed(&self.compute_json(job).await?)
     }
 
     /// The same as bytes.
-    pub(super) async fn worked_out(&self, job: Job) -> Answer<Vec<u8>> {
+    pub(super) async fn compute_json(&self, job: Job) -> Answer<Vec<u8>> {
         match &self.inner.jobs {
             Some(jobs) => jobs.run(&job).await,
             None => self.answer(job).await,
@@ -30,20 +30,20 @@ impl Lab {
             Job::Diagnose { model, offer } => json(&self.diagnose_here(model, offer).await?),
             Job::NextRun { diagnosis, offer } => json(&self.next_run_here(diagnosis, offer).await?),
             Job::Residuals { model } => self.residuals_here(model).await,
-            Job::Compare { first, second, run } => json(&self.compare_here(first, second, run).await?),
+            Job::CompareModels { first, second, run } => json(&self.compare_here(first, second, run).await?),
             Job::Worth { model } => json(&self.worth_here(model).await?),
             Job::WithEffect { model, effect } => json(&self.with_effect_here(model, &effect).await?),
             Job::Evaluate { model, run } => json(&self.evaluate_here(model, run).await?),
             Job::EvaluateFile { file, run } => json(&self.evaluate_file_here(file, run).await?),
             Job::TryEffect { trial } => json(&self.try_effect_here(&trial).await?),
             Job::Identify { run, step } => json(&self.identify_here(run, step).await?),
-            Job::Beside { run } => json(&self.beside_here(run).await?),
+            Job::OverlayModel { run } => json(&self.model_overlay_here(run).await?),
             Job::BrakeModel { run } => json(&self.brake_model_here(run).await?),
             Job::Recall { run, lesson } => self.recall_here(run, &lesson).await,
             Job::Statistics { run, channels, from_s, to_s } => {
                 json(&self.statistics_here(run, channels.as_deref(), from_s, to_s).await?)
             }
-            Job::Differences { runs, how } => json(&self.differences_here(&runs, &how).await?),
+            Job::CompareRuns { runs, how } => json(&self.compare_runs_here(&runs, &how).await?),
             Job::Derived { run, formulas, window, most } => {
                 json(&self.derived_here(run, &formulas, window, most).await?)
             }
@@ -85,7 +85,7 @@ const TRIES: u32 = 120;
 const AGAIN: Duration = Duration::from_secs(5);
 
 /// For the daemon's own work, for which no client waits: retries until a process is free.
-pub(super) async fn patiently<T, F: Future<Output = Answer<T>>>(mut work: impl FnMut() -> F) -> Answer<T> {
+pub(super) async fn with_retries<T, F: Future<Output = Answer<T>>>(mut work: impl FnMut() -> F) -> Answer<T> {
     for _ in 1..TRIES {
         match work().await {
             Err(LabError::Busy(_)) => tokio::time::sleep(AGAIN).await,

@@ -1,7 +1,7 @@
-//! Effects that users write.
+//! User-defined effects.
 
+use super::cancellation::{DetachQuery, cancel_on_disconnect};
 use super::extract::{Answer, Created, Json, Path, created};
-use super::leaving::{DetachQuery, waited_for};
 use super::presence::Presence;
 use super::problem::Problem;
 use super::refusals::Refusals;
@@ -22,7 +22,7 @@ pub async fn define(State(lab): State<Lab>, Json(definition): Json<EffectDefinit
     responses((status = 200, description = "The parsed formula", body = EffectCheck), Refusals))]
 pub async fn check(State(lab): State<Lab>, presence: Presence, Json(trial): Json<EffectTrial>) -> Answer<EffectCheck> {
     let check = async move { lab.check_effect(&trial).await };
-    Ok(Json(waited_for(presence, DetachQuery::default(), check).await?))
+    Ok(Json(cancel_on_disconnect(presence, DetachQuery::default(), check).await?))
 }
 
 /// Deletes a user-defined effect; rejected while a model uses it

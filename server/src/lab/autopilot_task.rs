@@ -3,7 +3,7 @@
 //! Every run uses [`Lab::start_run`], so plan, limits and guard apply. After a further run the model restarts from the
 //! given effects: effects that were added with less data must prove significant again.
 
-use super::working::patiently;
+use super::computation::with_retries;
 use super::{Answer, Lab, LabError};
 use crate::view::{
     AutopilotAction, AutopilotState, AutopilotStep, Experiment, Finding, LiveMessage, Model, NewAutopilot, Run,
@@ -21,7 +21,7 @@ pub(super) enum Goal {
     Decide { runs: Vec<i64>, model: i64, effects: Vec<String>, experiment: Experiment },
 }
 
-pub(super) struct Pilot {
+pub(super) struct AutopilotTask {
     lab: Lab,
     id: i64,
     bench: String,
@@ -62,12 +62,12 @@ macro_rules! through {
     };
 }
 
-impl Pilot {
+impl AutopilotTask {
     pub fn new(lab: Lab, id: i64, bench: String, stop: watch::Receiver<Option<String>>, by: String) -> Self {
         Self { lab, id, bench, stop, by, runs: Vec::new(), made: 0, bench_time_s: 0.0 }
     }
 
-    pub async fn fly(mut self, goal: Goal) {
+    pub async fn run(mut self, goal: Goal) {
         let end = match goal {
             Goal::Explain(request) => self.explain(&request).await,
             Goal::Decide { runs, model, effects, experiment } => {
@@ -84,7 +84,7 @@ impl Pilot {
         if let Err(fault) = kept {
             tracing::error!(autopilot.id = self.id, %fault, "how the autopilot ended could not be kept");
         }
-        self.tell(state, Some(reason), None);
+        self.publish(state, Some(reason), None);
     }
 
     async fn decide(&mut self, model: i64, effects: &[String], experiment: Experiment) -> Answer<End> {
@@ -115,7 +115,7 @@ impl Pilot {
             };
             let (model, found) = self.fit(&effects, root).await?;
             root = Some(model.id);
-            let found = through!(self.add_what_is_missing(request, model, found).await?);
+            let found = through!(self.add_missing_effects(request, model, found).await?);
             match found.experiment {
                 Some(experiment) if self.can_afford(request, &experiment) => next = experiment,
                 Some(experiment) => {
@@ -131,7 +131,7 @@ impl Pilot {
     }
 
     /// Adds the best effect repeatedly until none is missing or a run can separate the candidate effects.
-    async fn add_what_is_missing(
+    async fn add_missing_effects(
         &mut self,
         request: &NewAutopilot,
         mut model: Model,
@@ -225,7 +225,7 @@ impl Pilot {
             None => None,
         };
         let fit = || self.lab.create_model(&self.runs, effects, parent, None, false, &self.by);
-        let model = patiently(fit).await?;
+        let model = with_retries(fit).await?;
         let step = AutopilotStep { before_rms, ..AutopilotStep::new(AutopilotAction::Fit, "") };
         let found = self.diagnosed(&model, step).await?;
         Ok((model, found))
@@ -234,7 +234,7 @@ impl Pilot {
     async fn add(&mut self, before: &Model, best: &Suggestion) -> Answer<(Model, Finding)> {
         let effects: Vec<String> = before.effects.iter().cloned().chain([best.effect.clone()]).collect();
         let fit = || self.lab.create_model(&self.runs, &effects, Some(before.id), None, false, &self.by);
-        let model = patiently(fit).await?;
+        let model = with_retries(fit).await?;
         let tied = match best.confounded_with.as_slice() {
             [] => String::new(),
             rivals => format!(" (confounded with {})", rivals.join(", ")),
@@ -247,7 +247,7 @@ impl Pilot {
 
     /// Stores a step about a model with the summary of its diagnosis.
     async fn diagnosed(&mut self, model: &Model, step: AutopilotStep) -> Answer<Finding> {
-        let kept = patiently(|| self.lab.diagnose(model.id)).await?;
+        let kept = with_retries(|| self.lab.diagnose(model.id)).await?;
         let step = AutopilotStep {
             text: step.text.clone() + &kept.finding.summary,
             model: Some(model.id),
@@ -268,13 +268,13 @@ impl Pilot {
 
     async fn keep(&self, step: AutopilotStep) -> Answer<()> {
         let kept = self.lab.inner.store.append_autopilot_step(self.id, reread(&step)?).await?;
-        self.tell(AutopilotState::Running, None, Some(reread(&kept)?));
+        self.publish(AutopilotState::Running, None, Some(reread(&kept)?));
         Ok(())
     }
 
-    fn tell(&self, state: AutopilotState, reason: Option<String>, step: Option<Box<AutopilotStep>>) {
+    fn publish(&self, state: AutopilotState, reason: Option<String>, step: Option<Box<AutopilotStep>>) {
         let bench = self.bench.clone();
-        self.lab.hub().tell(LiveMessage::Autopilot { autopilot: self.id, bench, state, reason, step });
+        self.lab.hub().publish(LiveMessage::Autopilot { autopilot: self.id, bench, state, reason, step });
     }
 }
 

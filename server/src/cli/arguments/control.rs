@@ -1,4 +1,4 @@
-//! What a run that is on, or a bench that stands still, can be told.
+//! Arguments that control a run or a bench.
 
 use super::Reach;
 use clap::Args;
@@ -23,7 +23,7 @@ pub struct Stop {
 }
 
 #[derive(Debug, Args)]
-pub struct Steer {
+pub struct Control {
     /// Number of the run [default: the active run]
     pub run: Option<i64>,
     #[command(flatten)]

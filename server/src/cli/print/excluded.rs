@@ -3,8 +3,8 @@
 use jointbench_model::{Invisible, LeftOut, Silent, words};
 
 pub fn print(silent: &[Silent], hidden: &[Invisible], left_out: &[LeftOut], unit: &str) {
-    if let Some(said) = silences(silent, unit) {
-        println!("{said}");
+    if let Some(text) = silences(silent, unit) {
+        println!("{text}");
     }
     for effect in left_out {
         println!("rejected: {} ({})", effect.effect, effect.why);
@@ -44,14 +44,14 @@ mod tests {
         let silent = |effect: &str, nm: f64| Silent { effect: effect.into(), minimum_detectable_rms: nm, sought: None };
         let mut all: Vec<Silent> = [5e-3, 2e-3, 4e-3, 3e-3].iter().map(|nm| silent("gravity", *nm)).collect();
         all.push(Silent { sought: Some("1 to 60 waves a turn".into()), ..silent("cogging", 1.2e-4) });
-        let said = silences(&all, "Nm").unwrap();
+        let text = silences(&all, "Nm").unwrap();
         assert!(
-            said.starts_with(
+            text.starts_with(
                 "detection limits (RMS, 80 % power): cogging 120 µNm (1 to 60 waves a turn), gravity 2.00 mNm, "
             ),
-            "{said}"
+            "{text}"
         );
-        assert!(said.ends_with(", gravity 4.00 mNm, gravity 5.00 mNm"), "{said}");
+        assert!(text.ends_with(", gravity 4.00 mNm, gravity 5.00 mNm"), "{text}");
         assert_eq!(silences(&[], "Nm"), None);
     }
 }

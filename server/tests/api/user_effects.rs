@@ -59,8 +59,8 @@ fn a_wrong_formula_is_refused_at_its_character() {
             let (status, problem) = daemon.post(path, &body(rub(formula)).to_string());
             assert_eq!(status, 422, "{problem}");
             let typing = json!({"effect": rub(formula), "typing": true}).to_string();
-            let (status, told) = daemon.post("/api/v1/effects/check", &typing);
-            assert_eq!((status, &told["mistake"]), (200, &problem["place"]), "{told}");
+            let (status, check) = daemon.post("/api/v1/effects/check", &typing);
+            assert_eq!((status, &check["mistake"]), (200, &problem["place"]), "{check}");
             assert_eq!(problem["type"], "urn:jointbench:formula");
             assert_eq!(problem["place"]["position"], position, "{problem}");
             assert_eq!((&problem["place"]["length"], &problem["place"]["text"]), (&length.into(), &formula.into()));
@@ -143,7 +143,7 @@ fn an_effect_is_defined_suggested_fitted_and_kept_while_used() {
 }
 
 #[test]
-fn an_effect_that_nobody_uses_can_go() {
+fn an_unused_effect_can_be_deleted() {
     let daemon = TestDaemon::start();
     assert_eq!(daemon.post("/api/v1/effects", &rub(RUB).to_string()).0, 201);
     assert_eq!(daemon.delete("/api/v1/effects/friction/rub").0, 204);
@@ -172,8 +172,8 @@ fn every_effect_tells_all_of_itself() {
     assert_eq!(daemon.post("/api/v1/effects", &rub(RUB).to_string()).0, 201);
     let (_, effects) = daemon.get("/api/v1/effects");
     for effect in effects.as_array().unwrap() {
-        for told in ["id", "sentence", "formula", "source", "looks"] {
-            assert!(effect[told].as_str().is_some_and(|words| !words.is_empty()), "{told}: {effect}");
+        for field in ["id", "sentence", "formula", "source", "looks"] {
+            assert!(effect[field].as_str().is_some_and(|words| !words.is_empty()), "{field}: {effect}");
         }
         if effect["id"] == "rub" {
             assert_eq!(effect["looks"], "what is left follows its formula over velocity and load");
@@ -183,7 +183,7 @@ fn every_effect_tells_all_of_itself() {
 }
 
 #[test]
-fn what_to_think_about_is_told_for_the_run_at_hand() {
+fn doubts_depend_on_the_run() {
     let daemon = TestDaemon::start();
     let run = rubbing_run(&daemon, 5);
     let doubt = |formula: &str, unit: &str, run: Option<i64>| {

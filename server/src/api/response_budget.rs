@@ -1,5 +1,4 @@
-//! How much memory answers take while they are made and sent: an answer lies in memory until its reader has taken it, and a
-//! reader may be slow, or many.
+//! Limits the memory of large answers. An answer is in memory until its client has received it, and clients may be slow.
 
 use super::problem::Problem;
 use crate::lab::LabError;
@@ -15,53 +14,53 @@ use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::timeout;
 
-/// Answers that lie in memory together [MiB]. One below 1 MiB counts as nothing: connections are counted anyway.
+/// Memory of all answers [MiB]. An answer below 1 MiB is not counted, because connections are limited.
 const SENT_AT_ONCE_MIB: u32 = 128;
-/// Whoever waits longer is sent away.
+/// A request that waits longer is refused.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What the answers of one daemon share.
+/// Shared by all answers of a daemon.
 #[derive(Clone)]
-pub struct Scales {
+pub struct ResponseBudget {
     sent: Arc<Semaphore>,
 }
 
-impl Default for Scales {
+impl Default for ResponseBudget {
     fn default() -> Self {
         Self { sent: Arc::new(Semaphore::new(SENT_AT_ONCE_MIB as usize)) }
     }
 }
 
-/// How many go through at once, for operations that need much memory while they are carried out.
+/// Limits the number of simultaneous requests, for operations that need much memory.
 #[derive(Clone)]
-pub struct Gate {
+pub struct ConcurrencyLimit {
     made: Arc<Semaphore>,
 }
 
-impl Gate {
+impl ConcurrencyLimit {
     pub fn of(at_once: usize) -> Self {
         Self { made: Arc::new(Semaphore::new(at_once)) }
     }
 }
 
-/// Middleware: waits at a gate.
-pub async fn one_by_one(State(gate): State<Gate>, request: Request, next: Next) -> Response {
-    match timeout(PATIENCE, gate.made.acquire()).await {
+/// Middleware: waits until the number of requests is below the limit.
+pub async fn limit_concurrency(State(limit): State<ConcurrencyLimit>, request: Request, next: Next) -> Response {
+    match timeout(PATIENCE, limit.made.acquire()).await {
         Ok(Ok(_made)) => next.run(request).await,
         _ => busy(),
     }
 }
 
-/// Middleware: an answer that is large waits until there is room for it.
-pub async fn weigh(State(scales): State<Scales>, request: Request, next: Next) -> Response {
+/// Middleware: a large answer waits for free memory.
+pub async fn limit_memory(State(budget): State<ResponseBudget>, request: Request, next: Next) -> Response {
     let response = next.run(request).await;
     let bytes = response.body().size_hint().lower();
     let weight = u32::try_from(bytes >> 20).unwrap_or(u32::MAX).min(SENT_AT_ONCE_MIB);
     if weight == 0 {
         return response;
     }
-    let Ok(Ok(held)) = timeout(PATIENCE, scales.sent.clone().acquire_many_owned(weight)).await else { return busy() };
-    response.map(|body| Body::new(Weighed { body, _held: held }))
+    let Ok(Ok(held)) = timeout(PATIENCE, budget.sent.clone().acquire_many_owned(weight)).await else { return busy() };
+    response.map(|body| Body::new(Budgeted { body, _held: held }))
 }
 
 fn busy() -> Response {
@@ -69,13 +68,13 @@ fn busy() -> Response {
     Problem::from(LabError::Busy(detail.into())).into_response()
 }
 
-/// Gives its weight back when it was sent, or when its reader has gone.
-struct Weighed {
+/// Releases its memory when it is sent, or when its client has disconnected.
+struct Budgeted {
     body: Body,
     _held: OwnedSemaphorePermit,
 }
 
-impl HttpBody for Weighed {
+impl HttpBody for Budgeted {
     type Data = Bytes;
     type Error = axum::Error;
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Mistake {
+pub struct ConfigError {
     /// Counted from 1.
     pub line: usize,
     /// The error, then the remedy.
@@ -13,44 +13,44 @@ pub struct Mistake {
 
 /// All errors of one file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Mistakes {
+pub struct ConfigErrors {
     pub file: String,
-    pub mistakes: Vec<Mistake>,
+    pub errors: Vec<ConfigError>,
 }
 
-impl fmt::Display for Mistakes {
+impl fmt::Display for ConfigErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, mistake) in self.mistakes.iter().enumerate() {
-            let end = if i + 1 < self.mistakes.len() { "\n" } else { "" };
-            write!(f, "{}, line {}: {}{end}", self.file, mistake.line, mistake.what)?;
+        for (i, error) in self.errors.iter().enumerate() {
+            let end = if i + 1 < self.errors.len() { "\n" } else { "" };
+            write!(f, "{}, line {}: {}{end}", self.file, error.line, error.what)?;
         }
         Ok(())
     }
 }
 
-impl std::error::Error for Mistakes {}
+impl std::error::Error for ConfigErrors {}
 
 /// Collects errors during a check, so that one check reports all of them.
 pub(super) struct Collector<'a> {
     text: &'a str,
-    mistakes: Vec<Mistake>,
+    errors: Vec<ConfigError>,
 }
 
 impl<'a> Collector<'a> {
     pub fn new(text: &'a str) -> Self {
-        Self { text, mistakes: Vec::new() }
+        Self { text, errors: Vec::new() }
     }
 
     pub fn add(&mut self, span: Range<usize>, what: impl Into<String>) {
         let line = self.text[..span.start.min(self.text.len())].matches('\n').count() + 1;
-        self.mistakes.push(Mistake { line, what: what.into() });
+        self.errors.push(ConfigError { line, what: what.into() });
     }
 
-    pub fn finish<T>(mut self, file: &str, checked: Option<T>) -> Result<T, Mistakes> {
-        self.mistakes.sort_by_key(|mistake| mistake.line);
+    pub fn finish<T>(mut self, file: &str, checked: Option<T>) -> Result<T, ConfigErrors> {
+        self.errors.sort_by_key(|error| error.line);
         match checked {
-            Some(checked) if self.mistakes.is_empty() => Ok(checked),
-            _ => Err(Mistakes { file: file.to_owned(), mistakes: self.mistakes }),
+            Some(checked) if self.errors.is_empty() => Ok(checked),
+            _ => Err(ConfigErrors { file: file.to_owned(), errors: self.errors }),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::models::{blocking, effect_view, find_kind};
 use super::{Answer, Lab, LabError, names};
 use crate::job::Job;
-use crate::store::OwnEffectRecord;
+use crate::store::UserEffectRecord;
 use crate::view::{
     Effect, EffectCheck, EffectDefinition, EffectTrial, FittedParameter, FormulaLanguage, FormulaSignal, LiveMessage,
     reread,
@@ -18,7 +18,7 @@ impl Lab {
             None => Kind::ALL.to_vec(),
             Some(name) => vec![find_kind(name)?],
         };
-        let records = self.inner.store.own_effects().await?;
+        let records = self.inner.store.user_effects().await?;
         let mut all: Vec<Effect> = Vec::new();
         for kind in kinds {
             all.extend(jointbench_model::effects(kind).iter().map(|effect| effect_view(&effect.info())));
@@ -31,11 +31,11 @@ impl Lab {
 
     /// A model of these effects that may contain and suggest all users' effects.
     pub(super) async fn spec(&self, kind: Kind, effects: &[String]) -> Answer<ModelSpec> {
-        Ok(ModelSpec::with_own(kind, effects, self.own_effects(kind).await?)?)
+        Ok(ModelSpec::with_own(kind, effects, self.user_effects(kind).await?)?)
     }
 
-    pub(super) async fn own_effects(&self, kind: Kind) -> Answer<Vec<OwnEffect>> {
-        let records = self.inner.store.own_effects().await?;
+    pub(super) async fn user_effects(&self, kind: Kind) -> Answer<Vec<OwnEffect>> {
+        let records = self.inner.store.user_effects().await?;
         records.iter().filter(|record| record.kind == kind.name()).map(read).collect()
     }
 
@@ -71,7 +71,7 @@ impl Lab {
             like: Vec::new(),
         };
         if trial.run.is_some() {
-            let (parameters, like) = self.work_out(Job::TryEffect { trial: trial.clone() }).await?;
+            let (parameters, like) = self.compute(Job::TryEffect { trial: trial.clone() }).await?;
             check = EffectCheck { like, parameters, ..check };
         }
         Ok(check)
@@ -82,9 +82,9 @@ impl Lab {
         let own = parse(&trial.effect)?;
         let runs: Vec<i64> = trial.run.iter().chain(&trial.more_runs).copied().collect();
         let table = self.tables(&runs).await?;
-        let beside = trial.effects.as_ref().unwrap_or(&table.meta().baseline).iter();
-        let effects = beside.map(String::as_str).filter(|id| *id != own.id()).chain([own.id()]);
-        let others = self.own_effects(table.kind()).await?.into_iter().filter(|other| other.id() != own.id());
+        let model = trial.effects.as_ref().unwrap_or(&table.meta().baseline).iter();
+        let effects = model.map(String::as_str).filter(|id| *id != own.id()).chain([own.id()]);
+        let others = self.user_effects(table.kind()).await?.into_iter().filter(|other| other.id() != own.id());
         let spec = ModelSpec::with_own(table.kind(), effects, others.chain([own.clone()]).collect())?;
         let id = own.id().to_owned();
         let (found, like) = blocking(move || match jointbench_model::fit(&table, &spec, &Options::default()) {
@@ -104,24 +104,24 @@ impl Lab {
         view(&self.keep_effect(&parse(definition)?).await?)
     }
 
-    async fn keep_effect(&self, own: &OwnEffect) -> Answer<OwnEffectRecord> {
+    async fn keep_effect(&self, own: &OwnEffect) -> Answer<UserEffectRecord> {
         let kept = reread(own.definition())?;
-        let record = self.inner.store.save_own_effect(own.kind().name(), own.id(), &kept).await?;
+        let record = self.inner.store.save_user_effect(own.kind().name(), own.id(), &kept).await?;
         tracing::info!(effect = own.id(), version = record.version, "effect defined");
-        self.tell_effects(own.kind(), own.id());
+        self.publish_effect(own.kind(), own.id());
         Ok(record)
     }
 
     /// Stores the effects of an imported model, so that models can use them here. Refuses an id that has another
     /// formula here.
-    pub(super) async fn bring_effects(&self, brought: &[OwnEffect]) -> Answer<()> {
+    pub(super) async fn import_effects(&self, brought: &[OwnEffect]) -> Answer<()> {
         let mut new = Vec::new();
         for own in brought {
-            let said =
+            let content =
                 |own: &OwnEffect| (own.definition().formula.trim().to_owned(), own.definition().parameters.clone());
-            match self.own_effects(own.kind()).await?.iter().find(|here| here.id() == own.id()) {
+            match self.user_effects(own.kind()).await?.iter().find(|here| here.id() == own.id()) {
                 None => new.push(own),
-                Some(here) if said(here) == said(own) => {}
+                Some(here) if content(here) == content(own) => {}
                 Some(here) => {
                     let (id, there, here) = (own.id(), &own.definition().formula, &here.definition().formula);
                     let why = if there.trim() == here.trim() { ", with other parameters" } else { "" };
@@ -141,13 +141,13 @@ impl Lab {
 
     pub async fn delete_effect(&self, kind: &str, id: &str) -> Answer<()> {
         let kind = find_kind(kind)?;
-        self.inner.store.delete_own_effect(kind.name(), id).await?;
-        self.tell_effects(kind, id);
+        self.inner.store.delete_user_effect(kind.name(), id).await?;
+        self.publish_effect(kind, id);
         Ok(())
     }
 
-    fn tell_effects(&self, kind: Kind, effect: &str) {
-        self.hub().tell(LiveMessage::Effects { kind: kind.to_string(), effect: effect.to_owned() });
+    fn publish_effect(&self, kind: Kind, effect: &str) {
+        self.hub().publish(LiveMessage::Effects { kind: kind.to_string(), effect: effect.to_owned() });
     }
 
     pub fn formula_language(&self, kind: &str) -> Answer<FormulaLanguage> {
@@ -194,12 +194,12 @@ fn parse(definition: &EffectDefinition) -> Answer<OwnEffect> {
     OwnEffect::try_from(definition).map_err(|fault| LabError::Formula(fault.into()))
 }
 
-fn read(record: &OwnEffectRecord) -> Answer<OwnEffect> {
+fn read(record: &UserEffectRecord) -> Answer<OwnEffect> {
     let unread = |fault| LabError::Internal(format!("effect {} cannot be read: {fault}", record.effect));
     serde_json::from_value(record.definition.clone()).map_err(unread)
 }
 
-fn view(record: &OwnEffectRecord) -> Answer<Effect> {
+fn view(record: &UserEffectRecord) -> Answer<Effect> {
     Ok(Effect {
         definition: Some(reread(&record.definition)?),
         version: Some(record.version),
@@ -212,7 +212,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_effect_is_told_with_what_it_trades_off_with() {
+    fn trade_offs_name_the_other_effect() {
         let pair =
             |first: &str, second: &str| TradeOff { first: first.into(), second: second.into(), correlation: 0.99 };
         let pairs = [pair("rub.a", "coulomb.tau_c"), pair("viscous.c_v", "rub.a"), pair("rub.a", "rub.w0")];

@@ -54,7 +54,7 @@ fn beyond_loopback_the_token_opens_the_api() {
 }
 
 #[test]
-fn tokens_are_made_listed_and_revoked_by_whoever_may_do_everything_and_nobody_is_locked_out() {
+fn tokens_are_managed_with_full_access_and_no_user_is_locked_out() {
     let data = TempDir::new().unwrap();
     let daemon = || {
         TestDaemon::start_with(None, |settings| {
@@ -91,10 +91,10 @@ fn tokens_are_made_listed_and_revoked_by_whoever_may_do_everything_and_nobody_is
     assert_eq!(make(&first, &wall_s, r#"{"name": "Bert", "access": "full"}"#).0, 403);
     assert_eq!(list(&first, &wall_s).0, 403);
     let (_, tokens) = list(&first, &anna_s);
-    let told: Vec<_> =
+    let found: Vec<_> =
         tokens.as_array().unwrap().iter().map(|one| (one["name"].as_str().unwrap(), &one["yours"])).collect();
     assert_eq!(
-        told,
+        found,
         [
             ("operator", &false.into()),
             ("observer", &false.into()),
@@ -123,7 +123,7 @@ fn tokens_are_made_listed_and_revoked_by_whoever_may_do_everything_and_nobody_is
 }
 
 #[test]
-fn a_daemon_that_asks_for_no_token_lets_everybody_in_and_knows_who_gives_one() {
+fn a_daemon_without_tokens_accepts_every_client_and_names_tokens() {
     let daemon = TestDaemon::start();
     assert!(!page(&daemon).contains("data-token"));
     let (_, made) = daemon.post("/api/v1/tokens", r#"{"name": "wall screen", "access": "read"}"#);
@@ -137,7 +137,7 @@ fn a_daemon_that_asks_for_no_token_lets_everybody_in_and_knows_who_gives_one() {
 }
 
 #[test]
-fn a_daemon_that_cannot_start_says_why() {
+fn a_failed_start_has_a_reason() {
     let data = TempDir::new().unwrap();
     let mut open = settings(data.path(), None);
     open.listen = "0.0.0.0:0".parse().unwrap();

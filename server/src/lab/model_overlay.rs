@@ -2,7 +2,7 @@
 
 use super::{Answer, Lab, models::blocking};
 use crate::job::Job;
-use crate::view::{Beside, Figure, FigureAxis, FigureForm, FigureSeries, Mark, reread};
+use crate::view::{Figure, FigureAxis, FigureForm, FigureSeries, Mark, ModelOverlay, reread};
 use jointbench_model::{Fit, Options, ResidualSet, residuals};
 
 /// A plot cannot show more points.
@@ -12,11 +12,11 @@ const BAND_SIGMA: f64 = 2.0;
 
 impl Lab {
     /// `None` if the bench has no model of this kind from another run.
-    pub async fn beside(&self, id: i64) -> Answer<Option<Beside>> {
-        self.work_out(Job::Beside { run: id }).await
+    pub async fn model_overlay(&self, id: i64) -> Answer<Option<ModelOverlay>> {
+        self.compute(Job::OverlayModel { run: id }).await
     }
 
-    pub(super) async fn beside_here(&self, id: i64) -> Answer<Option<Beside>> {
+    pub(super) async fn model_overlay_here(&self, id: i64) -> Answer<Option<ModelOverlay>> {
         let record = self.inner.store.run(id).await?;
         let Some(model) = self.inner.store.last_model(&record.bench, &record.kind, id).await? else {
             return Ok(None);
@@ -25,7 +25,7 @@ impl Lab {
         let noise_rms = model.noise_floor_rms.unwrap_or(model.validation_rms);
         let table = self.measurement(id).await?;
         let left = blocking(move || Ok(residuals(&table, &fit, &Options::default()))).await?;
-        let mut beside = Beside {
+        let mut overlay = ModelOverlay {
             model: model.id,
             model_run: model.run,
             noise_rms,
@@ -36,20 +36,20 @@ impl Lab {
             figures: Vec::new(),
         };
         match left {
-            Ok(left) => show(&mut beside, &left),
-            Err(fault) => beside.why_not = Some(fault.to_string()),
+            Ok(left) => show(&mut overlay, &left),
+            Err(fault) => overlay.why_not = Some(fault.to_string()),
         }
-        Ok(Some(beside))
+        Ok(Some(overlay))
     }
 }
 
 /// Uses only the points that the model is expected to explain.
-fn show(beside: &mut Beside, left: &ResidualSet) {
+fn show(overlay: &mut ModelOverlay, left: &ResidualSet) {
     let judged: Vec<usize> = (0..left.error.len()).filter(|i| !left.held_out[*i]).collect();
-    let band = BAND_SIGMA * beside.noise_rms;
+    let band = BAND_SIGMA * overlay.noise_rms;
     let outside = judged.iter().filter(|i| left.error[**i].abs() > band).count();
-    beside.points = judged.len();
-    beside.outside = (!judged.is_empty()).then(|| outside as f64 / judged.len() as f64);
+    overlay.points = judged.len();
+    overlay.outside = (!judged.is_empty()).then(|| outside as f64 / judged.len() as f64);
     let Some(time) = left.axes.iter().find(|axis| axis.name == "time_s") else { return };
     let shown: Vec<usize> = judged.iter().copied().step_by(judged.len().div_ceil(MOST_POINTS).max(1)).collect();
     let of = |values: &[f64]| -> Vec<f64> { shown.iter().map(|i| values[*i]).collect() };
@@ -68,7 +68,7 @@ fn show(beside: &mut Beside, left: &ResidualSet) {
         y: vec![0.0; 2],
         band: vec![[-band, band]; 2],
     };
-    let name = format!("model {}", beside.model);
+    let name = format!("model {}", overlay.model);
     let figure = |id: &str, title: String, series| Figure {
         name: id.to_owned(),
         title,
@@ -77,7 +77,7 @@ fn show(beside: &mut Beside, left: &ResidualSet) {
         y: axis(id, &left.unit),
         series,
     };
-    beside.figures = vec![
+    overlay.figures = vec![
         figure(
             "response",
             format!("Measured and {name}"),

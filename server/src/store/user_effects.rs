@@ -1,8 +1,8 @@
 //! Effects that users write. New models use the latest version of each effect.
 
-use super::seal::{OWN_EFFECTS, whole};
+use super::seal::{OWN_EFFECTS, intact_records};
 use super::values::{json, now};
-use super::{OwnEffectRecord, Store, StoreError};
+use super::{Store, StoreError, UserEffectRecord};
 use serde_json::Value;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
@@ -12,21 +12,21 @@ const LATEST: &str = "SELECT * FROM own_effects AS own \
 
 impl Store {
     /// Sorted by kind and id. A damaged one is omitted and logged.
-    pub async fn own_effects(&self) -> Result<Vec<OwnEffectRecord>, StoreError> {
+    pub async fn user_effects(&self) -> Result<Vec<UserEffectRecord>, StoreError> {
         let rows = sqlx::query(LATEST).fetch_all(&self.readers).await?;
-        let mut records = whole(&rows, record);
+        let mut records = intact_records(&rows, record);
         records.sort_by(|a, b| (&a.kind, &a.effect).cmp(&(&b.kind, &b.effect)));
         Ok(records)
     }
 
     /// Stores a definition as the next version of its id. Existing versions do not change.
-    pub async fn save_own_effect(
+    pub async fn save_user_effect(
         &self,
         kind: &str,
         effect: &str,
         definition: &Value,
-    ) -> Result<OwnEffectRecord, StoreError> {
-        let latest = self.own_effects().await?.into_iter().find(|own| own.kind == kind && own.effect == effect);
+    ) -> Result<UserEffectRecord, StoreError> {
+        let latest = self.user_effects().await?.into_iter().find(|own| own.kind == kind && own.effect == effect);
         if let Some(latest) = latest.filter(|latest| latest.definition == *definition) {
             return Ok(latest);
         }
@@ -56,7 +56,7 @@ impl Store {
     }
 
     /// Deletes an effect with all its versions. Refused while a model uses it.
-    pub async fn delete_own_effect(&self, kind: &str, effect: &str) -> Result<(), StoreError> {
+    pub async fn delete_user_effect(&self, kind: &str, effect: &str) -> Result<(), StoreError> {
         let user: Option<(i64,)> = sqlx::query_as(
             "SELECT models.id FROM models, json_each(IIF(json_valid(models.fit), models.fit, '{}'), '$.own') AS own \
              WHERE models.kind = ? AND json_extract(own.value, '$.id') = ? ORDER BY models.id LIMIT 1",
@@ -80,9 +80,9 @@ impl Store {
     }
 }
 
-fn record(row: &SqliteRow) -> Result<OwnEffectRecord, StoreError> {
+fn record(row: &SqliteRow) -> Result<UserEffectRecord, StoreError> {
     OWN_EFFECTS.check(row)?;
-    Ok(OwnEffectRecord {
+    Ok(UserEffectRecord {
         kind: row.try_get("kind")?,
         effect: row.try_get("effect")?,
         version: row.try_get("version")?,

@@ -44,7 +44,7 @@ fn held(series: &Value, truth: f64) -> (f64, f64) {
 }
 
 #[test]
-fn a_difference_is_told_with_two_standard_errors() {
+fn a_difference_has_two_standard_errors() {
     let daemon = TestDaemon::start();
     let add = |table: String| upload(&daemon, &table, &[("meta", META)]).1["id"].as_i64().unwrap();
     let (base, other) = (add(strokes(0.0, 1)), add(strokes(MORE_A, 2)));

@@ -1,4 +1,4 @@
-//! How much may be sent. No body is held in memory before its request has been let in.
+//! Size limits of request bodies. No body is held in memory before its request is authenticated.
 
 use super::problem::Problem;
 use axum::body::{Body, Bytes, HttpBody};
@@ -15,18 +15,18 @@ use tokio::sync::{Semaphore, oneshot};
 
 /// Largest body of an ordinary request.
 pub const BODY_LIMIT_BYTES: usize = 1 << 20;
-/// Of a table that a page shows.
+/// Largest table of a page.
 pub const TABLE_LIMIT_BYTES: usize = 8 << 20;
-/// Of a measured file.
+/// Largest measured file.
 pub const UPLOAD_LIMIT_BYTES: usize = 1 << 30;
-/// So many files come in at the same time.
+/// Uploads at the same time.
 pub const UPLOADS: usize = 2;
 
-/// What is still read, and thrown away, of a body that nobody wanted.
-const HEARD_OUT_BYTES: usize = 16 << 20;
-const HEARD_OUT: Duration = Duration::from_secs(5);
+/// Limits for reading the rest of a refused body.
+const MAX_DISCARDED_BYTES: usize = 16 << 20;
+const DISCARD_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Middleware: refuses a body that is announced as larger than `limit`.
+/// Middleware: refuses a body whose announced size exceeds `limit`.
 pub async fn guard(limit: usize, request: Request, next: Next) -> Response {
     match announced(&request) {
         Some(bytes) if bytes > limit => {
@@ -37,7 +37,7 @@ pub async fn guard(limit: usize, request: Request, next: Next) -> Response {
     }
 }
 
-/// Middleware: refuses a file while others come in.
+/// Middleware: refuses an upload while too many others are in progress.
 pub async fn queue(uploads: Arc<Semaphore>, request: Request, next: Next) -> Response {
     match uploads.try_acquire() {
         Ok(_turn) => next.run(request).await,
@@ -45,28 +45,28 @@ pub async fn queue(uploads: Arc<Semaphore>, request: Request, next: Next) -> Res
     }
 }
 
-/// Middleware: reads to its end, within reason, and throws away what a refusal has left of a body. Whoever is cut off in
-/// the middle of a sentence sees a broken pipe and never the refusal, and has no connection for the next request.
-pub async fn hear_out(request: Request, next: Next) -> Response {
-    // Who asks before sending has not sent anything.
+/// Middleware: after a refusal, reads and discards the rest of the body, within limits. Otherwise the client gets a broken
+/// pipe instead of the refusal, and loses its connection.
+pub async fn discard_body(request: Request, next: Next) -> Response {
+    // Such a client has not sent the body.
     let asks_first = request.headers().contains_key(EXPECT);
     let (left, mut rest) = oneshot::channel();
-    let response = next.run(request.map(|body| Body::new(Watched { body, left: Some(left) }))).await;
+    let response = next.run(request.map(|body| Body::new(ReturnedBody { body, left: Some(left) }))).await;
     if let Ok(body) = rest.try_recv()
         && !asks_first
     {
-        let _ = tokio::time::timeout(HEARD_OUT, throw_away(body)).await;
+        let _ = tokio::time::timeout(DISCARD_TIMEOUT, discard(body)).await;
     }
     response
 }
 
-/// A body that is handed back where it is dropped before its end.
-struct Watched {
+/// A body that is returned through `left` if it is dropped before its end.
+struct ReturnedBody {
     body: Body,
     left: Option<oneshot::Sender<Body>>,
 }
 
-impl HttpBody for Watched {
+impl HttpBody for ReturnedBody {
     type Data = Bytes;
     type Error = axum::Error;
 
@@ -90,22 +90,22 @@ impl HttpBody for Watched {
     }
 }
 
-impl Drop for Watched {
+impl Drop for ReturnedBody {
     fn drop(&mut self) {
         if let Some(left) = self.left.take()
             && !self.body.is_end_stream()
         {
-            // An error says that the answer is on its way already.
+            // An error means that the answer is already being sent.
             let _ = left.send(std::mem::take(&mut self.body));
         }
     }
 }
 
-async fn throw_away(mut body: Body) {
+async fn discard(mut body: Body) {
     let mut bytes = 0;
     while let Some(Ok(frame)) = std::future::poll_fn(|context| Pin::new(&mut body).poll_frame(context)).await {
         bytes += frame.data_ref().map_or(0, Bytes::len);
-        if bytes > HEARD_OUT_BYTES {
+        if bytes > MAX_DISCARDED_BYTES {
             return;
         }
     }

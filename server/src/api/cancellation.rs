@@ -1,4 +1,4 @@
-//! Long computations and the clients who wait for them, or no longer do.
+//! Cancels a long computation when its client disconnects.
 
 use super::presence::Presence;
 use super::problem::Problem;
@@ -14,8 +14,8 @@ pub struct DetachQuery {
     pub detach: bool,
 }
 
-/// The result of a computation for whoever waits for it. When the client leaves it is given up, unless it is to go on.
-pub async fn waited_for<T: Send + 'static>(
+/// Returns the result of a computation. Cancels it when the client disconnects, unless it is detached.
+pub async fn cancel_on_disconnect<T: Send + 'static>(
     presence: Presence,
     query: DetachQuery,
     work: impl Future<Output = Result<T, LabError>> + Send + 'static,
@@ -26,7 +26,7 @@ pub async fn waited_for<T: Send + 'static>(
     }
     tokio::select! {
         done = work => Ok(done?),
-        // Nobody reads this answer.
+        // No client receives this answer.
         () = presence.gone() => Err(LabError::Over("the client disconnected: the computation was cancelled".into()).into()),
     }
 }

@@ -1,10 +1,10 @@
 //! `jointbench stop`, `pause`, `resume` and `reset`: control of an active run or an idle bench.
 
-use super::arguments::{Reset, Steer, Stop};
+use super::arguments::{Control, Reset, Stop};
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::outcome::{ending, is_over};
-use super::run::{LOOK_EVERY, choose_bench, wait};
+use super::run::{POLL_INTERVAL, choose_bench, wait};
 use crate::view::{self, Acknowledgement, Bench, Run, RunList, RunState, Safe};
 
 pub fn stop(arguments: &Stop) -> Done {
@@ -21,21 +21,21 @@ pub fn stop(arguments: &Stop) -> Done {
     }
 }
 
-pub fn pause(arguments: &Steer) -> Done {
-    steer(arguments, "pause", RunState::Paused)
+pub fn pause(arguments: &Control) -> Done {
+    request(arguments, "pause", RunState::Paused)
 }
 
-pub fn resume(arguments: &Steer) -> Done {
-    steer(arguments, "resume", RunState::Running)
+pub fn resume(arguments: &Control) -> Done {
+    request(arguments, "resume", RunState::Running)
 }
 
 /// Waits until the run has the wanted state.
-fn steer(arguments: &Steer, how: &str, wanted: RunState) -> Done {
+fn request(arguments: &Control, how: &str, wanted: RunState) -> Done {
     let client = Client::new(&arguments.reach)?;
     let id = named_or_on(&client, arguments.run)?;
     let mut run: Run = client.post(&format!("/runs/{id}/{how}"), &())?;
     while run.summary.state != wanted && !is_over(run.summary.state) {
-        std::thread::sleep(LOOK_EVERY);
+        std::thread::sleep(POLL_INTERVAL);
         run = client.get(&format!("/runs/{id}"))?;
     }
     println!("{}", ending(&run));

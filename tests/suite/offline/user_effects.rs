@@ -80,28 +80,31 @@ fn a_caret_stands_below_the_mistake() {
     let folder = tempfile::tempdir().expect("a folder");
     write_run(folder.path());
     let output = run_in(folder.path(), &["fit", "run.csv", "--own", "rub: tau = a * velocty; a [Nm]"]);
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(2), "{said}");
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{message}");
     let below = "  rub: tau = a * velocty; a [Nm]\n                 ^^^^^^^\n";
-    assert!(said.contains("did you mean velocity?") && said.ends_with(below), "{said}");
+    assert!(message.contains("did you mean velocity?") && message.ends_with(below), "{message}");
 
     let seconds = RUB.replace("[rad/s]", "[s]");
-    let said = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--own", &seconds]));
-    assert!(said.contains("tanh takes a plain number, but this is in 1/s²") && said.contains("^^"), "{said}");
+    let message = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--own", &seconds]));
+    assert!(message.contains("tanh takes a plain number, but this is in 1/s²") && message.contains("^^"), "{message}");
     // The unit is valid for a sliding joint; this joint rotates.
     let metres = RUB.replace("[rad/s]", "[m/s]");
-    let said = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--own", &metres]));
-    assert!(said.contains("note: effect rub: tanh takes a plain number, but this is in 1/m"), "{said}");
+    let message = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--own", &metres]));
+    assert!(message.contains("note: effect rub: tanh takes a plain number, but this is in 1/m"), "{message}");
     let response = "rub: tau = a * motor_torque; a [1]";
-    let said = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--own", response]));
-    assert!(said.contains("note: effect rub: motor_torque is the response that a friction model predicts"), "{said}");
+    let message = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--own", response]));
+    assert!(
+        message.contains("note: effect rub: motor_torque is the response that a friction model predicts"),
+        "{message}"
+    );
     let output = run_in(folder.path(), &["fit", "run.csv", "--own", RUB]);
     assert_eq!(output.status.code(), Some(2), "an effect that takes no part");
     assert!(stderr(&output).contains("--model load_transmission,coulomb,viscous,rub"), "{}", stderr(&output));
 
     std::fs::write(folder.path().join("effects.toml"), FILE.replace("/ w0", "/ w1")).expect("effects");
-    let said = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--effect-file", "effects.toml"]));
-    assert!(said.contains("effects.toml: effect rub: w1") && said.contains(" ^^\n"), "{said}");
+    let message = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--effect-file", "effects.toml"]));
+    assert!(message.contains("effects.toml: effect rub: w1") && message.contains(" ^^\n"), "{message}");
     std::fs::write(folder.path().join("effects.toml"), FILE.replace("unit", "units")).expect("effects");
     let output = run_in(folder.path(), &["diagnose", "run.csv", "--effect-file", "effects.toml"]);
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
@@ -118,8 +121,8 @@ fn a_model_goes_out_and_is_held_against_runs() {
     let held = done(folder.path(), &["model", "evaluate", "new.json", "run.csv", "--json"]);
     let held: Value = serde_json::from_str(&held).expect("JSON");
     assert!(held["rms"].as_f64().is_some_and(|rms| rms < 1e-3), "{held}");
-    let told = done(folder.path(), &["model", "compare", "old.json", "new.json", "run.csv"]);
-    assert!(told.contains("only in second  rub"), "{told}");
+    let text = done(folder.path(), &["model", "compare", "old.json", "new.json", "run.csv"]);
+    assert!(text.contains("only in second  rub"), "{text}");
     for (format, words) in
         [("c", "joint_friction_fitted"), ("lut", "load_nm"), ("mujoco", "<joint "), ("urdf", "<dynamics ")]
     {
@@ -145,13 +148,13 @@ fn a_model_that_went_out_comes_into_the_store_again() {
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
         stderr(&output)
     };
-    let said = refused(&["model", "import", "new.json", "--run", "1"]);
-    assert!(said.contains("no store in jointbench-data: give its folder with --data"), "{said}");
+    let message = refused(&["model", "import", "new.json", "--run", "1"]);
+    assert!(message.contains("no store in jointbench-data: give its folder with --data"), "{message}");
     done(folder.path(), &["import", "run.csv"]);
-    let said = refused(&["model", "import", "new.json", "--run", "7"]);
-    assert!(said.contains("new.json: run 7 does not exist"), "{said}");
-    let told = done(folder.path(), &["model", "import", "new.json", "--run", "1"]);
-    assert!(told.starts_with("model 1 of run 1: load_transmission + coulomb + viscous + rub\nerror "), "{told}");
+    let message = refused(&["model", "import", "new.json", "--run", "7"]);
+    assert!(message.contains("new.json: run 7 does not exist"), "{message}");
+    let text = done(folder.path(), &["model", "import", "new.json", "--run", "1"]);
+    assert!(text.starts_with("model 1 of run 1: load_transmission + coulomb + viscous + rub\nerror "), "{text}");
     let kept: Value =
         serde_json::from_str(&done(folder.path(), &["model", "import", "new.json", "--run", "1", "--json"]))
             .expect("JSON");
@@ -162,9 +165,9 @@ fn a_model_that_went_out_comes_into_the_store_again() {
     let geared = META.replace("\"gear_ratio\": 50", "\"gear_ratio\": 40");
     std::fs::write(folder.path().join("geared.json"), geared).expect("facts");
     done(folder.path(), &["import", "run.csv", "--meta", "geared.json"]);
-    let told = done(folder.path(), &["model", "import", "new.json", "--run", "2"]);
+    let text = done(folder.path(), &["model", "import", "new.json", "--run", "2"]);
     let note = "note      gear_ratio is 40 in the facts of this run and 50 in those of the fitted one";
-    assert!(told.contains(note), "{told}");
+    assert!(text.contains(note), "{text}");
     assert!(done(folder.path(), &["model", "evaluate", "new.json", "run.csv", "--meta", "geared.json"]).contains(note));
 
     let brake = "time_s,position_rad,brake_current_a,brake_torque_nm\n0,0,0,0\n0.1,0.1,0.1,0.2\n";
@@ -172,30 +175,30 @@ fn a_model_that_went_out_comes_into_the_store_again() {
     std::fs::write(folder.path().join("brake/run.csv"), brake).expect("a table");
     std::fs::write(folder.path().join("brake/meta.json"), r#"{"kind": "brake"}"#).expect("facts");
     done(folder.path(), &["import", "brake/run.csv"]);
-    let said = refused(&["model", "import", "new.json", "--run", "3"]);
-    assert!(said.contains("the model is of kind friction, run 3 of kind brake: choose a run"), "{said}");
+    let message = refused(&["model", "import", "new.json", "--run", "3"]);
+    assert!(message.contains("the model is of kind friction, run 3 of kind brake: choose a run"), "{message}");
     std::fs::write(folder.path().join("joint.h"), "#ifndef JOINT_H").expect("a header");
-    let said = refused(&["model", "import", "joint.h", "--run", "1"]);
-    assert!(said.contains("give a JSON file written by `jointbench fit --out`"), "{said}");
+    let message = refused(&["model", "import", "joint.h", "--run", "1"]);
+    assert!(message.contains("give a JSON file written by `jointbench fit --out`"), "{message}");
 
     let daemon = Daemon::serve(&folder.path().join("jointbench-data"), Path::new("joint-b-mock"));
-    let told = done(folder.path(), &["model", "import", "new.json", "--run", "1", "--daemon", &daemon.base]);
-    assert!(told.contains("model 4 of run 1") && told.contains("/workbench/1?model=4"), "{told}");
+    let text = done(folder.path(), &["model", "import", "new.json", "--run", "1", "--daemon", &daemon.base]);
+    assert!(text.contains("model 4 of run 1") && text.contains("/workbench/1?model=4"), "{text}");
     assert_eq!(daemon.get("/models/4")["fit"]["terms"], file["fit"]["terms"]);
 }
 
 /// All data of an effect, and the shape of its residual.
 #[test]
 fn an_effect_tells_all_of_itself() {
-    let said = done(Path::new("."), &["effects", "load_linear"]);
+    let message = done(Path::new("."), &["effects", "load_linear"]);
     for words in [
         "τ",
         "  requires link_torque_nm in addition to the columns of every friction run (time_s, ",
         "source: ",
         "residual if missing: ",
     ] {
-        assert!(said.contains(words), "{words}: {said}");
+        assert!(message.contains(words), "{words}: {message}");
     }
-    let said = done(Path::new("."), &["effects", "coulomb"]);
-    assert!(said.contains("  requires the columns of every friction run (time_s, "), "{said}");
+    let message = done(Path::new("."), &["effects", "coulomb"]);
+    assert!(message.contains("  requires the columns of every friction run (time_s, "), "{message}");
 }

@@ -3,7 +3,7 @@
 use super::pyramid::{self, COARSE_ROWS, Extremes, FINE_ROWS};
 use super::samples::{Chosen, choose, read, tail};
 use super::seal::{COARSE, FINE, SPANS};
-use super::{Store, StoreError, View, ViewColumn};
+use super::{Store, StoreError, Window, WindowColumn};
 use jointbench_procedure::RunId;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{Row, SqliteConnection};
@@ -14,18 +14,18 @@ impl Store {
     /// each channel. If the window has at most `px` rows, each row is a point.
     ///
     /// Points end at bins of the [`pyramid`]: a point may contain rows of its neighbour, less than half a pixel.
-    pub async fn view(
+    pub async fn window(
         &self,
         run: RunId,
         names: Option<&[String]>,
         from_s: Option<f64>,
         to_s: Option<f64>,
         px: usize,
-    ) -> Result<View, StoreError> {
+    ) -> Result<Window, StoreError> {
         let mut reader = self.readers.begin().await?;
         let mut chosen = choose(&mut reader, run, names).await?;
         let Some(time) = choose(&mut reader, run, None).await?.into_iter().next() else {
-            return Ok(View { time_s: Vec::new(), columns: Vec::new(), exact: true, rows: 0 });
+            return Ok(Window { time_s: Vec::new(), columns: Vec::new(), exact: true, rows: 0 });
         };
         let rows = window(&mut reader, run, &time, from_s, to_s).await?;
         // The time is always the first column: its smallest value is the position of the point.
@@ -39,7 +39,7 @@ impl Store {
         };
         let mut columns = columns.into_iter();
         let time_s = columns.next().map(|time| time.min).unwrap_or_default();
-        Ok(View { time_s, columns: columns.collect(), exact, rows: count as u64 })
+        Ok(Window { time_s, columns: columns.collect(), exact, rows: count as u64 })
     }
 }
 
@@ -63,11 +63,11 @@ async fn exactly(
     run: RunId,
     chosen: Vec<Chosen>,
     rows: Range<i64>,
-) -> Result<Vec<ViewColumn>, StoreError> {
+) -> Result<Vec<WindowColumn>, StoreError> {
     let trace = read(reader, run, chosen, rows).await?;
     let columns = trace.channels().iter().zip(trace.columns());
     Ok(columns
-        .map(|(channel, values)| ViewColumn { channel: channel.clone(), min: values.clone(), max: values.clone() })
+        .map(|(channel, values)| WindowColumn { channel: channel.clone(), min: values.clone(), max: values.clone() })
         .collect())
 }
 
@@ -181,12 +181,12 @@ impl Points {
     }
 }
 
-fn finish(chosen: Vec<Chosen>, points: Vec<Points>) -> Vec<ViewColumn> {
+fn finish(chosen: Vec<Chosen>, points: Vec<Points>) -> Vec<WindowColumn> {
     let columns = chosen.into_iter().zip(points);
     columns
         .map(|((_, channel), points)| {
             let Extremes { min, max } = points.into_extremes();
-            ViewColumn { channel, min, max }
+            WindowColumn { channel, min, max }
         })
         .collect()
 }
@@ -197,7 +197,7 @@ async fn from_samples(
     chosen: Vec<Chosen>,
     rows: Range<i64>,
     px: usize,
-) -> Result<Vec<ViewColumn>, StoreError> {
+) -> Result<Vec<WindowColumn>, StoreError> {
     let grid = Grid::of(&rows, px);
     let mut points: Vec<Points> = chosen.iter().map(|_| Points::new(px)).collect();
     take_samples(reader, run, &chosen, rows, grid, &mut points).await?;
@@ -233,7 +233,7 @@ async fn from_pyramid(
     rows: Range<i64>,
     px: usize,
     coarse: bool,
-) -> Result<Vec<ViewColumn>, StoreError> {
+) -> Result<Vec<WindowColumn>, StoreError> {
     let grid = Grid::of(&rows, px);
     let mut points: Vec<Points> = chosen.iter().map(|_| Points::new(px)).collect();
     // The rows before and after the whole blocks: partial blocks and the tail, sample by sample.

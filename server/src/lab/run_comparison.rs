@@ -23,14 +23,14 @@ const AT_REST: f64 = 0.01;
 impl Lab {
     /// The channel over the alignment axis (unless that is time), and the differences from the first run with two
     /// standard errors. The standard errors follow from the scatter of passes at the same place and load.
-    pub async fn differences(&self, runs: &[i64], how: &Alignment) -> Answer<Vec<Figure>> {
+    pub async fn compare_runs(&self, runs: &[i64], how: &Alignment) -> Answer<Vec<Figure>> {
         if !(2..=AT_MOST).contains(&runs.len()) {
             return Err(LabError::Invalid(format!("{} runs: choose 2 to {AT_MOST}", runs.len())));
         }
-        self.work_out(Job::Differences { runs: runs.to_vec(), how: how.clone() }).await
+        self.compute(Job::CompareRuns { runs: runs.to_vec(), how: how.clone() }).await
     }
 
-    pub(super) async fn differences_here(&self, runs: &[i64], how: &Alignment) -> Answer<Vec<Figure>> {
+    pub(super) async fn compare_runs_here(&self, runs: &[i64], how: &Alignment) -> Answer<Vec<Figure>> {
         let mut zeros = Vec::new();
         for run in runs {
             zeros.push(self.zero(*run, how).await?);
@@ -90,7 +90,7 @@ impl Lab {
     async fn spans(&self, runs: &[i64], channel: &str) -> Answer<Vec<[f64; 2]>> {
         let mut spans = Vec::new();
         for run in runs {
-            let whole = self.inner.store.view(*run, Some(&[channel.to_owned()]), None, None, 1).await?;
+            let whole = self.inner.store.window(*run, Some(&[channel.to_owned()]), None, None, 1).await?;
             let column = whole.columns.first();
             let low = column.map_or(f64::NAN, |column| column.min.iter().copied().fold(f64::NAN, f64::min));
             let high = column.map_or(f64::NAN, |column| column.max.iter().copied().fold(f64::NAN, f64::max));

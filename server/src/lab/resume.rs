@@ -114,7 +114,7 @@ impl Lab {
 
     /// The part of a measurement that a lesson needs. `None` if it was not measured.
     async fn recall(&self, run: i64, lesson: Lesson) -> Answer<Option<(RunTable, Done)>> {
-        let bytes = self.worked_out(Job::Recall { run, lesson }).await?;
+        let bytes = self.compute_json(Job::Recall { run, lesson }).await?;
         rmp_serde::from_slice(&bytes)
             .map_err(|fault| LabError::Internal(format!("run {run} cannot be recalled: {fault}")))
     }
