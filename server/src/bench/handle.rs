@@ -1,6 +1,7 @@
 //! Handle of a bench for all clients. Cheap to clone.
 
 use super::display::Display;
+use super::error::BenchError;
 use super::item::Item;
 use super::keeper::{Keeper, NEVER_BEGAN};
 use super::shared::{Shared, blocked, lock};

@@ -3,7 +3,7 @@
 use super::runs::exists;
 use super::seal::{DIAGNOSES, MODELS, intact_records};
 use super::values::{json, now};
-use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError, Subject, VersionRecord, kept};
+use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError, Subject, VersionRecord, result_cache};
 use jointbench_procedure::RunId;
 use serde_json::Value;
 use sqlx::sqlite::SqliteRow;

@@ -2,15 +2,15 @@
 
 mod columns;
 mod control;
-mod kept;
 mod model;
 mod place;
+mod runs;
 
 pub use columns::Columns;
 pub use control::{Control, Reset, ServoMemory, Stop};
-pub use kept::{Backup, Convert, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
 pub use model::{Model, ModelCommand};
 pub use place::{Place, Reach, ServedTokens};
+pub use runs::{Backup, Convert, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
 
 use super::log::LogForm;
 use super::ports::Ports;
@@ -100,7 +100,7 @@ pub enum Command {
     /// Export a stored run to a file
     Export(Export),
     /// Convert a table of another program to a run table with its meta file; needs no kind and no required columns
-    #[command(after_help = kept::CONVERT)]
+    #[command(after_help = runs::CONVERT)]
     Convert(Convert),
     /// Print the result of a stored run: verdict, quantities and intervals
     Identify(Identify),
