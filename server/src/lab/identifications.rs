@@ -46,7 +46,7 @@ impl Lab {
 
     /// The same if they are already in the cache.
     pub(super) async fn quantities_known(&self, run: i64) -> Answer<Option<Vec<Quantity>>> {
-        let kept = self.inner.store.kept(Subject::Run(run), QUANTITIES).await?;
+        let kept = self.inner.store.cached_result(Subject::Run(run), QUANTITIES).await?;
         kept.map(|kept| serde_json::from_slice(&kept))
             .transpose()
             .map_err(|fault| LabError::Internal(fault.to_string()))
@@ -65,12 +65,12 @@ impl Lab {
         part: impl FnOnce(Identification) -> T,
     ) -> Answer<T> {
         let damaged = |fault: serde_json::Error| LabError::Internal(fault.to_string());
-        if let Some(kept) = self.inner.store.kept(Subject::Run(run), what).await? {
+        if let Some(kept) = self.inner.store.cached_result(Subject::Run(run), what).await? {
             return serde_json::from_slice(&kept).map_err(damaged);
         }
         let part = part(self.identification(run).await?);
         let json = serde_json::to_vec(&part).map_err(damaged)?;
-        self.inner.store.keep(Subject::Run(run), what, &json).await?;
+        self.inner.store.cache_result(Subject::Run(run), what, &json).await?;
         Ok(part)
     }
 

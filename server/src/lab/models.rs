@@ -219,15 +219,15 @@ impl Lab {
     /// The residuals of the version as JSON ([`ResidualSet`]), from the cache if they are there.
     pub async fn residuals(&self, id: i64) -> Answer<Vec<u8>> {
         let subject = Subject::Model(id);
-        if let Some(kept) = self.inner.store.kept(subject, RESIDUALS).await? {
+        if let Some(kept) = self.inner.store.cached_result(subject, RESIDUALS).await? {
             return Ok(kept);
         }
         let _turn = self.inner.turns.of(Turn::Residuals(id)).await;
-        if let Some(kept) = self.inner.store.kept(subject, RESIDUALS).await? {
+        if let Some(kept) = self.inner.store.cached_result(subject, RESIDUALS).await? {
             return Ok(kept);
         }
         let packed = self.compute_json(Job::Residuals { model: id }).await?;
-        self.inner.store.keep_packed(subject, RESIDUALS, &packed).await?;
+        self.inner.store.cache_packed_result(subject, RESIDUALS, &packed).await?;
         Ok(unpacked(&packed)?)
     }
 

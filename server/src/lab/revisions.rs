@@ -32,12 +32,12 @@ impl Lab {
     /// once for simultaneous requests.
     pub async fn worth(&self, model: i64) -> Answer<Vec<Worth>> {
         let _turn = self.inner.turns.of(Turn::Worth(model)).await;
-        if let Some(kept) = self.inner.store.kept(Subject::Model(model), WORTH).await? {
+        if let Some(kept) = self.inner.store.cached_result(Subject::Model(model), WORTH).await? {
             return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
         }
         let worth: Vec<Worth> = self.compute(Job::Worth { model }).await?;
         let json = serde_json::to_vec(&worth).map_err(|fault| LabError::Internal(fault.to_string()))?;
-        self.inner.store.keep(Subject::Model(model), WORTH, &json).await?;
+        self.inner.store.cache_result(Subject::Model(model), WORTH, &json).await?;
         Ok(worth)
     }
 
@@ -65,7 +65,7 @@ impl Lab {
     /// Cached, except for users' effects, whose formula may change.
     pub async fn with_effect(&self, model: i64, effect: String) -> Answer<Vec<f64>> {
         let kept_as = format!("with {effect}");
-        if let Some(kept) = self.inner.store.kept(Subject::Model(model), &kept_as).await? {
+        if let Some(kept) = self.inner.store.cached_result(Subject::Model(model), &kept_as).await? {
             return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
         }
         let record = self.inner.store.model(model).await?;
@@ -74,7 +74,7 @@ impl Lab {
         let added: Vec<f64> = self.compute(Job::WithEffect { model, effect }).await?;
         if !changes {
             let json = serde_json::to_vec(&added).map_err(|fault| LabError::Internal(fault.to_string()))?;
-            self.inner.store.keep(Subject::Model(model), &kept_as, &json).await?;
+            self.inner.store.cache_result(Subject::Model(model), &kept_as, &json).await?;
         }
         Ok(added)
     }

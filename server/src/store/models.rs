@@ -51,7 +51,7 @@ impl Store {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         let id = insert_model(&mut writer, new, &before).await?;
         if let Some((what, packed)) = kept {
-            result_cache::keep(&mut writer, Subject::Model(id), what, packed).await?;
+            result_cache::insert(&mut writer, Subject::Model(id), what, packed).await?;
         }
         if let Some(diagnosis) = diagnosis {
             insert_diagnosis(&mut writer, id, diagnosis, &now()).await?;

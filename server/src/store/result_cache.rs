@@ -26,17 +26,17 @@ impl Subject {
 
 impl Store {
     /// Stores a result as the JSON of the API.
-    pub async fn keep(&self, subject: Subject, what: &str, json: &[u8]) -> Result<(), StoreError> {
-        self.keep_packed(subject, what, &packed(json)?).await
+    pub async fn cache_result(&self, subject: Subject, what: &str, json: &[u8]) -> Result<(), StoreError> {
+        self.cache_packed_result(subject, what, &packed(json)?).await
     }
 
     /// The same for data that is already [`packed`].
-    pub async fn keep_packed(&self, subject: Subject, what: &str, packed: &[u8]) -> Result<(), StoreError> {
-        keep(&mut *self.writer.acquire().await?, subject, what, packed).await
+    pub async fn cache_packed_result(&self, subject: Subject, what: &str, packed: &[u8]) -> Result<(), StoreError> {
+        insert(&mut *self.writer.acquire().await?, subject, what, packed).await
     }
 
     /// `None` if the result must be computed, also if the cached one is damaged.
-    pub async fn kept(&self, subject: Subject, what: &str) -> Result<Option<Vec<u8>>, StoreError> {
+    pub async fn cached_result(&self, subject: Subject, what: &str) -> Result<Option<Vec<u8>>, StoreError> {
         let (subject, id) = subject.parts();
         let row = sqlx::query("SELECT * FROM kept WHERE subject = ? AND id = ? AND what = ? AND software = ?")
             .bind(subject)
@@ -64,7 +64,7 @@ pub fn unpacked(packed: &[u8]) -> Result<Vec<u8>, StoreError> {
     zstd::decode_all(packed).map_err(|fault| StoreError::Damaged(fault.to_string()))
 }
 
-pub(super) async fn keep(
+pub(super) async fn insert(
     writer: &mut SqliteConnection,
     subject: Subject,
     what: &str,

@@ -1,7 +1,7 @@
 //! Model versions: comparison, evaluation on other runs, export and import.
 
 use crate::daemon::TestDaemon;
-use crate::own_effects::{RUB, rub, rubbing_run};
+use crate::user_effects::{RUB, rub, rubbing_run};
 use serde_json::{Value, json};
 
 struct Two {

@@ -293,9 +293,9 @@ fn a_run_shows_its_best_version_that_is_neither_idle_nor_only_tried() {
         store.save_model(&model(run, Some(root.id), &["coulomb", "viscous", "stribeck"])).await.unwrap();
         let right = NewModel { validation_rms: 0.012, ..model(run, Some(root.id), &["coulomb", "load_linear"]) };
         let right = store.save_model(&right).await.unwrap();
-        let model = store.run(run).await.unwrap().model.unwrap();
+        let listed = store.run(run).await.unwrap().model.unwrap();
         assert_eq!(
-            (&model["id"], &model["unit"], &model["coulomb"]["value"]),
+            (&listed["id"], &listed["unit"], &listed["coulomb"]["value"]),
             (&json!(right.id), &json!("Nm"), &json!(0.03))
         );
         let grown = |validation_rms| NewModel {
@@ -325,12 +325,12 @@ fn diagnoses_and_cached_answers_belong_to_one_version() {
         let run = store.create_run(&new_run()).await.unwrap();
         let left = store.save_model(&model(run, None, &["coulomb"])).await.unwrap();
         let right = store.save_model(&model(run, None, &["viscous"])).await.unwrap();
-        assert_eq!(store.kept(Subject::Model(left.id), "worth").await.unwrap(), None);
-        store.keep(Subject::Model(left.id), "worth", b"[1]").await.unwrap();
-        store.keep(Subject::Model(left.id), "worth", b"[2]").await.unwrap();
-        assert_eq!(store.kept(Subject::Model(left.id), "worth").await.unwrap().as_deref(), Some(&b"[2]"[..]));
-        assert_eq!(store.kept(Subject::Model(right.id), "worth").await.unwrap(), None);
-        assert_eq!(store.kept(Subject::Run(left.id), "worth").await.unwrap(), None);
+        assert_eq!(store.cached_result(Subject::Model(left.id), "worth").await.unwrap(), None);
+        store.cache_result(Subject::Model(left.id), "worth", b"[1]").await.unwrap();
+        store.cache_result(Subject::Model(left.id), "worth", b"[2]").await.unwrap();
+        assert_eq!(store.cached_result(Subject::Model(left.id), "worth").await.unwrap().as_deref(), Some(&b"[2]"[..]));
+        assert_eq!(store.cached_result(Subject::Model(right.id), "worth").await.unwrap(), None);
+        assert_eq!(store.cached_result(Subject::Run(left.id), "worth").await.unwrap(), None);
 
         let diagnosis = store.save_diagnosis(left.id, &json!({"verdict": "adequate"})).await.unwrap();
         assert_eq!(store.diagnosis(diagnosis.id).await.unwrap(), diagnosis);
