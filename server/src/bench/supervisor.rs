@@ -136,7 +136,7 @@ impl Supervisor {
             }
             Report::Ended { run, end } => self.ended(run, &end),
             Report::NotBegun { run } => {
-                self.keep(Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN });
+                self.enqueue(Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN });
             }
             Report::DiskFull(full) => {
                 shared.disk_is_full.store(full, Ordering::Release);
@@ -169,7 +169,7 @@ impl Supervisor {
         }
         for (run, reason) in std::mem::take(&mut self.orphans) {
             tracing::warn!(run.id = run, bench = self.shared.name(), %safe, "run was interrupted, the bench is now in its safe state");
-            self.keep(Item::Interrupted { run, safe, reason });
+            self.enqueue(Item::Interrupted { run, safe, reason });
         }
         self.shared.change(|status| {
             status.settled = true;
@@ -206,7 +206,7 @@ impl Supervisor {
                 reason: None,
             });
         }
-        self.keep(Item::Entry(entry));
+        self.enqueue(Item::Entry(entry));
     }
 
     fn ended(&self, run: RunId, end: &RunEnd) {
@@ -233,10 +233,10 @@ impl Supervisor {
     }
 
     fn keep_faults(&self, new: Vec<NewFault>) {
-        new.into_iter().for_each(|new| self.keep(Item::Fault(new)));
+        new.into_iter().for_each(|new| self.enqueue(Item::Fault(new)));
     }
 
-    fn keep(&self, item: Item) {
+    fn enqueue(&self, item: Item) {
         if self.shared.to_keep.send(item).is_err() {
             tracing::error!(bench = self.shared.name(), "the storage thread has ended");
         }
@@ -245,7 +245,7 @@ impl Supervisor {
     /// Waits until the store has the data of the worker. On a timeout the worker writes the rest to the data folder.
     fn drain(&self) {
         let (done, stored) = oneshot::channel();
-        self.keep(Item::Flush(done));
+        self.enqueue(Item::Flush(done));
         let stored = self.shared.runtime.block_on(async { tokio::time::timeout(DRAINED, stored).await });
         if stored.is_err() {
             tracing::warn!(

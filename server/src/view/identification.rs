@@ -1,4 +1,4 @@
-//! What a procedure makes of its run.
+//! Results of procedures.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};

@@ -46,7 +46,7 @@ pub async fn verify_file(file: &Path) -> Result<VerifyReport, StoreError> {
 async fn check_database(mut database: SqliteConnection, mark: Option<&Mark>) -> Result<VerifyReport, StoreError> {
     let mut report = VerifyReport { checked_at: now(), ..VerifyReport::default() };
     check_file(&mut database, &mut report).await;
-    look_for_losses(&mut database, mark, &mut report).await;
+    check_losses(&mut database, mark, &mut report).await;
     for sealed in OF_NO_RUN {
         check_rows(&mut database, sealed, None, &mut report).await;
     }
@@ -129,7 +129,7 @@ async fn check_file(database: &mut SqliteConnection, report: &mut VerifyReport) 
 }
 
 /// An older release stored neither losses nor a mark; missing tables are ignored.
-async fn look_for_losses(database: &mut SqliteConnection, mark: Option<&Mark>, report: &mut VerifyReport) {
+async fn check_losses(database: &mut SqliteConnection, mark: Option<&Mark>, report: &mut VerifyReport) {
     report.lost = losses(database).await.unwrap_or_default();
     if let Ok(Some(loss)) = missing(database, mark).await {
         report.add(None, "file", loss.to_string());

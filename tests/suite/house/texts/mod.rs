@@ -13,8 +13,8 @@ use jointbench_model::effects;
 use serde_json::Value;
 use std::path::Path;
 
-/// Folders whose strings are messages for people.
-const SPOKEN: [&str; 12] = [
+/// Folders and files whose strings are messages for users.
+const SPOKEN: [&str; 14] = [
     "procedures/procedure/src",
     "procedures/model/src",
     "drivers/files/src",
@@ -24,9 +24,11 @@ const SPOKEN: [&str; 12] = [
     "server/src/bench",
     "server/src/cli",
     "server/src/config",
+    "server/src/error.rs",
     "server/src/job",
     "server/src/lab",
     "server/src/report",
+    "server/src/view",
 ];
 
 /// A text and its source.
