@@ -5,7 +5,7 @@ use super::error::BenchError;
 use super::item::Item;
 use super::keeper::{Keeper, NEVER_BEGAN};
 use super::shared::{Shared, blocked, lock};
-use super::status::{Status, Underway};
+use super::status::{ActiveRun, Status};
 use super::supervisor::Supervisor;
 use super::wire::{MemoryRead, Order};
 use crate::config::BenchDescription;
@@ -35,7 +35,7 @@ pub struct BenchHandle {
 }
 
 /// Initial state of a bench.
-pub struct Beginning {
+pub struct InitialState {
     pub description: BenchDescription,
     /// An existing block of the bench.
     pub block: Option<SafetyRecord>,
@@ -46,8 +46,14 @@ pub struct Beginning {
 impl BenchHandle {
     /// Starts the worker, which opens and secures the instruments. Requires a runtime. `program`: path of the
     /// `jointbench` executable.
-    pub fn start(beginning: Beginning, store: Store, hub: Hub, data: &Path, program: &Path) -> std::io::Result<Self> {
-        let Beginning { description, block, interrupted } = beginning;
+    pub fn start(
+        beginning: InitialState,
+        store: Store,
+        hub: Hub,
+        data: &Path,
+        program: &Path,
+    ) -> std::io::Result<Self> {
+        let InitialState { description, block, interrupted } = beginning;
         let (to_keep, items) = mpsc::unbounded_channel();
         let paths = (std::path::absolute(data)?, program.to_owned());
         let shared = Arc::new(Shared::new(description, store, hub, paths, to_keep));
@@ -225,7 +231,7 @@ impl Claim {
         let bench = &self.bench;
         let display = Display::new(bench.alongside(run, &plan).await, plan.rate_hz);
         *lock(&bench.display) = Some(display);
-        bench.shared.status.send_modify(|status| drop(status.runs.insert(run, Underway::queued())));
+        bench.shared.status.send_modify(|status| drop(status.runs.insert(run, ActiveRun::queued())));
         bench.shared.order(&Order::Run { run, plan: Box::new(plan) }).map_err(|_| {
             let item = Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN };
             if bench.shared.to_keep.send(item).is_err() {

@@ -15,14 +15,14 @@ const SAME_S: f64 = 3e-6;
 
 /// Input quality of a channel, as far as it is known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Incoming {
+pub struct ChannelInput {
     name: String,
     rate_hz: Option<f64>,
     sampled: Option<Timestamp>,
     dropped: u64,
 }
 
-impl Incoming {
+impl ChannelInput {
     pub fn view(&self, now: Timestamp) -> ChannelHealth {
         ChannelHealth {
             name: self.name.clone(),
@@ -36,7 +36,7 @@ impl Incoming {
 }
 
 /// The channels of every run on this bench. The channels of a run replace them.
-pub(super) fn expected(bench: &Bench) -> Vec<Incoming> {
+pub(super) fn expected(bench: &Bench) -> Vec<ChannelInput> {
     let joint = bench.joint.resolution();
     let channels = [
         ("motor_position_rad", true),
@@ -50,7 +50,7 @@ pub(super) fn expected(bench: &Bench) -> Vec<Incoming> {
         ("test_position_rad", bench.test_encoder.is_some()),
     ];
     let there = channels.into_iter().filter(|(_, there)| *there);
-    there.map(|(name, _)| Incoming { name: name.to_owned(), rate_hz: None, sampled: None, dropped: 0 }).collect()
+    there.map(|(name, _)| ChannelInput { name: name.to_owned(), rate_hz: None, sampled: None, dropped: 0 }).collect()
 }
 
 pub(super) struct Health {
@@ -102,11 +102,11 @@ impl Health {
     }
 
     /// `now`: arrival time of the newest row.
-    pub fn channels(&self, now: Timestamp) -> Vec<Incoming> {
+    pub fn channels(&self, now: Timestamp) -> Vec<ChannelInput> {
         let newest_s = self.newest.map_or(0.0, |(at_s, _)| at_s);
         let incoming = |channel: &Known| {
             let age = channel.over.map(|(_, last_s, _)| SignedDuration::from_secs_f64((newest_s - last_s).max(0.0)));
-            Incoming {
+            ChannelInput {
                 name: channel.name.clone(),
                 rate_hz: channel.rate_hz,
                 sampled: age.map(|age| now - age),
@@ -174,7 +174,7 @@ mod tests {
     }
 
     fn rates(health: &Health) -> Vec<(String, f64, u64)> {
-        let rounded = |one: Incoming| (one.name, (10.0 * one.rate_hz.unwrap_or(0.0)).round() / 10.0, one.dropped);
+        let rounded = |one: ChannelInput| (one.name, (10.0 * one.rate_hz.unwrap_or(0.0)).round() / 10.0, one.dropped);
         health.channels(Timestamp::UNIX_EPOCH).into_iter().map(rounded).collect()
     }
 

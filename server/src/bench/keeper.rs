@@ -195,13 +195,13 @@ impl Keeper {
     }
 
     fn publish_end(&self, run: RunId) {
-        let Some(underway) = self.shared.status.borrow().runs.get(&run).cloned() else { return };
+        let Some(active) = self.shared.status.borrow().runs.get(&run).cloned() else { return };
         self.shared.hub.publish(LiveMessage::State {
             bench: self.shared.name().to_owned(),
             run,
-            state: state_view(underway.state),
-            safe: underway.safe.map(safe_view),
-            reason: underway.reason,
+            state: state_view(active.state),
+            safe: active.safe.map(safe_view),
+            reason: active.reason,
         });
     }
 }

@@ -18,7 +18,7 @@ mod wire;
 pub mod worker;
 
 pub use error::BenchError;
-pub use handle::{Beginning, BenchHandle, facts};
+pub use handle::{BenchHandle, InitialState, facts};
 pub use instrument_check::{InstrumentCheck, check_instruments};
 pub use instruments::{Opened, open, reach};
 pub use leftovers::store_all as store_leftovers;

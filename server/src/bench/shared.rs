@@ -1,7 +1,7 @@
 //! Shared state of a bench in the server: its status, the connection to its worker, and its block.
 
 use super::item::Item;
-use super::status::{Status, Underway};
+use super::status::{ActiveRun, Status};
 use super::view::bench_view;
 use super::wire::{self, MemoryRead, Order};
 use crate::config::BenchDescription;
@@ -187,11 +187,11 @@ impl Shared {
     }
 
     /// Removes a run when its worker has finished and its end is stored.
-    pub fn settle(&self, run: RunId, change: impl FnOnce(&mut Underway)) {
+    pub fn settle(&self, run: RunId, change: impl FnOnce(&mut ActiveRun)) {
         self.change(|status| {
-            let Some(underway) = status.runs.get_mut(&run) else { return };
-            change(underway);
-            if underway.ended && underway.stored {
+            let Some(active) = status.runs.get_mut(&run) else { return };
+            change(active);
+            if active.ended && active.stored {
                 status.runs.remove(&run);
             }
         });

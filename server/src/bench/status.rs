@@ -1,6 +1,6 @@
 //! State of a bench as known to the server.
 
-use super::health::Incoming;
+use super::health::ChannelInput;
 use crate::store::RunCommit;
 use crate::view::{BenchState, Blocked, Instrument, InstrumentFault, Progress};
 use jiff::Timestamp;
@@ -34,19 +34,19 @@ pub struct Status {
     pub blocked: Option<Blocked>,
     /// The newest row of the run, for comparison with the limits.
     pub readings: Vec<(Limited, f64)>,
-    pub channels: Vec<Incoming>,
+    pub channels: Vec<ChannelInput>,
     /// Whether the worker has tried to open and secure the bench since its start.
     pub settled: bool,
     /// Whether all instruments answered when they were opened.
     pub open: bool,
     /// Runs that are active or whose end is not stored.
-    pub runs: BTreeMap<RunId, Underway>,
+    pub runs: BTreeMap<RunId, ActiveRun>,
     pub unstored: Unstored,
 }
 
 /// State of a run as reported by its worker. It may be newer than the state in the store.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Underway {
+pub struct ActiveRun {
     pub state: RunState,
     pub safe: Option<Safe>,
     pub reason: Option<String>,
@@ -56,7 +56,7 @@ pub struct Underway {
     pub stored: bool,
 }
 
-impl Underway {
+impl ActiveRun {
     pub(super) fn queued() -> Self {
         Self { state: RunState::Queued, safe: None, reason: None, ended: false, stored: false }
     }
@@ -116,7 +116,7 @@ impl Status {
     }
 
     /// State of a run whose end is not stored because of a storage fault, and that fault.
-    pub fn not_stored(&self, run: RunId) -> Option<(&Underway, &str)> {
+    pub fn not_stored(&self, run: RunId) -> Option<(&ActiveRun, &str)> {
         Some((self.runs.get(&run)?, self.unstored.fault.as_deref()?))
     }
 

@@ -5,7 +5,7 @@ use super::instruments::unreached;
 use super::item::Item;
 use super::keeper::NEVER_BEGAN;
 use super::shared::{Shared, lock};
-use super::status::{FAULTS, NewFault, RunFault, Underway};
+use super::status::{ActiveRun, FAULTS, NewFault, RunFault};
 use super::wire::{self, Entry, Order, Report, Setup};
 use crate::store::SafetyRecord;
 use crate::view::{self, BenchState, InstrumentFault, LiveMessage, state_view};
@@ -41,7 +41,7 @@ impl Supervisor {
     /// `interrupted`: the runs that an earlier daemon left open on this bench.
     pub fn new(shared: Arc<Shared>, display: Arc<Mutex<Option<Display>>>, interrupted: Vec<RunId>) -> Self {
         shared.status.send_modify(|status| {
-            status.runs = interrupted.iter().map(|run| (*run, Underway::queued())).collect();
+            status.runs = interrupted.iter().map(|run| (*run, ActiveRun::queued())).collect();
         });
         Self { shared, display, orphans: interrupted.into_iter().map(|run| (run, DAEMON_ENDED)).collect() }
     }
@@ -146,7 +146,7 @@ impl Supervisor {
         }
     }
 
-    fn opened(&self, mut instruments: Vec<view::Instrument>, channels: Vec<super::health::Incoming>, open: bool) {
+    fn opened(&self, mut instruments: Vec<view::Instrument>, channels: Vec<super::health::ChannelInput>, open: bool) {
         for instrument in &mut instruments {
             instrument.faults = self.known_faults(&instrument.name);
         }
@@ -183,9 +183,9 @@ impl Supervisor {
         let shared = &self.shared;
         let commit = &entry.commit;
         let new: Vec<NewFault> = shared.change(|status| {
-            let underway = status.runs.entry(commit.run).or_insert_with(Underway::queued);
-            let before = underway.state;
-            underway.apply(commit);
+            let active = status.runs.entry(commit.run).or_insert_with(ActiveRun::queued);
+            let before = active.state;
+            active.apply(commit);
             status.unstored.rows += commit.rows.len();
             status.unstored.since.get_or_insert_with(Timestamp::now);
             if before != commit.state && !commit.state.is_final() {
@@ -215,7 +215,7 @@ impl Supervisor {
         }
         lock(&self.display).take();
         self.shared.change(|status| status.set_idle());
-        self.shared.settle(run, |underway| underway.ended = true);
+        self.shared.settle(run, |active| active.ended = true);
     }
 
     fn block_as_unsafe(&self, reason: &str, run: Option<RunId>) {

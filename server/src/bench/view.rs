@@ -44,9 +44,9 @@ pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Benc
 
 /// Shows a run whose end is not stored with the state of its worker.
 pub fn show_unstored_end(run: &mut view::RunSummary, status: &Status) {
-    let Some((underway, fault)) = status.not_stored(run.id) else { return };
-    run.state = state_view(underway.state);
-    run.safe = underway.safe.map(safe_view);
-    run.reason = underway.reason.clone();
+    let Some((active, fault)) = status.not_stored(run.id) else { return };
+    run.state = state_view(active.state);
+    run.safe = active.safe.map(safe_view);
+    run.reason = active.reason.clone();
     run.not_stored = Some(fault.to_owned());
 }

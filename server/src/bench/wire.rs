@@ -1,7 +1,7 @@
 //! Messages between server and bench worker, over standard input and output of the worker. A message is MessagePack,
 //! preceded by its length.
 
-use super::health::Incoming;
+use super::health::ChannelInput;
 use crate::config::BenchDescription;
 use crate::store::{RunCommit, SafetyRecord};
 use crate::view::Instrument;
@@ -76,7 +76,7 @@ pub enum Report {
     /// The instruments after they were opened or reconnected.
     Opened {
         instruments: Vec<Instrument>,
-        channels: Vec<Incoming>,
+        channels: Vec<ChannelInput>,
         open: bool,
     },
     /// Result of securing the bench without a run.

@@ -4,7 +4,7 @@ use super::arguments::Run as Arguments;
 use super::exit::Exit;
 use super::identify;
 use super::outcome::{Found, ending, title};
-use super::require::{Kept, Requirement};
+use super::require::{Requirement, RequirementResult};
 use crate::view::Run;
 
 /// The run's test case is a failure if it did not complete or has no result, and an error if there is no run. The other
@@ -13,7 +13,7 @@ pub fn junit(
     arguments: &Arguments,
     ended: &Result<Run, Exit>,
     found: Option<&Found>,
-    demands: &[(&Requirement, Kept)],
+    demands: &[(&Requirement, RequirementResult)],
 ) -> String {
     let procedure = title(arguments);
     let (suite, case, time_s) = match ended {
@@ -32,9 +32,9 @@ pub fn junit(
     let mut cases = vec![(case, time_s, outcome)];
     cases.extend(demands.iter().map(|(demand, kept)| {
         let outcome = match kept {
-            Kept::Yes(_) => None,
-            Kept::No(message) | Kept::Unsure(message) => Some(("failure", message.clone())),
-            Kept::Unknown(message) => Some(("error", message.clone())),
+            RequirementResult::Yes(_) => None,
+            RequirementResult::No(message) | RequirementResult::Unsure(message) => Some(("failure", message.clone())),
+            RequirementResult::Unknown(message) => Some(("error", message.clone())),
         };
         (demand.text().to_owned(), 0.0, outcome)
     }));
@@ -100,7 +100,7 @@ pub(super) mod tests {
     #[test]
     fn a_broken_limit_is_a_failure_of_its_own() {
         let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
-        let demands = [(&demand, Kept::No("message".to_owned()))];
+        let demands = [(&demand, RequirementResult::No("message".to_owned()))];
         let report = junit(&asked(&["friction"]), &Err(Exit::bad_input("no run")), None, &demands);
         assert!(report.contains("tests=\"2\" failures=\"1\" errors=\"1\" skipped=\"0\""), "{report}");
         assert!(report.contains("name=\"tau_c &lt; 0.03 Nm\""), "{report}");

@@ -6,7 +6,7 @@ use super::files::{self, write};
 use super::offline::{json_out, read};
 use super::print;
 use super::serve::runtime;
-use super::transfer::{self, Way};
+use super::transfer::{self, Target};
 use crate::lab::LOCAL;
 use crate::view::{self, reread};
 use jointbench_model::export::{ModelFile, export};
@@ -56,10 +56,10 @@ fn import(model: &Path, run: i64, json: bool, store: &StorePlace) -> Done {
     let import = view::ModelImport { run, model: file };
     let refused = |exit: Exit| Exit { message: format!("{}: {}", model.display(), exit.message), ..exit };
     let (imported, page) = match transfer::open(&runtime, store, false)? {
-        Way::Folder(lab) => {
+        Target::Folder(lab) => {
             (runtime.block_on(lab.import_model(import, LOCAL)).map_err(|fault| refused(fault.into()))?, None)
         }
-        Way::Daemon(client) => {
+        Target::Daemon(client) => {
             let imported: view::ImportedModel = client.post("/models/import", &import).map_err(refused)?;
             let page = client.page(&format!("/workbench/{run}?model={}", imported.model.id));
             (imported, Some(page))

@@ -23,7 +23,7 @@ pub struct Requirement {
 
 /// Result of a requirement.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Kept {
+pub enum RequirementResult {
     Yes(String),
     /// The value exceeds the limit.
     No(String),
@@ -80,23 +80,23 @@ impl Requirement {
         format!("{} is in {unit}: write the limit so", self.name)
     }
 
-    pub fn check(&self, found: &Identification) -> Kept {
+    pub fn check(&self, found: &Identification) -> RequirementResult {
         let quantities = &found.result.quantities;
         let Some(quantity) = quantities.iter().find(|quantity| quantity.name == self.name) else {
             let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name.as_str()).collect();
             let there = if names.is_empty() { "it contains no quantities".to_owned() } else { self.instead(&names) };
-            return Kept::Unknown(format!(
+            return RequirementResult::Unknown(format!(
                 "--require '{}': the result does not contain {}; {there}",
                 self.text, self.name
             ));
         };
         let Some(factor) = factor(&self.unit, &quantity.unit) else {
-            return Kept::Unknown(self.in_unit(&quantity.unit));
+            return RequirementResult::Unknown(self.in_unit(&quantity.unit));
         };
         self.judge(quantity, self.limit * factor)
     }
 
-    fn judge(&self, quantity: &Quantity, limit: f64) -> Kept {
+    fn judge(&self, quantity: &Quantity, limit: f64) -> RequirementResult {
         let keeps = |value: f64| match self.side {
             Side::Below => value <= limit,
             Side::Above => value >= limit,
@@ -107,11 +107,11 @@ impl Requirement {
             None => format!("{}: {} = {value}", self.text, self.name),
         };
         if !keeps(quantity.value) {
-            Kept::No(message)
+            RequirementResult::No(message)
         } else if quantity.ci95.is_some_and(|ends| !ends.into_iter().all(keeps)) {
-            Kept::Unsure(format!("{message}: the interval exceeds the limit"))
+            RequirementResult::Unsure(format!("{message}: the interval exceeds the limit"))
         } else {
-            Kept::Yes(message)
+            RequirementResult::Yes(message)
         }
     }
 }
@@ -160,12 +160,12 @@ pub(super) mod tests {
     #[test]
     fn the_whole_interval_must_keep_the_limit() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
-        assert!(matches!(check("tau_c < 0.035 Nm"), Kept::Yes(_)));
-        assert!(matches!(check("tau_c<=35 mNm"), Kept::Yes(_)));
-        assert!(matches!(check("tau_c > 0.02 Nm"), Kept::Yes(_)));
-        assert!(matches!(check("tau_c < 0.030 Nm"), Kept::No(_)));
+        assert!(matches!(check("tau_c < 0.035 Nm"), RequirementResult::Yes(_)));
+        assert!(matches!(check("tau_c<=35 mNm"), RequirementResult::Yes(_)));
+        assert!(matches!(check("tau_c > 0.02 Nm"), RequirementResult::Yes(_)));
+        assert!(matches!(check("tau_c < 0.030 Nm"), RequirementResult::No(_)));
         assert!(
-            matches!(check("tau_c < 0.0308 Nm"), Kept::Unsure(message) if message.contains("30.60 mNm [30.20 … 31.00]"))
+            matches!(check("tau_c < 0.0308 Nm"), RequirementResult::Unsure(message) if message.contains("30.60 mNm [30.20 … 31.00]"))
         );
     }
 
@@ -173,9 +173,9 @@ pub(super) mod tests {
     fn an_unknown_requirement_has_a_reason() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
         let why = "--require 'tau_x < 1 Nm': the result does not contain tau_x; did you mean tau_c? available: tau_c";
-        assert_eq!(check("tau_x < 1 Nm"), Kept::Unknown(why.to_owned()));
-        assert_eq!(check("tau_c < 1 A"), Kept::Unknown("tau_c is in Nm: write the limit so".to_owned()));
-        assert_eq!(check("tau_c < 1"), Kept::Unknown("tau_c is in Nm: write the limit so".to_owned()));
+        assert_eq!(check("tau_x < 1 Nm"), RequirementResult::Unknown(why.to_owned()));
+        assert_eq!(check("tau_c < 1 A"), RequirementResult::Unknown("tau_c is in Nm: write the limit so".to_owned()));
+        assert_eq!(check("tau_c < 1"), RequirementResult::Unknown("tau_c is in Nm: write the limit so".to_owned()));
         for text in ["tau_c", "< 3 Nm", "tau_c < much", "tau_c < NaN Nm"] {
             assert!(text.parse::<Requirement>().unwrap_err().contains("NAME < VALUE UNIT"), "{text}");
         }

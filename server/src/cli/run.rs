@@ -6,7 +6,7 @@ use super::exit::{Done, Exit};
 use super::junit::junit;
 use super::outcome::{Found, ending, is_over};
 use super::progress::RunProgress;
-use super::require::{Kept, Requirement};
+use super::require::{Requirement, RequirementResult};
 use super::{files, identify};
 use crate::view::{Bench, NewRun, Run, RunState};
 use jointbench_procedure::procedure;
@@ -21,7 +21,7 @@ pub fn run(arguments: &Arguments) -> Done {
     let ended = check_requirements(&client, arguments).and_then(|()| start(&client, arguments));
     let found =
         ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
-    let demands: Vec<(&Requirement, Kept)> = match &found {
+    let demands: Vec<(&Requirement, RequirementResult)> = match &found {
         Some(found) => arguments.require.iter().map(|demand| (demand, check(demand, found))).collect(),
         None => Vec::new(),
     };
@@ -67,21 +67,21 @@ fn shown(client: &Client, run: &Run) -> Found {
     client.get(&format!("/runs/{}/identification", run.summary.id))
 }
 
-fn check(demand: &Requirement, found: &Found) -> Kept {
+fn check(demand: &Requirement, found: &Found) -> RequirementResult {
     match found {
         Ok(found) => demand.check(found),
-        Err(exit) => Kept::Unknown(exit.message.clone()),
+        Err(exit) => RequirementResult::Unknown(exit.message.clone()),
     }
 }
 
 /// Prints the result of each requirement. Exit codes in order of priority: 2 for a requirement that cannot be checked,
 /// 1 for a failed result or an exceeded limit, 3 for no decision.
-fn judge(found: Option<&Found>, demands: &[(&Requirement, Kept)], quiet: bool) -> Done {
+fn judge(found: Option<&Found>, demands: &[(&Requirement, RequirementResult)], quiet: bool) -> Done {
     let results = demands.iter().map(|(_, kept)| match kept {
-        Kept::Yes(message) => ("kept", message, 0),
-        Kept::No(message) => ("broken", message, 1),
-        Kept::Unsure(message) => ("unsure", message, 3),
-        Kept::Unknown(message) => ("unknown", message, 2),
+        RequirementResult::Yes(message) => ("kept", message, 0),
+        RequirementResult::No(message) => ("broken", message, 1),
+        RequirementResult::Unsure(message) => ("unsure", message, 3),
+        RequirementResult::Unknown(message) => ("unknown", message, 2),
     });
     // A requirement that cannot be checked is reported with the exit code.
     if !quiet {
@@ -283,14 +283,21 @@ mod tests {
     fn a_broken_limit_weighs_more_than_one_that_is_not_sure() {
         let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
         let message = || "message".to_owned();
-        let code = |kept: &[Kept]| {
+        let code = |kept: &[RequirementResult]| {
             let demands: Vec<_> = kept.iter().map(|kept| (&demand, kept.clone())).collect();
             judge(None, &demands, true).err().map_or(0, |exit| exit.code)
         };
-        assert_eq!(code(&[Kept::Yes(message())]), 0);
-        assert_eq!(code(&[Kept::Yes(message()), Kept::Unsure(message())]), 3);
-        assert_eq!(code(&[Kept::Unsure(message()), Kept::No(message()), Kept::Unsure(message())]), 1);
-        assert_eq!(code(&[Kept::No(message()), Kept::Unknown(message())]), 2);
+        assert_eq!(code(&[RequirementResult::Yes(message())]), 0);
+        assert_eq!(code(&[RequirementResult::Yes(message()), RequirementResult::Unsure(message())]), 3);
+        assert_eq!(
+            code(&[
+                RequirementResult::Unsure(message()),
+                RequirementResult::No(message()),
+                RequirementResult::Unsure(message())
+            ]),
+            1
+        );
+        assert_eq!(code(&[RequirementResult::No(message()), RequirementResult::Unknown(message())]), 2);
     }
 
     #[test]
@@ -301,9 +308,10 @@ mod tests {
             Ok(found)
         };
         let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
-        let code =
-            |found: Found, kept: Kept| judge(Some(&found), &[(&demand, kept)], true).err().map_or(0, |exit| exit.code);
-        let (yes, no) = (Kept::Yes(String::new()), Kept::No(String::new()));
+        let code = |found: Found, kept: RequirementResult| {
+            judge(Some(&found), &[(&demand, kept)], true).err().map_or(0, |exit| exit.code)
+        };
+        let (yes, no) = (RequirementResult::Yes(String::new()), RequirementResult::No(String::new()));
         assert_eq!(code(shown(Identified::Identified), yes.clone()), 0);
         assert_eq!(code(shown(Identified::IdentifiedWithWarning), yes.clone()), 0);
         assert_eq!(code(shown(Identified::Inconclusive), yes.clone()), 3);

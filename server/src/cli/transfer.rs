@@ -19,8 +19,8 @@ pub fn import(arguments: &Import) -> Done {
         let file = &table(file)?;
         let request = read(file, arguments.meta.as_deref(), &arguments.columns)?;
         let run = match &store {
-            Way::Folder(lab) => runtime.block_on(lab.import(request, LOCAL))?,
-            Way::Daemon(client) => upload(client, &request)?,
+            Target::Folder(lab) => runtime.block_on(lab.import(request, LOCAL))?,
+            Target::Daemon(client) => upload(client, &request)?,
         };
         let summary = &run.summary;
         println!("run {}: {} ({}, {} rows)", summary.id, file.display(), summary.kind, summary.rows);
@@ -45,11 +45,11 @@ pub fn export(arguments: &Export) -> Done {
         return Err(Exit::bad_input("--spreadsheet-safe requires --format csv"));
     }
     let (bytes, meta) = match open(&runtime, &arguments.store, false)? {
-        Way::Folder(lab) => runtime.block_on(async {
+        Target::Folder(lab) => runtime.block_on(async {
             let request = ExportRequest { run, format, from_s: None, to_s: None, spreadsheet_safe: safe };
             Ok::<_, LabError>((lab.answer(Job::Export(request)).await?, lab.export_meta(run).await?))
         })?,
-        Way::Daemon(client) => {
+        Target::Daemon(client) => {
             let safe = if safe { "&spreadsheet_safe=true" } else { "" };
             let bytes = client.get_bytes(&format!("/runs/{run}/export?format={}{safe}", format.extension()))?;
             (bytes, String::from_utf8_lossy(&client.get_bytes(&format!("/runs/{run}/meta"))?).into_owned())
@@ -87,16 +87,16 @@ fn format(arguments: &Export) -> Result<FileFormat, Exit> {
     }
 }
 
-pub(super) enum Way {
+pub(super) enum Target {
     Folder(Lab),
     Daemon(Client),
 }
 
-pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_it: bool) -> Result<Way, Exit> {
+pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_it: bool) -> Result<Target, Exit> {
     // Priority: explicit address, explicit folder, address from the environment.
     let outweighed = place.data.is_some() && place.reach.daemon == std::env::var("JOINTBENCH_URL").ok();
     if place.reach.daemon.is_some() && !outweighed {
-        return Ok(Way::Daemon(Client::new(&place.reach)?));
+        return Ok(Target::Daemon(Client::new(&place.reach)?));
     }
     let data = place.data.as_deref().unwrap_or(Path::new("jointbench-data"));
     if !makes_it && !crate::store::Store::is_in(data) {
@@ -106,13 +106,13 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
         )));
     }
     match runtime.block_on(crate::store::Store::open(data)) {
-        Ok(store) => Ok(Way::Folder(Lab::of_store(store))),
+        Ok(store) => Ok(Target::Folder(Lab::of_store(store))),
         Err(in_use @ crate::store::StoreError::InUse { .. }) => {
             // The folder probably belongs to the daemon at the default address; verify this.
             let client = Client::new(&place.reach)?;
             match client.get::<Health>("/health") {
                 Ok(health) if in_use.to_string().contains(&format!("(process {})", health.process)) => {
-                    Ok(Way::Daemon(client))
+                    Ok(Target::Daemon(client))
                 }
                 _ => Err(Exit::bad_input(format!("{in_use}, or give the address of its daemon with --daemon"))),
             }

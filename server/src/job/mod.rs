@@ -15,7 +15,7 @@ mod parameters;
 mod process;
 mod reply;
 
-pub use parameters::{Alignment, ExportRequest, FileFormat, ImportRequest, Most, Offer};
+pub use parameters::{Alignment, ExportRequest, FileFormat, ImportRequest, Offer, PointLimit};
 pub use process::{Jobs, Streamed};
 pub(crate) use reply::{Head, Refusal};
 
@@ -100,7 +100,7 @@ pub enum Job {
         run: i64,
         formulas: Vec<String>,
         window: [Option<f64>; 2],
-        most: Most,
+        most: PointLimit,
     },
     Spectrum {
         run: i64,

@@ -85,7 +85,7 @@ pub struct Alignment {
 
 /// Limit of the returned points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Most {
+pub enum PointLimit {
     /// Smallest and largest value of each pixel, so that a spike of one sample remains visible.
     Pixels(u32),
     /// Unchanged rows, evenly selected.

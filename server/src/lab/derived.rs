@@ -1,7 +1,7 @@
 //! Channels computed from those of a run, and their spectra.
 
 use super::{Answer, Lab, LabError};
-use crate::job::{Job, Most};
+use crate::job::{Job, PointLimit};
 use crate::view::{SampleColumn, Samples, SpectrumView, finite};
 use jointbench_model::channels::{ChannelFormula, spectrum};
 
@@ -17,9 +17,9 @@ impl Lab {
         run: i64,
         formulas: Vec<String>,
         window: [Option<f64>; 2],
-        most: Most,
+        most: PointLimit,
     ) -> Answer<Samples> {
-        let (Most::Pixels(points) | Most::Rows(points)) = most;
+        let (PointLimit::Pixels(points) | PointLimit::Rows(points)) = most;
         if points == 0 || points > POINTS {
             return Err(LabError::Invalid(format!("{points} points: choose 1 to {POINTS}")));
         }
@@ -34,7 +34,7 @@ impl Lab {
         run: i64,
         formulas: &[String],
         window: [Option<f64>; 2],
-        most: Most,
+        most: PointLimit,
     ) -> Answer<Samples> {
         let (time_s, channels) = self.computed(run, formulas, window).await?;
         let rows = time_s.len();
@@ -113,13 +113,13 @@ impl Lab {
 }
 
 /// The row range of each point.
-fn grouped(rows: usize, most: Most) -> Vec<std::ops::Range<usize>> {
-    let (Most::Pixels(points) | Most::Rows(points)) = most;
+fn grouped(rows: usize, most: PointLimit) -> Vec<std::ops::Range<usize>> {
+    let (PointLimit::Pixels(points) | PointLimit::Rows(points)) = most;
     let points = (points as usize).min(rows);
     let begin = |point: usize| point * rows / points.max(1);
     let group = |point: usize| match most {
-        Most::Pixels(_) => begin(point)..begin(point + 1),
-        Most::Rows(_) => begin(point)..begin(point) + 1,
+        PointLimit::Pixels(_) => begin(point)..begin(point + 1),
+        PointLimit::Rows(_) => begin(point)..begin(point) + 1,
     };
     (0..points).map(group).collect()
 }
@@ -130,11 +130,11 @@ mod tests {
 
     #[test]
     fn every_row_is_in_one_pixel_and_rows_are_chosen_evenly() {
-        let pixels = grouped(10, Most::Pixels(4));
+        let pixels = grouped(10, PointLimit::Pixels(4));
         assert_eq!(pixels, [0..2, 2..5, 5..7, 7..10]);
-        let rows = grouped(10, Most::Rows(4));
+        let rows = grouped(10, PointLimit::Rows(4));
         assert_eq!(rows, [0..1, 2..3, 5..6, 7..8]);
-        assert_eq!(grouped(3, Most::Pixels(9)).len(), 3);
-        assert!(grouped(0, Most::Rows(9)).is_empty());
+        assert_eq!(grouped(3, PointLimit::Pixels(9)).len(), 3);
+        assert!(grouped(0, PointLimit::Rows(9)).is_empty());
     }
 }

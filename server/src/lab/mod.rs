@@ -30,7 +30,7 @@ mod trends;
 mod user_effects;
 
 pub use crate::error::LabError;
-pub use crate::job::{Alignment, ExportRequest, FileFormat, ImportRequest, Most, Offer};
+pub use crate::job::{Alignment, ExportRequest, FileFormat, ImportRequest, Offer, PointLimit};
 pub use crate::store::{Order, RunFilter};
 pub use experiment::next_run;
 pub use log::OF_TOKENS;
@@ -39,7 +39,7 @@ pub use tables::TableFormat;
 pub use tokens::{Caller, LOCAL, Tokens, weakness};
 pub use transfer::{ATTENTION, COPY_OF, UNDERSTOOD};
 
-use crate::bench::{Beginning, BenchHandle, store_leftovers, worker};
+use crate::bench::{BenchHandle, InitialState, store_leftovers, worker};
 use crate::config::BenchDescription;
 use crate::job::{Jobs, Limits};
 use crate::live::Hub;
@@ -99,7 +99,7 @@ impl Lab {
             let interrupted = interrupted.remove(&description.name).unwrap_or_default();
             let block = store.bench_block(&description.name).await?;
             let name = description.name.clone();
-            let beginning = Beginning { description, block, interrupted };
+            let beginning = InitialState { description, block, interrupted };
             let bench = BenchHandle::start(beginning, store.clone(), hub.clone(), data, &program)
                 .map_err(|fault| LabError::Setup(format!("bench {name} gets no thread: {fault}")))?;
             benches.push(bench);

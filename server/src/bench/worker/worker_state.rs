@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-pub(super) struct Desk {
+pub(super) struct WorkerState {
     pub outbox: Arc<Outbox>,
     state: Mutex<State>,
     disk_is_full: AtomicBool,
@@ -22,7 +22,7 @@ struct State {
     server_is_gone: bool,
 }
 
-impl Desk {
+impl WorkerState {
     pub fn new(outbox: Arc<Outbox>, block: Option<SafetyRecord>) -> Self {
         let state = Mutex::new(State { block, block_is_stored: true, run: None, server_is_gone: false });
         Self { outbox, state, disk_is_full: AtomicBool::new(false) }

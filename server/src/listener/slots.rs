@@ -8,7 +8,7 @@ use tokio_util::sync::CancellationToken;
 
 /// All connections of one listener. Cheap to clone.
 #[derive(Debug, Clone)]
-pub struct Seats {
+pub struct ConnectionSlots {
     limits: Arc<Limits>,
     all: Arc<Mutex<Taken>>,
 }
@@ -43,14 +43,14 @@ impl Taken {
     }
 }
 
-impl Seats {
+impl ConnectionSlots {
     pub fn new(limits: Arc<Limits>) -> Self {
         Self { limits, all: Arc::default() }
     }
 
-    /// A seat for a new connection. If all are in use, it closes the connection that has waited longest for its client.
+    /// A slot for a new connection. If all are in use, it closes the connection that has waited longest for its client.
     /// `None` if all of them are being answered.
-    pub fn take(&self) -> Option<Seat> {
+    pub fn take(&self) -> Option<ConnectionSlot> {
         let mut all = self.lock();
         if all.places.len() >= self.limits.connections && !all.close_oldest(|_| true) {
             return None;
@@ -60,7 +60,7 @@ impl Seats {
         let (progress, close) = (Arc::new(Progress::begin()), CancellationToken::new());
         let reserved = all.ordinary() >= self.general();
         all.places.insert(id, Place { progress: progress.clone(), close: close.clone(), reserved });
-        Some(Seat { id, seats: self.clone(), progress, close })
+        Some(ConnectionSlot { id, slots: self.clone(), progress, close })
     }
 
     /// Closes every connection whose client exceeds a time limit.
@@ -83,26 +83,26 @@ impl Seats {
     }
 }
 
-/// The seat of one connection, released on drop.
+/// The slot of one connection, released on drop.
 #[derive(Debug)]
-pub struct Seat {
+pub struct ConnectionSlot {
     id: u64,
-    seats: Seats,
+    slots: ConnectionSlots,
     pub progress: Arc<Progress>,
     /// Cancelled to close the connection.
     pub close: CancellationToken,
 }
 
-impl Seat {
-    /// Whether a request may be answered on this seat. A reserved seat becomes an ordinary one if an ordinary seat is
+impl ConnectionSlot {
+    /// Whether a request may be answered on this slot. A reserved slot becomes an ordinary one if an ordinary slot is
     /// free or if another connection on one only waits for its client.
     pub fn admits(&self, demand: Demand) -> bool {
-        let mut all = self.seats.lock();
+        let mut all = self.slots.lock();
         let id = self.id;
         if demand == Demand::Vital || all.places.get(&id).is_none_or(|place| !place.reserved) {
             return true;
         }
-        if all.ordinary() >= self.seats.general() && !all.close_oldest(|place| !place.reserved) {
+        if all.ordinary() >= self.slots.general() && !all.close_oldest(|place| !place.reserved) {
             return false;
         }
         if let Some(place) = all.places.get_mut(&id) {
@@ -112,9 +112,9 @@ impl Seat {
     }
 }
 
-impl Drop for Seat {
+impl Drop for ConnectionSlot {
     fn drop(&mut self) {
-        self.seats.lock().places.remove(&self.id);
+        self.slots.lock().places.remove(&self.id);
     }
 }
 
@@ -123,31 +123,31 @@ mod tests {
     use super::super::stage::Stage;
     use super::*;
 
-    fn seats() -> Seats {
-        Seats::new(Arc::new(Limits { connections: 4, reserved: 1, ..Limits::default() }))
+    fn slots() -> ConnectionSlots {
+        ConnectionSlots::new(Arc::new(Limits { connections: 4, reserved: 1, ..Limits::default() }))
     }
 
     #[test]
     fn the_last_seats_are_for_vital_requests_only() {
-        let seats = seats();
-        let taken: Vec<Seat> = (0..4).map(|_| seats.take().unwrap()).collect();
-        taken.iter().for_each(|seat| seat.progress.enter(Stage::Answer));
-        assert!(taken[..3].iter().all(|seat| seat.admits(Demand::Ordinary)));
+        let slots = slots();
+        let taken: Vec<ConnectionSlot> = (0..4).map(|_| slots.take().unwrap()).collect();
+        taken.iter().for_each(|slot| slot.progress.enter(Stage::Answer));
+        assert!(taken[..3].iter().all(|slot| slot.admits(Demand::Ordinary)));
         assert!(taken[3].admits(Demand::Vital) && !taken[3].admits(Demand::Ordinary));
-        assert!(seats.take().is_none(), "nobody is closed while it is answered");
+        assert!(slots.take().is_none(), "nobody is closed while it is answered");
     }
 
     #[test]
     fn a_client_that_only_waits_gives_way_to_one_that_asks() {
-        let seats = seats();
-        let taken: Vec<Seat> = (0..4).map(|_| seats.take().unwrap()).collect();
+        let slots = slots();
+        let taken: Vec<ConnectionSlot> = (0..4).map(|_| slots.take().unwrap()).collect();
         taken[0].progress.enter(Stage::Answer);
         assert!(taken[3].admits(Demand::Ordinary));
         assert!(!taken[0].close.is_cancelled() && taken[1].close.is_cancelled() && !taken[2].close.is_cancelled());
-        let more = seats.take().unwrap();
+        let more = slots.take().unwrap();
         assert!(!taken[2].close.is_cancelled(), "there was a free one");
-        assert!(seats.take().is_some() && taken[2].close.is_cancelled(), "the oldest that waits");
+        assert!(slots.take().is_some() && taken[2].close.is_cancelled(), "the oldest that waits");
         drop((taken, more));
-        assert!(seats.lock().places.is_empty());
+        assert!(slots.lock().places.is_empty());
     }
 }

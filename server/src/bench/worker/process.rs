@@ -1,7 +1,7 @@
 //! Lock, process priority and signals of a worker: one worker for each bench of a data folder.
 
 use super::Command;
-use super::desk::Desk;
+use super::worker_state::WorkerState;
 use crate::bench::leftovers::file_name;
 use jointbench_procedure::Control;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -40,10 +40,10 @@ pub(super) fn take(data: &Path, bench: &str) -> Result<File, String> {
 
 /// Waits until no worker of an earlier daemon uses the data folder, or until a timeout.
 pub fn wait_until_gone(data: &Path) {
-    let Ok(seats) = fs::read_dir(data.join(FOLDER)) else { return };
+    let Ok(locks) = fs::read_dir(data.join(FOLDER)) else { return };
     let give_up = Instant::now() + PATIENCE;
-    for seat in seats.flatten() {
-        let Ok(file) = File::open(seat.path()) else { continue };
+    for lock in locks.flatten() {
+        let Ok(file) = File::open(lock.path()) else { continue };
         while matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)) && Instant::now() < give_up {
             std::thread::sleep(POLL_INTERVAL);
         }
@@ -63,7 +63,7 @@ pub(super) fn raise_priority(is_real_time: bool) {
 }
 
 /// On a termination signal the worker ends as if its server were gone.
-pub(super) fn end_on_signal(desk: Arc<Desk>, commands: Sender<Command>) -> io::Result<()> {
+pub(super) fn end_on_signal(worker: Arc<WorkerState>, commands: Sender<Command>) -> io::Result<()> {
     #[cfg(unix)]
     {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -71,7 +71,7 @@ pub(super) fn end_on_signal(desk: Arc<Desk>, commands: Sender<Command>) -> io::R
         std::thread::Builder::new().name("signals".into()).spawn(move || {
             for signal in &mut signals {
                 tracing::warn!(signal, "worker shutdown requested: securing the bench");
-                desk.control(Control::Quit.into());
+                worker.control(Control::Quit.into());
                 // An error means that the owner has already ended.
                 let _ = commands.send(Command::Quit);
             }
