@@ -1,6 +1,6 @@
 //! The daemon: a lab with a network interface.
 
-use crate::api::{self, Surroundings};
+use crate::api::{self, Transport};
 use crate::config::BenchDescription;
 use crate::job;
 use crate::lab::{Lab, LabError, Tokens, weakness};
@@ -56,7 +56,7 @@ impl Daemon {
         let listener = TcpListener::bind(settings.listen).await.map_err(|fault| taken(settings.listen, &fault))?;
         let address = listener.local_addr().map_err(|fault| taken(settings.listen, &fault))?;
         let lab = Lab::open(&settings.data, settings.benches, tokens, settings.program, settings.analysis).await?;
-        let router = api::router(lab.clone(), Surroundings { tls: tls.is_some(), behind_proxy });
+        let router = api::router(lab.clone(), Transport { tls: tls.is_some(), behind_proxy });
         let scheme = if tls.is_some() { "https" } else { "http" };
         let server = tokio::spawn(listener::serve(listener, router, tls, limits));
         tracing::info!(%address, scheme, data = %settings.data.display(), "listening");
@@ -74,7 +74,7 @@ impl Daemon {
 
 /// Returns on Ctrl-C, a termination request of a service manager, or the end of the terminal.
 #[cfg(unix)]
-pub async fn asked_to_end() {
+pub async fn shutdown_signal() {
     use tokio::signal::unix::SignalKind;
     tokio::select! {
         _ = tokio::signal::ctrl_c() => {}
@@ -104,7 +104,7 @@ fn ignores_hangup() -> bool {
 
 /// Returns on Ctrl-C.
 #[cfg(not(unix))]
-pub async fn asked_to_end() {
+pub async fn shutdown_signal() {
     drop(tokio::signal::ctrl_c().await);
 }
 

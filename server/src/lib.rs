@@ -9,6 +9,7 @@ pub mod bench;
 pub mod cli;
 pub mod config;
 pub mod daemon;
+pub mod error;
 pub mod job;
 pub mod lab;
 pub mod listener;

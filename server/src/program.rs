@@ -7,7 +7,7 @@ use tracing::level_filters::LevelFilter;
 
 /// Path of the running executable. On Linux it remains valid after an update has replaced the file, so that a daemon
 /// does not start parts of another version.
-pub fn own() -> PathBuf {
+pub fn path() -> PathBuf {
     if cfg!(target_os = "linux") {
         return PathBuf::from("/proc/self/exe");
     }

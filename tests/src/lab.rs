@@ -75,9 +75,9 @@ impl Lab {
         let mut child = command.spawn().expect("jointbench starts");
         let mut line = String::new();
         let stdout = child.stdout.take().expect("piped");
-        let said = BufReader::new(stdout).read_line(&mut line);
+        let read = BufReader::new(stdout).read_line(&mut line);
         self.server = Some(child);
-        assert!(said.is_ok() && line.contains("http://"), "the daemon does not start: {}", self.tail());
+        assert!(read.is_ok() && line.contains("http://"), "the daemon does not start: {}", self.tail());
         self.wait(STARTS, "the worker", || self.worker().is_some());
         self.last_worker = self.worker();
     }
@@ -158,9 +158,9 @@ impl Lab {
     /// Starts a run and returns when the store has it.
     pub fn start_run(&self, procedure: &str) -> i64 {
         let body = json!({ "bench": BENCH, "procedure": procedure, "parameters": {} });
-        let told = self.client().post("/runs", &body);
-        let id = told.acknowledged().and_then(|run| run["id"].as_i64());
-        id.unwrap_or_else(|| panic!("the run does not start: {told:?}\n{}", self.tail()))
+        let outcome = self.client().post("/runs", &body);
+        let id = outcome.acknowledged().and_then(|run| run["id"].as_i64());
+        id.unwrap_or_else(|| panic!("the run does not start: {outcome:?}\n{}", self.tail()))
     }
 
     /// Starts a run and returns when the drive is armed and controlled.

@@ -88,9 +88,9 @@ impl Daemon {
             .stderr(Stdio::piped())
             .spawn()
             .expect("jointbench starts");
-        let mut said = BufReader::new(child.stdout.take().expect("piped"));
+        let mut output = BufReader::new(child.stdout.take().expect("piped"));
         let mut line = String::new();
-        said.read_line(&mut line).expect("stdout can be read");
+        output.read_line(&mut line).expect("stdout can be read");
         let base = line
             .split_whitespace()
             .find(|word| word.starts_with("http://"))
@@ -104,7 +104,7 @@ impl Daemon {
         let errors = BufReader::new(child.stderr.take().expect("piped"));
         let log = Arc::<Mutex<VecDeque<String>>>::default();
         let kept = log.clone();
-        std::thread::spawn(move || std::io::copy(&mut said, &mut std::io::sink()));
+        std::thread::spawn(move || std::io::copy(&mut output, &mut std::io::sink()));
         std::thread::spawn(move || {
             for line in errors.lines().map_while(Result::ok) {
                 let mut kept = kept.lock().expect("no reader panics");

@@ -102,8 +102,8 @@ fn first_safe_byte(wire: &mut Wire, pressed_s: f64) -> Option<f64> {
 fn check_kept(lab: &Lab, run: i64, pressed_s: f64, outcome: &mut Outcome) {
     lab.wait(Duration::from_secs(60), "the stop to be stored", || {
         let bench = lab.bench();
-        let told = lab.run(run);
-        bench["blocked"]["stored"] == true && told["safe"].is_string() && told["not_stored"].is_null()
+        let record = lab.run(run);
+        bench["blocked"]["stored"] == true && record["safe"].is_string() && record["not_stored"].is_null()
     });
     let since = lab.bench()["blocked"]["since"].clone();
     let record = lab.client().get(&format!("/bench/{BENCH}/safety"));

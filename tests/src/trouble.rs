@@ -261,8 +261,8 @@ fn imported(client: &Client) -> i64 {
     if let Some(run) = there {
         return run["id"].as_i64().expect("a number");
     }
-    let told = client.send(&Request::import(IMPORTED, IMPORTED_ROWS));
-    told.acknowledged().and_then(|run| run["id"].as_i64()).unwrap_or_else(|| panic!("not imported: {told:?}"))
+    let outcome = client.send(&Request::import(IMPORTED, IMPORTED_ROWS));
+    outcome.acknowledged().and_then(|run| run["id"].as_i64()).unwrap_or_else(|| panic!("not imported: {outcome:?}"))
 }
 
 const CONNECTIONS: usize = 200;

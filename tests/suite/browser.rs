@@ -38,6 +38,6 @@ fn an_engineer_walks_from_start_to_undo() {
         .arg(&daemon.base)
         .output()
         .expect("node runs");
-    let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-    assert!(output.status.success(), "{}\n{}\nthe daemon's log:\n{}", said[0], said[1], daemon.log());
+    let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    assert!(output.status.success(), "{}\n{}\nthe daemon's log:\n{}", text[0], text[1], daemon.log());
 }

@@ -7,22 +7,22 @@ fn demo(more: &[&str]) -> String {
     let data = folder.path().display().to_string();
     let arguments = [&["demo", "--exit", "--listen", "127.0.0.1:0", "--data", &data], more].concat();
     let output = run(&arguments);
-    let said = stdout(&output);
-    assert!(output.status.success(), "{said}\n{}", stderr(&output));
-    said
+    let text = stdout(&output);
+    assert!(output.status.success(), "{text}\n{}", stderr(&output));
+    text
 }
 
 #[test]
 fn the_hidden_effect_is_found() {
-    let said = demo(&["--effect", "load_linear"]);
-    assert!(said.contains("Missing effect found: load_linear."), "{said}");
+    let text = demo(&["--effect", "load_linear"]);
+    assert!(text.contains("Missing effect found: load_linear."), "{text}");
 }
 
 fn assert_found(kind: &str, effect: &str) {
-    let said = demo(&["--kind", kind, "--effect", effect]);
-    let found = said.lines().find_map(|line| line.strip_prefix("Missing effect found: ")).expect("the conclusion");
+    let text = demo(&["--kind", kind, "--effect", effect]);
+    let found = text.lines().find_map(|line| line.strip_prefix("Missing effect found: ")).expect("the conclusion");
     let (names, hidden) = found.split_once(". Hidden effect: ").expect("both");
-    assert!(names == effect && hidden.starts_with(effect), "{said}");
+    assert!(names == effect && hidden.starts_with(effect), "{text}");
 }
 
 #[test]

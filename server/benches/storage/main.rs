@@ -1,6 +1,6 @@
-//! What the store costs, beside its peers in the same run. Prints the table of docs/benchmarks.md.
+//! Cost of the store and of its peers in the same run. Prints the table of docs/benchmarks.md.
 //!
-//! `cargo bench -p jointbench --bench storage [-- ROWS]`: 10 million rows where nothing is said. Needs 4 GB of memory and
+//! `cargo bench -p jointbench --bench storage [-- ROWS]`: default: 10 million rows. Needs 4 GB of memory and
 //! 1 GB in the folder for temporary files, which should lie on a disk: on one in memory, "durable" costs nothing.
 
 mod peers;
@@ -40,11 +40,11 @@ async fn main() {
     let bytes_per_row = sizes(&folder.path().join("store"), run, rows).await;
 
     table.held("into the store, synchronous=FULL, commits of 65,536", "rows/s", ingest_rows_per_s, Bar::AtLeast(2e6));
-    table.told("commit of 500 rows as the recorder's, p50", "ms", recorder.0 * 1e3);
-    table.told("the same, p99", "ms", recorder.1 * 1e3);
+    table.row("commit of 500 rows as the recorder's, p50", "ms", recorder.0 * 1e3);
+    table.row("the same, p99", "ms", recorder.1 * 1e3);
     table.held("bytes for each row, whole file", "B", bytes_per_row.0, Bar::AtMost(12.0));
-    table.told("of that the samples", "B", bytes_per_row.1);
-    table.told("entropy of first differences", "B", floor);
+    table.row("of that the samples", "B", bytes_per_row.1);
+    table.row("entropy of first differences", "B", floor);
     table.held("samples / entropy", "", bytes_per_row.1 / floor, Bar::AtMost(1.15));
     table.held(
         "all rows × 12 channels read back, for each 10 million",
@@ -52,18 +52,18 @@ async fn main() {
         reads.all_s * 1e7 / rows as f64,
         Bar::AtMost(0.6),
     );
-    table.told("one channel read back", "rows/s", rows as f64 / reads.one_s);
+    table.row("one channel read back", "rows/s", rows as f64 / reads.one_s);
     table.held("view of 2,000 px, all channels, p50", "ms", reads.view_s * 1e3, Bar::AtMost(10.0));
-    table.told("the same, p99", "ms", reads.view_p99_s * 1e3);
+    table.row("the same, p99", "ms", reads.view_p99_s * 1e3);
     table.held("decode and min-max / view", "×", reads.decode_s / reads.view_s, Bar::AtLeast(100.0));
 
     let peer_rows = rows / 10;
     let peer = peers::row_table(folder.path(), &signals, peer_rows).await;
-    table.told("a row for each sample: one INSERT a row", "rows/s", peer.single_rows_per_s);
-    table.told("the same, 2,000 rows a statement", "rows/s", peer.rows_per_s);
-    table.told("the same, bytes for each row", "B", peer.bytes_per_row);
-    table.told("the same, view of 2,000 px of a tenth of the rows", "ms", peer.view_s * 1e3);
-    table.told("store / row table, ingest", "×", ingest_rows_per_s / peer.rows_per_s);
+    table.row("a row for each sample: one INSERT a row", "rows/s", peer.single_rows_per_s);
+    table.row("the same, 2,000 rows a statement", "rows/s", peer.rows_per_s);
+    table.row("the same, bytes for each row", "B", peer.bytes_per_row);
+    table.row("the same, view of 2,000 px of a tenth of the rows", "ms", peer.view_s * 1e3);
+    table.row("store / row table, ingest", "×", ingest_rows_per_s / peer.rows_per_s);
 
     for (layout, name) in [("table", "one table"), ("columns", "a data set a channel")] {
         let Some(hdf5) = peers::hdf5(folder.path(), &signals, layout) else {
@@ -71,9 +71,9 @@ async fn main() {
             break;
         };
         let what = format!("HDF5 ({name}, int32 counts, shuffle + gzip 4)");
-        table.told(&format!("{what}, append without fsync"), "rows/s", hdf5.rows_per_s);
-        table.told(&format!("{what}, bytes for each row"), "B", hdf5.bytes_per_row);
-        table.told(&format!("{what}, all channels read back"), "s", hdf5.read_all_s);
+        table.row(&format!("{what}, append without fsync"), "rows/s", hdf5.rows_per_s);
+        table.row(&format!("{what}, bytes for each row"), "B", hdf5.bytes_per_row);
+        table.row(&format!("{what}, all channels read back"), "s", hdf5.read_all_s);
         let ratios = [
             ("bytes of samples / HDF5", "", bytes_per_row.1 / hdf5.bytes_per_row, Bar::AtMost(0.6)),
             ("ingest / HDF5", "×", ingest_rows_per_s / hdf5.rows_per_s, Bar::AtLeast(4.0)),
@@ -83,7 +83,7 @@ async fn main() {
             // The bars are about the way in which rows are logged.
             match layout {
                 "table" => table.held(&format!("{ratio}, {name}"), unit, value, bar),
-                _ => table.told(&format!("{ratio}, {name}"), unit, value),
+                _ => table.row(&format!("{ratio}, {name}"), unit, value),
             }
         }
     }
@@ -122,7 +122,7 @@ struct Reads {
     one_s: f64,
     view_s: f64,
     view_p99_s: f64,
-    /// What a view costs without a pyramid.
+    /// Cost of a window without a pyramid.
     decode_s: f64,
 }
 
@@ -141,7 +141,7 @@ async fn reads(store: &Store, run: RunId) -> Reads {
         one.push(one_s);
     }
     for _ in 0..100 {
-        let (view_s, seen) = seconds(store.view(run, None, None, None, PX)).await;
+        let (view_s, seen) = seconds(store.window(run, None, None, None, PX)).await;
         black_box(seen.expect("a view is drawn"));
         view.push(view_s);
     }
@@ -185,7 +185,7 @@ enum Bar {
 struct Table(Vec<[String; 3]>);
 
 impl Table {
-    fn told(&mut self, what: &str, unit: &str, value: f64) {
+    fn row(&mut self, what: &str, unit: &str, value: f64) {
         self.0.push([what.to_owned(), shown(value, unit), String::new()]);
     }
 

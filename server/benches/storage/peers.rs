@@ -75,7 +75,7 @@ async fn insert(file: &mut SqliteConnection, signals: &Signals, rows: usize, at_
     seconds(work).await.0
 }
 
-/// What `hdf5.py` measures.
+/// Results of `hdf5.py`.
 pub struct Hdf5 {
     pub rows_per_s: f64,
     pub bytes_per_row: f64,
@@ -94,8 +94,8 @@ pub fn hdf5(folder: &Path, signals: &Signals, layout: &str) -> Option<Hdf5> {
     file.flush().ok()?;
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/storage/hdf5.py");
     let done = Command::new("python3").arg(script).arg(layout).arg(&raw).arg(folder.join("run.h5")).output().ok()?;
-    let told = String::from_utf8_lossy(&done.stdout);
-    let figures: Vec<f64> = told.split_whitespace().filter_map(|figure| figure.parse().ok()).collect();
+    let output = String::from_utf8_lossy(&done.stdout);
+    let figures: Vec<f64> = output.split_whitespace().filter_map(|figure| figure.parse().ok()).collect();
     std::fs::remove_file(raw).ok()?;
     match figures[..] {
         [rows_per_s, bytes_per_row, read_one_s, read_all_s] => {

@@ -69,7 +69,7 @@ impl Signals {
                 column.push((value / step).round() as i32);
             }
         }
-        // Times rise whatever the jitter says.
+        // Times increase for any jitter.
         for row in 1..rows {
             counts[0][row] = counts[0][row].max(counts[0][row - 1] + 1);
         }

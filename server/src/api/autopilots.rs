@@ -1,4 +1,4 @@
-//! What to measure next, and chains of measuring and diagnosing that run by themselves.
+//! Recommended runs and autopilots.
 
 use super::extract::{Answer, Created, Json, Path, created};
 use super::refusals::Refusals;

@@ -1,4 +1,4 @@
-//! The dashboard's files, from the binary itself.
+//! The files of the dashboard, embedded in the binary.
 
 use super::problem::Problem;
 use crate::lab::Lab;
@@ -21,7 +21,7 @@ pub async fn serve(State(lab): State<Lab>, request: Request) -> Response {
     }
 }
 
-/// Where a token is needed the page says so, and a browser without one asks for it before it is refused anything.
+/// If a token is required, the page contains this, and a browser asks for the token before its first request.
 fn page(asks: bool) -> Asset {
     let mut page = jointbench_ui::page();
     if asks {
@@ -33,7 +33,7 @@ fn page(asks: bool) -> Asset {
 }
 
 fn answer(asset: Asset, request: &Request) -> Response {
-    // Weak: it marks the same file compressed and not.
+    // Weak, because the file may be compressed or not.
     let etag = format!("W/\"{}\"", asset.sha256);
     let cache = if asset.immutable { "public, max-age=31536000, immutable" } else { "no-cache" };
     let known = request.headers().get(header::IF_NONE_MATCH).and_then(|value| value.to_str().ok());

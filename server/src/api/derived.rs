@@ -2,7 +2,7 @@
 
 use super::extract::{Answer, Json, Path, Query};
 use super::refusals::Refusals;
-use crate::lab::{Lab, Most};
+use crate::lab::{Lab, PointLimit};
 use crate::view::{Samples, SpectrumView};
 use axum::extract::State;
 use serde::Deserialize;
@@ -37,7 +37,7 @@ pub async fn samples(
     Query(query): Query<DerivedQuery>,
 ) -> Answer<Samples> {
     let formulas = query.formulas.split(';').map(|formula| formula.trim().to_owned()).collect();
-    let most = query.rows.map_or(Most::Pixels(query.px.unwrap_or(2000)), Most::Rows);
+    let most = query.rows.map_or(PointLimit::Pixels(query.px.unwrap_or(2000)), PointLimit::Rows);
     Ok(Json(lab.derived(id, formulas, [query.from_s, query.to_s], most).await?))
 }
 

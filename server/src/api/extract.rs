@@ -1,4 +1,4 @@
-//! The request's parts; what cannot be read is answered with a problem document.
+//! Extractors of a request. Errors become problem documents.
 
 use super::problem::Problem;
 use axum::extract::{FromRequest, FromRequestParts};
@@ -24,9 +24,9 @@ pub struct Query<T>(pub T);
 #[from_request(via(axum::extract::Path), rejection(Problem))]
 pub struct Path<T>(pub T);
 
-/// What a handler answers with.
+/// Answer of a handler.
 pub type Answer<T> = Result<Json<T>, Problem>;
-/// What a handler answers with that has made something.
+/// Answer of a handler that has created an object.
 pub type Created<T> = Result<(axum::http::StatusCode, Json<T>), Problem>;
 
 pub fn created<T>(made: T) -> Created<T> {

@@ -1,4 +1,4 @@
-//! The daemon about itself.
+//! State of the daemon.
 
 use super::extract::{Answer, Json};
 use super::problem::Problem;

@@ -1,10 +1,10 @@
-//! What a procedure makes of its run.
+//! Results of procedures.
 
 use super::extract::{Answer, Json, Path, Query};
 use super::problem::Problem;
 use super::refusals::Refusals;
 use crate::lab::Lab;
-use crate::view::{Beside, Earlier, Identification, Trends};
+use crate::view::{Earlier, Identification, ModelOverlay, Trends};
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{Html, IntoResponse};
@@ -42,10 +42,10 @@ pub async fn trends(State(lab): State<Lab>, Query(query): Query<TrendQuery>) -> 
 
 /// A run, also an active one, compared with the latest model of its kind from another run of its bench; `null` without
 /// one
-#[utoipa::path(get, path = "/runs/{id}/beside", tag = "runs", params(("id" = i64, Path, description = "Run")),
-    responses((status = 200, description = "Measured signal, model and residual", body = Option<Beside>), Refusals))]
-pub async fn beside(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Option<Beside>> {
-    Ok(Json(lab.beside(id).await?))
+#[utoipa::path(get, path = "/runs/{id}/beside", operation_id = "beside", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "Measured signal, model and residual", body = Option<ModelOverlay>), Refusals))]
+pub async fn model_overlay(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Option<ModelOverlay>> {
+    Ok(Json(lab.model_overlay(id).await?))
 }
 
 #[derive(Debug, Clone, Default, Deserialize, IntoParams)]

@@ -1,4 +1,4 @@
-//! What has happened.
+//! The event log.
 
 use super::extract::{Answer, Json, Query};
 use super::refusals::Refusals;

@@ -1,48 +1,48 @@
-//! HTTP: the router is the table of contents. Handlers only translate; the work is done in [`crate::lab`].
+//! HTTP: the router lists all operations. Handlers only translate; [`crate::lab`] does the work.
 
+mod auth;
 mod autopilots;
 mod bench;
+mod body_limit;
 mod calibrations;
+mod cancellation;
 mod dashboard;
 mod derived;
-mod door;
 mod extract;
 mod headers;
 mod health;
 mod identifications;
-mod leaving;
 mod live;
 mod log;
 mod models;
 mod notes;
-mod own_effects;
 mod presence;
 mod problem;
 mod procedures;
 mod refusals;
+mod response_budget;
 mod revisions;
 mod rights;
 mod runs;
-mod size;
 #[cfg(test)]
 mod specification;
 mod tables;
+mod throttle;
 mod tokens;
 mod transfer;
-mod tries;
-mod weight;
+mod user_effects;
 
-pub use door::Surroundings;
+pub use auth::Transport;
 pub use health::Health;
 pub use presence::Presence;
 pub use problem::Problem;
 
 use crate::lab::Lab;
 use crate::view::LiveMessage;
+use auth::Auth;
 use axum::extract::{DefaultBodyLimit, Request};
 use axum::routing::{any, get};
 use axum::{Router, middleware};
-use door::Door;
 use std::sync::Arc;
 use tokio::sync::Semaphore;
 use tower_http::CompressionLevel;
@@ -78,7 +78,7 @@ use utoipa_axum::{router::OpenApiRouter, routes};
 )]
 struct Description;
 
-/// A daemon on loopback asks nobody; beyond it every request carries the token.
+/// On loopback no token is required; elsewhere every request needs one.
 struct Token;
 
 impl Modify for Token {
@@ -94,34 +94,33 @@ impl Modify for Token {
     }
 }
 
-/// Windows of samples, residuals or journals that are being made at the same time, of each kind.
+/// Simultaneous requests for windows of samples, residuals or journals, for each kind.
 const ANSWERS_AT_ONCE: usize = 8;
-/// A table of many megabytes takes twenty times its size while it is read.
+/// Reading a table of many megabytes needs twenty times its size in memory.
 const TABLES_AT_ONCE: usize = 2;
 
 /// Everything under `/api/v1`.
 fn operations() -> OpenApiRouter<Lab> {
-    let rest = samples()
-        .merge(measurements())
-        .merge(models())
-        .merge(daemon())
-        .layer(middleware::from_fn_with_state(weight::Scales::default(), weight::weigh));
-    let rest = sized(rest, size::BODY_LIMIT_BYTES);
+    let rest = samples().merge(measurements()).merge(models()).merge(daemon()).layer(middleware::from_fn_with_state(
+        response_budget::ResponseBudget::default(),
+        response_budget::limit_memory,
+    ));
+    let rest = sized(rest, body_limit::BODY_LIMIT_BYTES);
     OpenApiRouter::with_openapi(Description::openapi()).nest("/api/v1", rest.merge(tables()).merge(uploads()))
 }
 
 fn uploads() -> OpenApiRouter<Lab> {
-    let turns = Arc::new(Semaphore::new(size::UPLOADS));
+    let turns = Arc::new(Semaphore::new(body_limit::UPLOADS));
     let routes = OpenApiRouter::new().routes(routes!(transfer::import)).routes(routes!(transfer::preview));
-    sized(routes, size::UPLOAD_LIMIT_BYTES)
-        .layer(middleware::from_fn(move |request, next| size::queue(turns.clone(), request, next)))
+    sized(routes, body_limit::UPLOAD_LIMIT_BYTES)
+        .layer(middleware::from_fn(move |request, next| body_limit::queue(turns.clone(), request, next)))
 }
 
 fn tables() -> OpenApiRouter<Lab> {
-    sized(gated(TABLES_AT_ONCE, OpenApiRouter::new().routes(routes!(tables::write))), size::TABLE_LIMIT_BYTES)
+    sized(gated(TABLES_AT_ONCE, OpenApiRouter::new().routes(routes!(tables::write))), body_limit::TABLE_LIMIT_BYTES)
 }
 
-/// Large answers. Each gate is of its own kind: whoever waits for residuals holds no samples up.
+/// Large answers. Each kind has its own limit, so that requests for residuals do not delay samples.
 fn samples() -> OpenApiRouter<Lab> {
     OpenApiRouter::new()
         .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(runs::samples))))
@@ -162,7 +161,7 @@ fn measurements() -> OpenApiRouter<Lab> {
         .routes(routes!(identifications::get))
         .routes(routes!(identifications::earlier))
         .routes(routes!(identifications::trends))
-        .routes(routes!(identifications::beside))
+        .routes(routes!(identifications::model_overlay))
         .routes(routes!(identifications::report))
         .routes(routes!(transfer::export))
         .routes(routes!(transfer::export_meta))
@@ -171,10 +170,10 @@ fn measurements() -> OpenApiRouter<Lab> {
 /// Effects, model versions, diagnoses and autopilots.
 fn models() -> OpenApiRouter<Lab> {
     OpenApiRouter::new()
-        .routes(routes!(models::effects, own_effects::define))
-        .routes(routes!(own_effects::check))
-        .routes(routes!(own_effects::delete))
-        .routes(routes!(own_effects::language))
+        .routes(routes!(models::effects, user_effects::define))
+        .routes(routes!(user_effects::check))
+        .routes(routes!(user_effects::delete))
+        .routes(routes!(user_effects::language))
         .routes(routes!(models::list, models::create))
         .routes(routes!(models::get))
         .routes(routes!(models::keep))
@@ -203,15 +202,18 @@ fn daemon() -> OpenApiRouter<Lab> {
         .routes(routes!(health::specification))
 }
 
-/// Routes of which at most so many requests are answered at the same time.
+/// Routes with a limit of simultaneous requests.
 fn gated(at_once: usize, routes: OpenApiRouter<Lab>) -> OpenApiRouter<Lab> {
-    routes.layer(middleware::from_fn_with_state(weight::Gate::of(at_once), weight::one_by_one))
+    routes.layer(middleware::from_fn_with_state(
+        response_budget::ConcurrencyLimit::of(at_once),
+        response_budget::limit_concurrency,
+    ))
 }
 
-/// Routes whose bodies have at most so many bytes.
+/// Routes with a limit of the body size.
 fn sized(routes: OpenApiRouter<Lab>, limit: usize) -> OpenApiRouter<Lab> {
     routes
-        .layer(middleware::from_fn(move |request, next| size::guard(limit, request, next)))
+        .layer(middleware::from_fn(move |request, next| body_limit::guard(limit, request, next)))
         .layer(DefaultBodyLimit::max(limit))
 }
 
@@ -221,9 +223,9 @@ pub fn specification() -> utoipa::openapi::OpenApi {
 }
 
 /// Everything that the daemon serves. `/api` never falls back to the dashboard.
-pub fn router(lab: Lab, surroundings: Surroundings) -> Router {
+pub fn router(lab: Lab, transport: Transport) -> Router {
     let (rest, _) = operations().split_for_parts();
-    let door = Door::new(lab.clone(), surroundings);
+    let auth = Auth::new(lab.clone(), transport);
     rest.route("/api", get(health::no_such_route))
         .route("/api/{*rest}", any(health::no_such_route))
         .method_not_allowed_fallback(health::no_such_method)
@@ -233,14 +235,14 @@ pub fn router(lab: Lab, surroundings: Surroundings) -> Router {
                 .layer(CompressionLayer::new().quality(CompressionLevel::Best)),
         )
         .with_state(lab)
-        .layer(middleware::from_fn_with_state(door, door::guard))
-        .layer(middleware::from_fn(size::hear_out))
+        .layer(middleware::from_fn_with_state(auth, auth::guard))
+        .layer(middleware::from_fn(body_limit::discard_body))
         .layer(middleware::from_fn(problem::name_instance))
-        .layer(middleware::from_fn(move |request, next| headers::add(surroundings, request, next)))
+        .layer(middleware::from_fn(move |request, next| headers::add(transport, request, next)))
         .layer(TraceLayer::new_for_http().make_span_with(span))
 }
 
-/// What is told of a request in the log. Neither its query nor its headers: both may carry a token.
+/// The logged data of a request. Without query and headers, because both may contain a token.
 fn span(request: &Request) -> tracing::Span {
     tracing::debug_span!("request", method = %request.method(), path = request.uri().path())
 }

@@ -1,7 +1,7 @@
-//! Effects, model versions and what they leave unexplained.
+//! Effects, model versions and residuals.
 
+use super::cancellation::{DetachQuery, cancel_on_disconnect};
 use super::extract::{Answer, Created, Json, Path, Query, created};
-use super::leaving::{DetachQuery, waited_for};
 use super::presence::Presence;
 use super::problem::Problem;
 use super::refusals::Refusals;
@@ -42,7 +42,7 @@ pub async fn create(
     let fit = async move {
         lab.create_model(&new.runs(), &new.effects, new.parent, new.exclude, new.tried, &caller.name).await
     };
-    created(waited_for(presence, query, fit).await?)
+    created(cancel_on_disconnect(presence, query, fit).await?)
 }
 
 /// Keeps a trial version or a version without significant gain as a regular version of the run
@@ -105,7 +105,7 @@ pub async fn diagnose(
         Access::Read => created(lab.diagnoses(new.model).await?.pop().ok_or_else(|| {
             Problem::forbidden("this version has no diagnosis yet, and a read token cannot create one")
         })?),
-        _ => created(waited_for(presence, query, async move { lab.diagnose(new.model).await }).await?),
+        _ => created(cancel_on_disconnect(presence, query, async move { lab.diagnose(new.model).await }).await?),
     }
 }
 

@@ -1,4 +1,4 @@
-//! What people say about runs.
+//! Notes and tags of runs.
 
 use super::extract::{Answer, Created, Json, Path, created};
 use super::refusals::Refusals;

@@ -1,14 +1,13 @@
-//! Whether the client that asked is still connected.
+//! Whether the client of a request is still connected.
 //!
-//! A request that changes something is carried out to its end, whether its client waits for the answer or not. A long
-//! computation may want to know all the same that nobody waits any more.
+//! A changing request is completed even if its client disconnects. A long computation can be cancelled.
 
 use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use std::convert::Infallible;
 use tokio_util::sync::{CancellationToken, DropGuard};
 
-/// The client of one request. A handler takes it as an argument. Cheap to clone.
+/// The client of one request, as an argument of a handler. Cheap to clone.
 #[derive(Debug, Clone, Default)]
 pub struct Presence(CancellationToken);
 
@@ -22,13 +21,13 @@ impl Presence {
         self.0.is_cancelled()
     }
 
-    /// For the connection: dropping the guard before [`DropGuard::disarm`] says that the client is gone.
+    /// For the connection: dropping the guard before [`DropGuard::disarm`] reports that the client is gone.
     pub fn guard(&self) -> DropGuard {
         self.0.clone().drop_guard()
     }
 }
 
-/// A request that came over no connection has a client that stays.
+/// Without a connection, the client never disconnects.
 impl<S: Sync> FromRequestParts<S> for Presence {
     type Rejection = Infallible;
 

@@ -1,4 +1,4 @@
-//! Errors as they leave over HTTP: RFC 9457 problem documents. The one `From` decides the HTTP meaning of a refusal.
+//! Errors over HTTP as RFC 9457 problem documents. The `From` of [`LabError`] maps each error to a status.
 
 use crate::lab::LabError;
 use crate::view::Place;
@@ -40,11 +40,11 @@ pub struct Problem {
     pub place: Option<Box<Place>>,
 }
 
-/// Kind of what no waiting will change.
+/// Kind of a permanent conflict.
 const OVER: &str = "over";
-/// Kind of what waiting alone changes.
+/// Kind of a temporary refusal.
 const BUSY: &str = "busy";
-/// When a client asks again that was refused for want of room [s].
+/// Time after which a client may retry [s].
 const RETRY_AFTER: HeaderValue = HeaderValue::from_static("1");
 
 impl Problem {
@@ -61,7 +61,7 @@ impl Problem {
         }
     }
 
-    /// As [`LabError::exit_code`] says it of the same refusal.
+    /// The same as [`LabError::exit_code`].
     pub fn exit_code(&self) -> u8 {
         match self.status {
             409 if self.type_.ends_with(OVER) => 2,
@@ -87,12 +87,12 @@ impl Problem {
         Self::new(StatusCode::PAYLOAD_TOO_LARGE, "too_large", "Request too large", detail)
     }
 
-    /// A limit that others fill at the moment.
+    /// A limit is reached at the moment.
     pub fn busy(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::SERVICE_UNAVAILABLE, BUSY, "Too many requests", detail)
     }
 
-    /// Every connection but the reserved ones is taken.
+    /// All connections except the reserved ones are in use.
     pub fn full() -> Self {
         Self::busy("all connections are in use (health and software stop remain available): retry in one second")
     }
@@ -149,7 +149,7 @@ impl From<LabError> for Problem {
 
 const SEE: &str = "; /api/v1/openapi.json describes all operations";
 
-/// Without the extractor's own preface.
+/// Removes the prefix of the extractor.
 fn plain(text: &str) -> &str {
     text.split_once(": ").map_or(text, |(_, what)| what)
 }
@@ -192,7 +192,7 @@ impl IntoResponse for Problem {
     }
 }
 
-/// Middleware: a problem names the path that was asked for.
+/// Middleware: adds the requested path to a problem.
 pub async fn name_instance(request: Request, next: Next) -> Response {
     let path = request.uri().path().into();
     let mut response = next.run(request).await;

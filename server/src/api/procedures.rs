@@ -1,4 +1,4 @@
-//! What a bench can be asked to do.
+//! Procedures and previews of runs.
 
 use super::extract::{Answer, Json, Path, Query};
 use super::refusals::Refusals;

@@ -1,4 +1,4 @@
-//! How refusals, and files, stand in the specification.
+//! Refusals and files in the OpenAPI description.
 
 use std::collections::BTreeMap;
 use utoipa::openapi::path::{Operation, PathItem};
@@ -26,7 +26,7 @@ fn problem(description: &str) -> RefOr<Response> {
     RefOr::T(ResponseBuilder::new().description(description).content("application/problem+json", content).build())
 }
 
-/// Names the refusals that follow from the form of an operation: what it addresses, takes and changes.
+/// Adds the refusals that follow from the parameters and the body of an operation.
 pub fn named(mut document: OpenApi) -> OpenApi {
     for (path, item) in &mut document.paths.paths {
         let PathItem { get, put, post, delete, .. } = item;

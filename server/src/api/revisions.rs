@@ -1,7 +1,7 @@
-//! Model versions beside each other, on other runs, and on their way out and in.
+//! Model versions: comparison, evaluation on other runs, export and import.
 
+use super::cancellation::{DetachQuery, cancel_on_disconnect};
 use super::extract::{Answer, Created, Json, Path, Query, created};
-use super::leaving::{DetachQuery, waited_for};
 use super::presence::Presence;
 use super::problem::Problem;
 use super::refusals::Refusals;
@@ -62,7 +62,7 @@ pub async fn evaluate(
     Json(new): Json<NewEvaluation>,
 ) -> Answer<Evaluation> {
     let evaluation = async move { lab.evaluate(id, new.run).await };
-    Ok(Json(waited_for(presence, DetachQuery::default(), evaluation).await?))
+    Ok(Json(cancel_on_disconnect(presence, DetachQuery::default(), evaluation).await?))
 }
 
 /// `json` can be imported again; `c` is a C99 header, `lut` a CSV table, `mujoco` and `urdf` the attributes of a joint.

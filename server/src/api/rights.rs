@@ -1,24 +1,23 @@
-//! What a token that only reads may ask for. Whatever changes nothing, by its method; and of the other operations those
-//! named here, by their routes.
+//! Operations that a read token allows: every safe method, and the other operations that are listed here by route.
 
 use axum::http::Method;
 
-/// They need a body, and keep nothing.
+/// They need a body, but store nothing.
 const ASKING: [&str; 6] = [
     "/api/v1/runs/import/preview",
     "/api/v1/procedures/{id}/preview",
     "/api/v1/effects/check",
     "/api/v1/models/{id}/evaluate",
     "/api/v1/tables",
-    // Its handler answers a reader from what is kept.
+    // The handler answers a read token from stored results.
     "/api/v1/diagnoses",
 ];
-/// Whoever sees something going wrong may end it.
+/// Every user may end a run.
 const STOPPING: [&str; 3] = ["/api/v1/bench/{bench}/stop", "/api/v1/runs/{id}/stop", "/api/v1/autopilots/{id}/stop"];
-/// Who else may come in is nobody's business who only looks.
+/// A read token does not allow to list tokens.
 const HIDDEN: [&str; 2] = ["/api/v1/tokens", "/api/v1/tokens/{id}"];
 
-/// `route`: the pattern of the router that the request has met; `None` for what is no operation.
+/// `route`: the matching pattern of the router; `None` if the request is not an operation.
 pub fn reader_may(method: &Method, route: Option<&str>) -> bool {
     let Some(route) = route else { return method.is_safe() };
     if method.is_safe() {

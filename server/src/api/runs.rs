@@ -1,4 +1,4 @@
-//! Runs: start, watch, steer.
+//! Runs: start, observe, control.
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::Problem;
@@ -200,7 +200,7 @@ pub async fn differences(
         .map_err(|_| Problem::malformed(format!("others = {}: write run numbers, comma-separated", query.others)))?;
     let by = query.by.unwrap_or_else(|| "time_s".to_owned());
     let how = Alignment { channel: query.channel, by, from: query.from };
-    Ok(Json(lab.differences(&[vec![id], others].concat(), &how).await?))
+    Ok(Json(lab.compare_runs(&[vec![id], others].concat(), &how).await?))
 }
 
 fn named(channels: Option<String>) -> Option<Vec<String>> {

@@ -1,4 +1,4 @@
-//! The specification is kept in the tree: the dashboard's types come from it before the server is built.
+//! The OpenAPI description is a file of the repository: the types of the dashboard are generated from it before the build.
 
 /// Set to write `openapi.json` anew after a wanted change of the API.
 const BLESS: &str = "JOINTBENCH_BLESS";

@@ -1,4 +1,4 @@
-//! What a page shows, as a file.
+//! Tables of a page as files.
 
 use super::extract::{Json, Query};
 use super::problem::Problem;

@@ -1,4 +1,4 @@
-//! Tokens: who may come in, and under which name. Only for those who may do everything.
+//! Tokens of users. Requires full access.
 
 use super::extract::{Created, Json, Path, created};
 use super::problem::Problem;

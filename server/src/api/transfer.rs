@@ -1,4 +1,4 @@
-//! Run tables in and out, as files.
+//! Export and import of run tables as files.
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::Problem;

@@ -22,42 +22,42 @@ pub(super) struct Display {
     /// The last model of the bench, evaluated with the live data. `None` after the first failure.
     model: Option<Alongside>,
     health: Health,
-    told_progress: Option<Instant>,
-    told_bench: Option<Instant>,
+    progress_at: Option<Instant>,
+    bench_at: Option<Instant>,
     began: Instant,
 }
 
 impl Display {
     pub fn new(model: Option<Alongside>, rate_hz: f64) -> Self {
-        Self { model, health: Health::new(rate_hz), told_progress: None, told_bench: None, began: Instant::now() }
+        Self { model, health: Health::new(rate_hz), progress_at: None, bench_at: None, began: Instant::now() }
     }
 
     pub fn show(&mut self, shared: &Shared, run: RunId, rows: Trace, progress: &procedure::Progress) {
         self.health.add(&rows);
         let bench = shared.name().to_owned();
         let newest = readings(&rows, shared.description.constants.gear_ratio);
-        shared.hub.show(Rows { bench: bench.clone(), run, rows: self.beside_model(rows) });
-        if self.told_progress.is_some_and(|told| told.elapsed() < PROGRESS_EVERY) {
+        shared.hub.publish_rows(Rows { bench: bench.clone(), run, rows: self.with_model_torque(rows) });
+        if self.progress_at.is_some_and(|at| at.elapsed() < PROGRESS_EVERY) {
             return;
         }
-        self.told_progress = Some(Instant::now());
-        let progress = self.on_the_wall(shared.description.pace(), progress);
-        shared.hub.tell(LiveMessage::Progress { bench, run, progress: progress.clone() });
-        let channels = self.health.told(Timestamp::now());
+        self.progress_at = Some(Instant::now());
+        let progress = self.in_wall_time(shared.description.pace(), progress);
+        shared.hub.publish(LiveMessage::Progress { bench, run, progress: progress.clone() });
+        let channels = self.health.channels(Timestamp::now());
         shared.status.send_modify(|status| {
             status.progress = Some(progress);
             status.readings = newest;
             status.channels = channels;
         });
-        if self.told_bench.is_none_or(|told| told.elapsed() >= BENCH_EVERY) {
-            self.told_bench = Some(Instant::now());
-            shared.tell_bench();
+        if self.bench_at.is_none_or(|at| at.elapsed() >= BENCH_EVERY) {
+            self.bench_at = Some(Instant::now());
+            shared.publish_bench();
         }
     }
 
     /// Converts the remaining time of a mock bench to wall-clock time, limited by its pace. The nominal pace is the
     /// initial estimate, because the first moments of a run include its start.
-    fn on_the_wall(&self, pace: Option<f64>, progress: &procedure::Progress) -> Progress {
+    fn in_wall_time(&self, pace: Option<f64>, progress: &procedure::Progress) -> Progress {
         let elapsed_s = self.began.elapsed().as_secs_f64();
         let wall = match pace {
             Some(pace) => ((elapsed_s + PACE_HOLDS_S) / (progress.elapsed_s + PACE_HOLDS_S * pace)).max(1.0 / pace),
@@ -75,7 +75,7 @@ impl Display {
     }
 
     /// Adds the measured and the predicted motor torque to the rows.
-    fn beside_model(&mut self, rows: Trace) -> Trace {
+    fn with_model_torque(&mut self, rows: Trace) -> Trace {
         let Some([measured, predicted]) = self.model.as_mut().and_then(|model| model.tell(&rows)) else {
             self.model = None;
             return rows;

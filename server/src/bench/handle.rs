@@ -1,13 +1,14 @@
 //! Handle of a bench for all clients. Cheap to clone.
 
 use super::display::Display;
-use super::keeper::{Item, Keeper, NEVER_BEGAN};
+use super::error::BenchError;
+use super::item::Item;
+use super::keeper::{Keeper, NEVER_BEGAN};
 use super::shared::{Shared, blocked, lock};
-use super::status::{Status, Underway};
+use super::status::{ActiveRun, Status};
 use super::supervisor::Supervisor;
 use super::wire::{MemoryRead, Order};
 use crate::config::BenchDescription;
-use crate::lab::LabError;
 use crate::live::Hub;
 use crate::store::{SafetyRecord, Store};
 use jointbench_model::export::Alongside;
@@ -29,11 +30,12 @@ const STOPPED: &str = "software stop pressed";
 #[derive(Clone)]
 pub struct BenchHandle {
     shared: Arc<Shared>,
+    display: Arc<Mutex<Option<Display>>>,
     thread: Arc<Mutex<Option<JoinHandle<()>>>>,
 }
 
 /// Initial state of a bench.
-pub struct Beginning {
+pub struct InitialState {
     pub description: BenchDescription,
     /// An existing block of the bench.
     pub block: Option<SafetyRecord>,
@@ -44,17 +46,24 @@ pub struct Beginning {
 impl BenchHandle {
     /// Starts the worker, which opens and secures the instruments. Requires a runtime. `program`: path of the
     /// `jointbench` executable.
-    pub fn start(beginning: Beginning, store: Store, hub: Hub, data: &Path, program: &Path) -> std::io::Result<Self> {
-        let Beginning { description, block, interrupted } = beginning;
+    pub fn start(
+        beginning: InitialState,
+        store: Store,
+        hub: Hub,
+        data: &Path,
+        program: &Path,
+    ) -> std::io::Result<Self> {
+        let InitialState { description, block, interrupted } = beginning;
         let (to_keep, items) = mpsc::unbounded_channel();
         let paths = (std::path::absolute(data)?, program.to_owned());
         let shared = Arc::new(Shared::new(description, store, hub, paths, to_keep));
         shared.status.send_modify(|status| status.blocked = block.as_ref().map(|block| blocked(block, true)));
         tokio::spawn(Keeper::new(shared.clone()).keep_all(items));
-        let supervisor = Supervisor::new(shared.clone(), interrupted);
+        let display: Arc<Mutex<Option<Display>>> = Arc::default();
+        let supervisor = Supervisor::new(shared.clone(), display.clone(), interrupted);
         let name = format!("bench {}", shared.name());
         let thread = std::thread::Builder::new().name(name).spawn(move || supervisor.supervise())?;
-        Ok(Self { shared, thread: Arc::new(Mutex::new(Some(thread))) })
+        Ok(Self { shared, display, thread: Arc::new(Mutex::new(Some(thread))) })
     }
 
     pub fn name(&self) -> &str {
@@ -78,8 +87,8 @@ impl BenchHandle {
         facts(&self.shared.description)
     }
 
-    /// Reserves the bench for one run. [`LabError::Conflict`] if another run is active or not yet stored.
-    pub fn claim(&self) -> Result<Claim, LabError> {
+    /// Reserves the bench for one run. [`BenchError::Busy`] if another run is active or not yet stored.
+    pub fn claim(&self) -> Result<Claim, BenchError> {
         let name = self.name();
         let taken = self.shared.claimed.compare_exchange(false, true, Ordering::AcqRel, Ordering::Acquire).is_err();
         let status = self.shared.status.borrow().clone();
@@ -88,7 +97,7 @@ impl BenchHandle {
             if !taken {
                 self.shared.claimed.store(false, Ordering::Release);
             }
-            return Err(LabError::Conflict(match status.unstored.fault {
+            return Err(BenchError::Busy(match status.unstored.fault {
                 Some(fault) if !on => format!("bench {name}: its last run has ended, but is not yet stored: {fault}"),
                 _ => format!(
                     "a run is in progress on bench {name}: stop it (`jointbench stop`, or in the dashboard), or wait \
@@ -120,7 +129,7 @@ impl BenchHandle {
     pub async fn stop(&self, by: &str) {
         let run = self.shared.status.borrow().run;
         let block = self.shared.new_block(true, STOPPED, run, Some(by));
-        let known = self.shared.order_and_hear(|ticket| Order::Stop { block: block.clone(), ticket });
+        let known = self.shared.order_with_reply(|ticket| Order::Stop { block: block.clone(), ticket });
         let at = block.at.clone();
         self.shared.enter(block);
         match known {
@@ -138,24 +147,24 @@ impl BenchHandle {
     }
 
     /// Reconnects the instruments that did not answer, and secures the bench.
-    pub async fn reopen(&self) -> Result<(), LabError> {
+    pub async fn reopen(&self) -> Result<(), BenchError> {
         let wanting: Vec<String> = {
             let status = self.shared.status.borrow();
             status.instruments.iter().filter(|one| !one.ready).map(|one| one.name.clone()).collect()
         };
-        let done = self.shared.order_and_hear(|ticket| Order::Reopen { wanting, ticket }).map_err(|_| self.gone())?;
+        let done = self.shared.order_with_reply(|ticket| Order::Reopen { wanting, ticket }).map_err(|_| self.gone())?;
         done.await.map(drop).map_err(|_| self.gone())
     }
 
     /// Reads ranges (first address, number of bytes) of the servo's memory. No run can start meanwhile.
-    pub async fn read_memory(&self, ranges: Vec<(u8, u8)>) -> Result<Vec<Vec<u8>>, LabError> {
+    pub async fn read_memory(&self, ranges: Vec<(u8, u8)>) -> Result<Vec<Vec<u8>>, BenchError> {
         let _claim = self.claim()?;
         let done =
-            self.shared.order_and_hear(|ticket| Order::ReadMemory { ranges, ticket }).map_err(|_| self.gone())?;
+            self.shared.order_with_reply(|ticket| Order::ReadMemory { ranges, ticket }).map_err(|_| self.gone())?;
         match done.await.map_err(|_| self.gone())? {
             Some(MemoryRead::Read(bytes)) => Ok(bytes),
-            Some(MemoryRead::Failed(why)) => Err(LabError::Bench(format!("bench {}: {why}", self.name()))),
-            Some(MemoryRead::None) | None => Err(LabError::Invalid(format!(
+            Some(MemoryRead::Failed(why)) => Err(BenchError::Instrument(format!("bench {}: {why}", self.name()))),
+            Some(MemoryRead::None) | None => Err(BenchError::NoServo(format!(
                 "the joint of bench {} has no servo whose memory can be read: select a bench with a Puma-type servo",
                 self.name()
             ))),
@@ -184,8 +193,8 @@ impl BenchHandle {
         Alongside::new(fit, constants.torque_constant_nm_per_a, constants.gear_ratio)
     }
 
-    fn gone(&self) -> LabError {
-        LabError::Bench(format!(
+    fn gone(&self) -> BenchError {
+        BenchError::Instrument(format!(
             "the worker of bench {} terminated and is being restarted: try again in a moment",
             self.name()
         ))
@@ -218,11 +227,11 @@ pub struct Claim {
 
 impl Claim {
     /// Passes a stored run to the worker. Without a worker, the run is interrupted before its start.
-    pub async fn start(self, run: RunId, plan: Plan) -> Result<(), LabError> {
+    pub async fn start(self, run: RunId, plan: Plan) -> Result<(), BenchError> {
         let bench = &self.bench;
         let display = Display::new(bench.alongside(run, &plan).await, plan.rate_hz);
-        *lock(&bench.shared.display) = Some(display);
-        bench.shared.status.send_modify(|status| drop(status.runs.insert(run, Underway::queued())));
+        *lock(&bench.display) = Some(display);
+        bench.shared.status.send_modify(|status| drop(status.runs.insert(run, ActiveRun::queued())));
         bench.shared.order(&Order::Run { run, plan: Box::new(plan) }).map_err(|_| {
             let item = Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN };
             if bench.shared.to_keep.send(item).is_err() {

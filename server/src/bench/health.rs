@@ -15,28 +15,28 @@ const SAME_S: f64 = 3e-6;
 
 /// Input quality of a channel, as far as it is known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Incoming {
+pub struct ChannelInput {
     name: String,
     rate_hz: Option<f64>,
-    felt: Option<Timestamp>,
+    sampled: Option<Timestamp>,
     dropped: u64,
 }
 
-impl Incoming {
-    pub fn told(&self, now: Timestamp) -> ChannelHealth {
+impl ChannelInput {
+    pub fn view(&self, now: Timestamp) -> ChannelHealth {
         ChannelHealth {
             name: self.name.clone(),
             unit: unit_of(&self.name).map(str::to_owned),
             rate_hz: self.rate_hz,
-            at: self.felt.map(|felt| format!("{felt:.3}")),
-            age_s: self.felt.map(|felt| now.duration_since(felt).as_secs_f64().max(0.0)),
+            at: self.sampled.map(|sampled| format!("{sampled:.3}")),
+            age_s: self.sampled.map(|sampled| now.duration_since(sampled).as_secs_f64().max(0.0)),
             dropped: self.dropped,
         }
     }
 }
 
 /// The channels of every run on this bench. The channels of a run replace them.
-pub(super) fn expected(bench: &Bench) -> Vec<Incoming> {
+pub(super) fn expected(bench: &Bench) -> Vec<ChannelInput> {
     let joint = bench.joint.resolution();
     let channels = [
         ("motor_position_rad", true),
@@ -50,7 +50,7 @@ pub(super) fn expected(bench: &Bench) -> Vec<Incoming> {
         ("test_position_rad", bench.test_encoder.is_some()),
     ];
     let there = channels.into_iter().filter(|(_, there)| *there);
-    there.map(|(name, _)| Incoming { name: name.to_owned(), rate_hz: None, felt: None, dropped: 0 }).collect()
+    there.map(|(name, _)| ChannelInput { name: name.to_owned(), rate_hz: None, sampled: None, dropped: 0 }).collect()
 }
 
 pub(super) struct Health {
@@ -102,18 +102,18 @@ impl Health {
     }
 
     /// `now`: arrival time of the newest row.
-    pub fn told(&self, now: Timestamp) -> Vec<Incoming> {
+    pub fn channels(&self, now: Timestamp) -> Vec<ChannelInput> {
         let newest_s = self.newest.map_or(0.0, |(at_s, _)| at_s);
-        let tell = |channel: &Known| {
+        let incoming = |channel: &Known| {
             let age = channel.over.map(|(_, last_s, _)| SignedDuration::from_secs_f64((newest_s - last_s).max(0.0)));
-            Incoming {
+            ChannelInput {
                 name: channel.name.clone(),
                 rate_hz: channel.rate_hz,
-                felt: age.map(|age| now - age),
+                sampled: age.map(|age| now - age),
                 dropped: self.missing + channel.empty,
             }
         };
-        self.channels.iter().map(tell).collect()
+        self.channels.iter().map(incoming).collect()
     }
 }
 
@@ -173,9 +173,9 @@ mod tests {
         rows
     }
 
-    fn told(health: &Health) -> Vec<(String, f64, u64)> {
-        let rounded = |one: Incoming| (one.name, (10.0 * one.rate_hz.unwrap_or(0.0)).round() / 10.0, one.dropped);
-        health.told(Timestamp::UNIX_EPOCH).into_iter().map(rounded).collect()
+    fn rates(health: &Health) -> Vec<(String, f64, u64)> {
+        let rounded = |one: ChannelInput| (one.name, (10.0 * one.rate_hz.unwrap_or(0.0)).round() / 10.0, one.dropped);
+        health.channels(Timestamp::UNIX_EPOCH).into_iter().map(rounded).collect()
     }
 
     #[test]
@@ -183,8 +183,8 @@ mod tests {
         let mut health = Health::new(250.0);
         (0..4).for_each(|second| health.add(&rows((0..250).map(|i| f64::from(250 * second + i) * 0.004))));
         let expected = [("link_torque_nm", 250.0), ("temperature_c", 2.0), ("brake_current_a", 10.0)];
-        assert_eq!(told(&health), expected.map(|(name, rate)| (name.to_owned(), rate, 0)));
-        let age_s = |i: usize| health.told(Timestamp::UNIX_EPOCH)[i].told(Timestamp::UNIX_EPOCH).age_s.unwrap();
+        assert_eq!(rates(&health), expected.map(|(name, rate)| (name.to_owned(), rate, 0)));
+        let age_s = |i: usize| health.channels(Timestamp::UNIX_EPOCH)[i].view(Timestamp::UNIX_EPOCH).age_s.unwrap();
         assert_eq!(age_s(0), 0.0, "of the newest row");
         assert!((age_s(2) - 0.096).abs() < 1e-6, "96 ms before it");
     }
@@ -198,7 +198,7 @@ mod tests {
         let mut empty = rows([6.0, 6.004].into_iter()).into_parts();
         empty.1[1][1] = f64::NAN;
         health.add(&Trace::from_columns(empty.0, empty.1));
-        let dropped: Vec<u64> = told(&health).iter().map(|(_, _, dropped)| *dropped).collect();
+        let dropped: Vec<u64> = rates(&health).iter().map(|(_, _, dropped)| *dropped).collect();
         assert_eq!(dropped, [8, 7, 7]);
     }
 }

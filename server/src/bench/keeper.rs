@@ -1,58 +1,42 @@
 //! Stores the commits of a bench worker in order, and retries until the disk accepts them. Only this task waits for the
 //! disk.
 
-use super::shared::Shared;
-use super::status::New;
+use super::item::Item;
+use super::shared::{RETRY_INTERVAL, Shared};
+use super::status::NewFault;
 use super::wire::{Entry, Order};
-use crate::lab::{run_event, safe_view, state_view};
-use crate::store::{RunCommit, SafetyRecord, StoreError};
-use crate::view::LiveMessage;
+use crate::store::{RunCommit, StoreError};
+use crate::view::{LiveMessage, run_event, safe_view, state_view};
 use jointbench_procedure::{RunId, RunState, Safe};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 use tokio::sync::mpsc::UnboundedReceiver;
-use tokio::sync::oneshot;
 use tokio::time::{sleep, timeout};
 
-/// Retry interval.
-const AGAIN_EVERY: Duration = Duration::from_millis(500);
 /// A disk that needs longer than this is reported as slow.
 const SLOW: Duration = Duration::from_millis(500);
 pub(super) const NEVER_BEGAN: &str = "the bench became unavailable before the run started";
 /// Maximum number of commits in one transaction.
 const MOST_TOGETHER: usize = 64;
 
-pub(super) enum Item {
-    Entry(Arc<Entry>),
-    /// The worker ended: the keeper stores the end of its run.
-    Interrupted {
-        run: RunId,
-        safe: Safe,
-        reason: &'static str,
-    },
-    Fault(New),
-    /// Answered when all earlier items are stored.
-    Flush(oneshot::Sender<()>),
-}
-
 /// Data of one transaction.
 enum Work {
     Commits(Vec<Arc<Entry>>),
     Interruption { run: RunId, safe: Safe, reason: &'static str },
-    Fault(New),
+    Fault(NewFault),
 }
 
 pub(super) struct Keeper {
     shared: Arc<Shared>,
     /// Number of the last published event of each run.
-    told_events: BTreeMap<RunId, u64>,
+    published_events: BTreeMap<RunId, u64>,
 }
 
 impl Keeper {
     pub fn new(shared: Arc<Shared>) -> Self {
-        Self { shared, told_events: BTreeMap::new() }
+        Self { shared, published_events: BTreeMap::new() }
     }
 
     pub async fn keep_all(mut self, mut items: UnboundedReceiver<Item>) {
@@ -77,7 +61,7 @@ impl Keeper {
                     self.keep_entries(entries).await;
                 }
                 Item::Interrupted { run, safe, reason } => self.keep_interrupted(run, safe, reason).await,
-                Item::Fault(new) => drop(self.insist(&Work::Fault(new)).await),
+                Item::Fault(new) => drop(self.store_with_retries(&Work::Fault(new)).await),
                 // The requester may no longer wait.
                 Item::Flush(done) => drop(done.send(())),
             }
@@ -88,7 +72,7 @@ impl Keeper {
     }
 
     async fn keep_entries(&mut self, entries: Vec<Arc<Entry>>) {
-        let kept = self.insist(&Work::Commits(entries.clone())).await;
+        let kept = self.store_with_retries(&Work::Commits(entries.clone())).await;
         let Some(last) = entries.last() else { return };
         if self.shared.order(&Order::Stored { number: last.number }).is_err() {
             tracing::debug!(bench = self.shared.name(), "no worker hears what is stored");
@@ -101,29 +85,29 @@ impl Keeper {
         for entry in entries {
             let commit = &entry.commit;
             if kept {
-                self.tell_events(commit.run).await;
+                self.publish_events(commit.run).await;
             }
             if commit.state.is_final() {
-                self.tell_end(commit.run);
+                self.publish_end(commit.run);
                 self.shared.settle(commit.run, |run| run.stored = true);
             }
         }
     }
 
     async fn keep_interrupted(&mut self, run: RunId, safe: Safe, reason: &'static str) {
-        self.insist(&Work::Interruption { run, safe, reason }).await;
+        self.store_with_retries(&Work::Interruption { run, safe, reason }).await;
         tracing::warn!(
             run.id = run,
             bench = self.shared.name(),
             "{reason}; complete the run with `jointbench run --continue {run}`, or start it again"
         );
-        self.tell_events(run).await;
-        self.tell_end(run);
+        self.publish_events(run).await;
+        self.publish_end(run);
         self.shared.settle(run, |run| (run.ended, run.stored) = (true, true));
     }
 
     /// Retries until the data is stored (`true`), or until the store refuses it permanently (`false`).
-    async fn insist(&self, work: &Work) -> bool {
+    async fn store_with_retries(&self, work: &Work) -> bool {
         loop {
             match self.attempt(work).await {
                 Ok(()) => return true,
@@ -131,7 +115,7 @@ impl Keeper {
                     // A run continues while another program locks the database; other faults end the run.
                     self.set_trouble(Some((fault.to_string(), !matches!(fault, StoreError::Held))));
                     tokio::select! {
-                        () = sleep(AGAIN_EVERY) => {}
+                        () = sleep(RETRY_INTERVAL) => {}
                         () = self.shared.disk_changed.notified() => {}
                     }
                 }
@@ -166,7 +150,7 @@ impl Keeper {
             Work::Interruption { run, safe, reason } => {
                 store.end_run(*run, RunState::Interrupted, *safe, Some(reason)).await
             }
-            Work::Fault(New { instrument, fault }) => {
+            Work::Fault(NewFault { instrument, fault }) => {
                 store.keep_fault(self.shared.name(), instrument, &fault.at, &fault.text).await
             }
         }
@@ -188,47 +172,36 @@ impl Keeper {
         if shared.order(&Order::Storage { fault }).is_err() {
             tracing::debug!(bench = shared.name(), "no worker hears how the store is");
         }
-        self.tell_ends_that_wait();
+        self.publish_unstored_ends();
     }
 
     /// Publishes the ends of runs before they are stored.
-    fn tell_ends_that_wait(&self) {
+    fn publish_unstored_ends(&self) {
         let over: Vec<RunId> = {
             let status = self.shared.status.borrow();
             status.runs.iter().filter(|(_, run)| run.state.is_final()).map(|(id, _)| *id).collect()
         };
-        over.into_iter().for_each(|run| self.tell_end(run));
+        over.into_iter().for_each(|run| self.publish_end(run));
     }
 
     /// Publishes the new events with the numbers from the store.
-    async fn tell_events(&mut self, run: RunId) {
-        let told = self.told_events.entry(run).or_default();
-        for event in self.shared.store.events(run, *told).await.unwrap_or_default() {
-            *told = event.sequence;
+    async fn publish_events(&mut self, run: RunId) {
+        let published = self.published_events.entry(run).or_default();
+        for event in self.shared.store.events(run, *published).await.unwrap_or_default() {
+            *published = event.sequence;
             let (bench, event) = (self.shared.name().to_owned(), run_event(event));
-            self.shared.hub.tell(LiveMessage::Event { bench, run, event });
+            self.shared.hub.publish(LiveMessage::Event { bench, run, event });
         }
     }
 
-    fn tell_end(&self, run: RunId) {
-        let Some(underway) = self.shared.status.borrow().runs.get(&run).cloned() else { return };
-        self.shared.hub.tell(LiveMessage::State {
+    fn publish_end(&self, run: RunId) {
+        let Some(active) = self.shared.status.borrow().runs.get(&run).cloned() else { return };
+        self.shared.hub.publish(LiveMessage::State {
             bench: self.shared.name().to_owned(),
             run,
-            state: state_view(underway.state),
-            safe: underway.safe.map(safe_view),
-            reason: underway.reason,
+            state: state_view(active.state),
+            safe: active.safe.map(safe_view),
+            reason: active.reason,
         });
     }
-}
-
-/// Stores a block as soon as possible, before other waiting data.
-pub(super) fn keep_block(shared: Arc<Shared>, block: SafetyRecord) {
-    shared.runtime.clone().spawn(async move {
-        while let Err(fault) = shared.store.keep_block(shared.name(), &block).await {
-            tracing::error!(bench = shared.name(), %fault, "the block of the bench is not yet stored");
-            sleep(AGAIN_EVERY).await;
-        }
-        shared.block_is_stored(&block.at);
-    });
 }

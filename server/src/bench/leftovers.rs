@@ -2,7 +2,6 @@
 //! folder holds it; the next start stores the data and removes the file.
 
 use super::wire::{Entry, receive, send};
-use super::worker::file_name;
 use crate::store::{SafetyRecord, Store, StoreError};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -62,6 +61,11 @@ fn write(folder: &Path, left: &Leftovers) -> io::Result<PathBuf> {
     fs::rename(&unfinished, &path)?;
     File::open(folder)?.sync_all()?;
     Ok(path)
+}
+
+/// The name of a bench as a file name.
+pub(super) fn file_name(bench: &str) -> String {
+    percent_encoding::utf8_percent_encode(bench, percent_encoding::NON_ALPHANUMERIC).to_string()
 }
 
 fn read(path: &Path) -> io::Result<Leftovers> {
@@ -147,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_comes_back_and_a_damaged_file_is_told() {
+    fn leftovers_are_read_back_and_a_damaged_file_is_refused() {
         let data = tempfile::tempdir().unwrap();
         leave(data.path(), "a/b", None, &[]);
         assert!(!data.path().join(FOLDER).exists(), "nothing is left where nothing waits");
@@ -162,7 +166,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn what_no_run_takes_is_set_aside_and_keeps_nobody_from_starting() {
+    async fn refused_leftovers_are_set_aside_and_the_daemon_starts() {
         let data = tempfile::tempdir().unwrap();
         let store = Store::open(data.path()).await.unwrap();
         leave(data.path(), "a", None, &[entry(1), entry(3)]);

@@ -2,20 +2,25 @@
 //! exchange messages ([`wire`]). One task ([`keeper`]) stores all data, and only this task waits for the disk.
 
 mod display;
+mod error;
 mod handle;
 mod health;
+mod instrument_check;
 mod instruments;
+mod item;
 mod keeper;
 mod leftovers;
-mod look;
 mod shared;
 mod status;
 mod supervisor;
+mod view;
 mod wire;
 pub mod worker;
 
-pub use handle::{Beginning, BenchHandle, facts};
+pub use error::BenchError;
+pub use handle::{BenchHandle, InitialState, facts};
+pub use instrument_check::{InstrumentCheck, check_instruments};
 pub use instruments::{Opened, open, reach};
 pub use leftovers::store_all as store_leftovers;
-pub use look::{Look, look};
 pub use status::Status;
+pub use view::{bench_view, show_unstored_end};

@@ -1,8 +1,8 @@
 //! Shared state of a bench in the server: its status, the connection to its worker, and its block.
 
-use super::display::Display;
-use super::keeper::Item;
-use super::status::{Status, Underway};
+use super::item::Item;
+use super::status::{ActiveRun, Status};
+use super::view::bench_view;
 use super::wire::{self, MemoryRead, Order};
 use crate::config::BenchDescription;
 use crate::live::Hub;
@@ -15,9 +15,14 @@ use std::path::PathBuf;
 use std::process::ChildStdin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::sync::mpsc::UnboundedSender;
 use tokio::sync::{Notify, oneshot, watch};
+use tokio::time::sleep;
+
+/// Retry interval of storing.
+pub(super) const RETRY_INTERVAL: Duration = Duration::from_millis(500);
 
 pub(super) struct Shared {
     pub description: BenchDescription,
@@ -30,7 +35,6 @@ pub(super) struct Shared {
     pub status: watch::Sender<Status>,
     /// Queue of the data to store, in order.
     pub to_keep: UnboundedSender<Item>,
-    pub display: Mutex<Option<Display>>,
     /// The bench is reserved for a run without a number.
     pub claimed: AtomicBool,
     /// The daemon ends: the worker is not restarted.
@@ -65,7 +69,6 @@ impl Shared {
             runtime: Handle::current(),
             status: watch::Sender::new(Status::offline()),
             to_keep,
-            display: Mutex::default(),
             claimed: AtomicBool::new(false),
             ending: AtomicBool::new(false),
             disk_is_full: AtomicBool::new(false),
@@ -95,7 +98,7 @@ impl Shared {
     }
 
     /// Sends an order and returns a receiver for its completion, with the data that was read.
-    pub fn order_and_hear(
+    pub fn order_with_reply(
         &self,
         order: impl FnOnce(u64) -> Order,
     ) -> Result<oneshot::Receiver<Option<MemoryRead>>, NoWorker> {
@@ -119,15 +122,15 @@ impl Shared {
     }
 
     pub fn change<T: Default>(&self, change: impl FnOnce(&mut Status) -> T) -> T {
-        let mut told = T::default();
-        self.status.send_modify(|status| told = change(status));
-        self.tell_bench();
-        told
+        let mut result = T::default();
+        self.status.send_modify(|status| result = change(status));
+        self.publish_bench();
+        result
     }
 
-    pub fn tell_bench(&self) {
-        let bench = crate::lab::bench_view(&self.description, &self.status.borrow());
-        self.hub.tell(LiveMessage::Bench { bench: Box::new(bench) });
+    pub fn publish_bench(&self) {
+        let bench = bench_view(&self.description, &self.status.borrow());
+        self.hub.publish(LiveMessage::Bench { bench: Box::new(bench) });
     }
 
     /// A block from now on. It keeps an earlier software stop and its reason.
@@ -150,10 +153,10 @@ impl Shared {
             match status.run {
                 Some(_) if block.stopped => status.state = BenchState::Securing,
                 Some(_) => {}
-                None => status.rest(),
+                None => status.set_idle(),
             }
         });
-        super::keeper::keep_block(self.clone(), block);
+        keep_block(self.clone(), block);
     }
 
     /// Releases the block that began at `since`, no later block. Returns whether the bench is free.
@@ -161,7 +164,7 @@ impl Shared {
         let is_free = self.change(|status| {
             status.blocked.take_if(|blocked| blocked.since == since);
             if status.run.is_none() {
-                status.rest();
+                status.set_idle();
             }
             status.blocked.is_none()
         });
@@ -184,15 +187,26 @@ impl Shared {
     }
 
     /// Removes a run when its worker has finished and its end is stored.
-    pub fn settle(&self, run: RunId, change: impl FnOnce(&mut Underway)) {
+    pub fn settle(&self, run: RunId, change: impl FnOnce(&mut ActiveRun)) {
         self.change(|status| {
-            let Some(underway) = status.runs.get_mut(&run) else { return };
-            change(underway);
-            if underway.ended && underway.stored {
+            let Some(active) = status.runs.get_mut(&run) else { return };
+            change(active);
+            if active.ended && active.stored {
                 status.runs.remove(&run);
             }
         });
     }
+}
+
+/// Stores a block as soon as possible, before other waiting data.
+fn keep_block(shared: Arc<Shared>, block: SafetyRecord) {
+    shared.runtime.clone().spawn(async move {
+        while let Err(fault) = shared.store.keep_block(shared.name(), &block).await {
+            tracing::error!(bench = shared.name(), %fault, "the block of the bench is not yet stored");
+            sleep(RETRY_INTERVAL).await;
+        }
+        shared.block_is_stored(&block.at);
+    });
 }
 
 pub(super) fn blocked(block: &SafetyRecord, stored: bool) -> Blocked {

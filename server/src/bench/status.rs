@@ -1,6 +1,6 @@
 //! State of a bench as known to the server.
 
-use super::health::Incoming;
+use super::health::ChannelInput;
 use crate::store::RunCommit;
 use crate::view::{BenchState, Blocked, Instrument, InstrumentFault, Progress};
 use jiff::Timestamp;
@@ -13,14 +13,14 @@ use std::collections::BTreeMap;
 pub(super) const FAULTS: usize = 5;
 
 /// A fault during a run.
-pub(super) struct Met {
+pub(super) struct RunFault {
     pub at: Timestamp,
     pub fault: Fault,
     pub recovered: bool,
 }
 
 /// A fault that is not yet recorded.
-pub(super) struct New {
+pub(super) struct NewFault {
     pub instrument: String,
     pub fault: InstrumentFault,
 }
@@ -34,19 +34,19 @@ pub struct Status {
     pub blocked: Option<Blocked>,
     /// The newest row of the run, for comparison with the limits.
     pub readings: Vec<(Limited, f64)>,
-    pub channels: Vec<Incoming>,
+    pub channels: Vec<ChannelInput>,
     /// Whether the worker has tried to open and secure the bench since its start.
     pub settled: bool,
     /// Whether all instruments answered when they were opened.
     pub open: bool,
     /// Runs that are active or whose end is not stored.
-    pub runs: BTreeMap<RunId, Underway>,
+    pub runs: BTreeMap<RunId, ActiveRun>,
     pub unstored: Unstored,
 }
 
 /// State of a run as reported by its worker. It may be newer than the state in the store.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Underway {
+pub struct ActiveRun {
     pub state: RunState,
     pub safe: Option<Safe>,
     pub reason: Option<String>,
@@ -56,13 +56,13 @@ pub struct Underway {
     pub stored: bool,
 }
 
-impl Underway {
+impl ActiveRun {
     pub(super) fn queued() -> Self {
         Self { state: RunState::Queued, safe: None, reason: None, ended: false, stored: false }
     }
 
     /// Updates the state from a commit.
-    pub(super) fn take_in(&mut self, commit: &RunCommit) {
+    pub(super) fn apply(&mut self, commit: &RunCommit) {
         self.state = commit.state;
         for event in &commit.events {
             match &event.kind {
@@ -102,7 +102,7 @@ impl Status {
     }
 
     /// Sets the state of an idle bench from its block and its instruments.
-    pub(super) fn rest(&mut self) {
+    pub(super) fn set_idle(&mut self) {
         self.state = match &self.blocked {
             Some(blocked) if blocked.stopped => BenchState::Stopped,
             Some(_) => BenchState::Fault,
@@ -116,7 +116,7 @@ impl Status {
     }
 
     /// State of a run whose end is not stored because of a storage fault, and that fault.
-    pub fn not_stored(&self, run: RunId) -> Option<(&Underway, &str)> {
+    pub fn not_stored(&self, run: RunId) -> Option<(&ActiveRun, &str)> {
         Some((self.runs.get(&run)?, self.unstored.fault.as_deref()?))
     }
 
@@ -125,7 +125,7 @@ impl Status {
     }
 
     /// Records a fault during a run. An instrument that did not recover is not ready until the next attempt.
-    pub(super) fn met(&mut self, Met { at, fault, recovered }: &Met) -> Option<New> {
+    pub(super) fn record_fault(&mut self, RunFault { at, fault, recovered }: &RunFault) -> Option<NewFault> {
         let instrument = self.instruments.iter_mut().find(|one| one.name == fault.instrument)?;
         if !recovered {
             instrument.ready = false;
@@ -136,7 +136,7 @@ impl Status {
     }
 
     /// Replaces the instruments by their new state. Keeps earlier faults and returns the new ones.
-    pub(super) fn found(&mut self, mut instruments: Vec<Instrument>) -> Vec<New> {
+    pub(super) fn found(&mut self, mut instruments: Vec<Instrument>) -> Vec<NewFault> {
         let mut new = Vec::new();
         for instrument in &mut instruments {
             let before = self.instruments.iter().find(|before| before.role == instrument.role);
@@ -161,11 +161,11 @@ impl Status {
     }
 }
 
-fn enter(instrument: &mut Instrument, at: Timestamp, text: String) -> New {
+fn enter(instrument: &mut Instrument, at: Timestamp, text: String) -> NewFault {
     let fault = InstrumentFault { at: format!("{at:.3}"), text };
     instrument.faults.insert(0, fault.clone());
     instrument.faults.truncate(FAULTS);
-    New { instrument: instrument.name.clone(), fault }
+    NewFault { instrument: instrument.name.clone(), fault }
 }
 
 /// Values of the last row for comparison with the limits.

@@ -1,19 +1,20 @@
 //! Server thread that starts a worker, processes its reports, and restarts it after a crash.
 
+use super::display::Display;
 use super::instruments::unreached;
-use super::keeper::{Item, NEVER_BEGAN};
+use super::item::Item;
+use super::keeper::NEVER_BEGAN;
 use super::shared::{Shared, lock};
-use super::status::{FAULTS, Met, New, Underway};
+use super::status::{ActiveRun, FAULTS, NewFault, RunFault};
 use super::wire::{self, Entry, Order, Report, Setup};
-use crate::lab::state_view;
 use crate::store::SafetyRecord;
-use crate::view::{self, BenchState, InstrumentFault, LiveMessage};
+use crate::view::{self, BenchState, InstrumentFault, LiveMessage, state_view};
 use jiff::Timestamp;
 use jointbench_procedure::{EventKind, RunEnd, RunId, RunState, Safe};
 use std::io::{self, BufReader};
 use std::process::{Child, ChildStdout, Stdio};
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 
@@ -25,23 +26,24 @@ const DRAINED: Duration = Duration::from_secs(5);
 const GONE: Duration = Duration::from_secs(20);
 const SOONEST: Duration = Duration::from_millis(200);
 const LATEST: Duration = Duration::from_secs(10);
-const LOOK_EVERY: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// A worker with this lifetime did not fail at its start.
 const LIVED: Duration = Duration::from_secs(60);
 
 pub(super) struct Supervisor {
     shared: Arc<Shared>,
+    display: Arc<Mutex<Option<Display>>>,
     /// Runs without a worker whose safe state is unknown.
     orphans: Vec<(RunId, &'static str)>,
 }
 
 impl Supervisor {
     /// `interrupted`: the runs that an earlier daemon left open on this bench.
-    pub fn new(shared: Arc<Shared>, interrupted: Vec<RunId>) -> Self {
+    pub fn new(shared: Arc<Shared>, display: Arc<Mutex<Option<Display>>>, interrupted: Vec<RunId>) -> Self {
         shared.status.send_modify(|status| {
-            status.runs = interrupted.iter().map(|run| (*run, Underway::queued())).collect();
+            status.runs = interrupted.iter().map(|run| (*run, ActiveRun::queued())).collect();
         });
-        Self { shared, orphans: interrupted.into_iter().map(|run| (run, DAEMON_ENDED)).collect() }
+        Self { shared, display, orphans: interrupted.into_iter().map(|run| (run, DAEMON_ENDED)).collect() }
     }
 
     /// Returns when the daemon ends.
@@ -51,7 +53,7 @@ impl Supervisor {
             let started = Instant::now();
             match self.start() {
                 Ok((mut child, reports)) => {
-                    let finished = self.attend(reports);
+                    let finished = self.read_reports(reports);
                     if finished {
                         self.drain();
                     }
@@ -59,21 +61,21 @@ impl Supervisor {
                     let how = wait(&mut child);
                     self.worker_is_gone(finished, &how);
                 }
-                Err(fault) => self.tell_unreached(format!("the bench worker cannot be started: {fault}")),
+                Err(fault) => self.report_unreachable(format!("the bench worker cannot be started: {fault}")),
             }
             pause = if started.elapsed() > LIVED { SOONEST } else { (2 * pause).min(LATEST) };
-            if !self.rest(pause) {
+            if !self.wait(pause) {
                 return;
             }
         }
     }
 
     /// Waits before a restart. Returns `false` if the daemon ends.
-    fn rest(&self, pause: Duration) -> bool {
+    fn wait(&self, pause: Duration) -> bool {
         let over = Instant::now() + pause;
         let is_ending = || self.shared.ending.load(Ordering::Acquire);
         while !is_ending() && Instant::now() < over {
-            std::thread::sleep(LOOK_EVERY.min(pause));
+            std::thread::sleep(POLL_INTERVAL.min(pause));
         }
         !is_ending()
     }
@@ -104,12 +106,12 @@ impl Supervisor {
     }
 
     /// Processes all reports. Returns whether the worker ended in order.
-    fn attend(&mut self, reports: ChildStdout) -> bool {
+    fn read_reports(&mut self, reports: ChildStdout) -> bool {
         let mut reports = BufReader::new(reports);
         loop {
             match wire::receive(&mut reports) {
                 Ok(Some(Report::Finished)) => return true,
-                Ok(Some(report)) => self.take_in(report),
+                Ok(Some(report)) => self.handle(report),
                 Ok(None) => return false,
                 Err(fault) => {
                     tracing::error!(bench = self.shared.name(), %fault, "a report of the worker cannot be read");
@@ -119,7 +121,7 @@ impl Supervisor {
         }
     }
 
-    fn take_in(&mut self, report: Report) {
+    fn handle(&mut self, report: Report) {
         let shared = &self.shared;
         match report {
             Report::Opened { instruments, channels, open } => self.opened(instruments, channels, open),
@@ -128,13 +130,13 @@ impl Supervisor {
             Report::Memory { ticket, read } => shared.done(ticket, Some(read)),
             Report::Entry(entry) => self.entry(entry),
             Report::Live { run, rows, progress, .. } => {
-                if let Some(display) = lock(&shared.display).as_mut() {
+                if let Some(display) = lock(&self.display).as_mut() {
                     display.show(shared, run, rows, &progress);
                 }
             }
             Report::Ended { run, end } => self.ended(run, &end),
             Report::NotBegun { run } => {
-                self.keep(Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN });
+                self.enqueue(Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN });
             }
             Report::DiskFull(full) => {
                 shared.disk_is_full.store(full, Ordering::Release);
@@ -144,7 +146,7 @@ impl Supervisor {
         }
     }
 
-    fn opened(&self, mut instruments: Vec<view::Instrument>, channels: Vec<super::health::Incoming>, open: bool) {
+    fn opened(&self, mut instruments: Vec<view::Instrument>, channels: Vec<super::health::ChannelInput>, open: bool) {
         for instrument in &mut instruments {
             instrument.faults = self.known_faults(&instrument.name);
         }
@@ -167,12 +169,12 @@ impl Supervisor {
         }
         for (run, reason) in std::mem::take(&mut self.orphans) {
             tracing::warn!(run.id = run, bench = self.shared.name(), %safe, "run was interrupted, the bench is now in its safe state");
-            self.keep(Item::Interrupted { run, safe, reason });
+            self.enqueue(Item::Interrupted { run, safe, reason });
         }
         self.shared.change(|status| {
             status.settled = true;
             if status.run.is_none() {
-                status.rest();
+                status.set_idle();
             }
         });
     }
@@ -180,23 +182,23 @@ impl Supervisor {
     fn entry(&self, entry: Arc<Entry>) {
         let shared = &self.shared;
         let commit = &entry.commit;
-        let new: Vec<New> = shared.change(|status| {
-            let underway = status.runs.entry(commit.run).or_insert_with(Underway::queued);
-            let before = underway.state;
-            underway.take_in(commit);
+        let new: Vec<NewFault> = shared.change(|status| {
+            let active = status.runs.entry(commit.run).or_insert_with(ActiveRun::queued);
+            let before = active.state;
+            active.apply(commit);
             status.unstored.rows += commit.rows.len();
             status.unstored.since.get_or_insert_with(Timestamp::now);
             if before != commit.state && !commit.state.is_final() {
                 status.run = Some(commit.run);
                 status.state = bench_state(commit.state);
             }
-            let met = commit.events.iter().filter_map(|event| met(&event.kind));
-            met.filter_map(|met| status.met(&met)).collect()
+            let faults = commit.events.iter().filter_map(|event| run_fault(&event.kind));
+            faults.filter_map(|fault| status.record_fault(&fault)).collect()
         });
         self.keep_faults(new);
         if !commit.state.is_final() && commit.events.iter().any(|event| matches!(event.kind, EventKind::State { .. })) {
             // The keeper publishes the end with its reason when it is stored.
-            shared.hub.tell(LiveMessage::State {
+            shared.hub.publish(LiveMessage::State {
                 bench: shared.name().to_owned(),
                 run: commit.run,
                 state: state_view(commit.state),
@@ -204,16 +206,16 @@ impl Supervisor {
                 reason: None,
             });
         }
-        self.keep(Item::Entry(entry));
+        self.enqueue(Item::Entry(entry));
     }
 
     fn ended(&self, run: RunId, end: &RunEnd) {
         if end.safe == Safe::UnsafeUnknown {
             self.block_as_unsafe(end.reason.as_deref().unwrap_or_default(), Some(run));
         }
-        lock(&self.shared.display).take();
-        self.shared.change(|status| status.rest());
-        self.shared.settle(run, |underway| underway.ended = true);
+        lock(&self.display).take();
+        self.shared.change(|status| status.set_idle());
+        self.shared.settle(run, |active| active.ended = true);
     }
 
     fn block_as_unsafe(&self, reason: &str, run: Option<RunId>) {
@@ -230,11 +232,11 @@ impl Supervisor {
         known.unwrap_or_default().into_iter().map(|(at, text)| InstrumentFault { at, text }).collect()
     }
 
-    fn keep_faults(&self, new: Vec<New>) {
-        new.into_iter().for_each(|new| self.keep(Item::Fault(new)));
+    fn keep_faults(&self, new: Vec<NewFault>) {
+        new.into_iter().for_each(|new| self.enqueue(Item::Fault(new)));
     }
 
-    fn keep(&self, item: Item) {
+    fn enqueue(&self, item: Item) {
         if self.shared.to_keep.send(item).is_err() {
             tracing::error!(bench = self.shared.name(), "the storage thread has ended");
         }
@@ -243,7 +245,7 @@ impl Supervisor {
     /// Waits until the store has the data of the worker. On a timeout the worker writes the rest to the data folder.
     fn drain(&self) {
         let (done, stored) = oneshot::channel();
-        self.keep(Item::Flush(done));
+        self.enqueue(Item::Flush(done));
         let stored = self.shared.runtime.block_on(async { tokio::time::timeout(DRAINED, stored).await });
         if stored.is_err() {
             tracing::warn!(
@@ -275,15 +277,15 @@ impl Supervisor {
                 self.orphans.push((run, WORKER_ENDED));
             }
         }
-        self.tell_unreached(format!("the bench worker terminated ({how}); it is restarted and secures the bench"));
+        self.report_unreachable(format!("the bench worker terminated ({how}); it is restarted and secures the bench"));
     }
 
-    fn tell_unreached(&self, why: String) {
+    fn report_unreachable(&self, why: String) {
         let instruments = vec![unreached(&self.shared.description, why)];
         let new = self.shared.change(|status| {
             status.open = false;
             let new = status.found(instruments);
-            status.rest();
+            status.set_idle();
             new
         });
         self.keep_faults(new);
@@ -298,10 +300,10 @@ fn bench_state(run: RunState) -> BenchState {
     }
 }
 
-fn met(event: &EventKind) -> Option<Met> {
+fn run_fault(event: &EventKind) -> Option<RunFault> {
     match event {
         EventKind::Fault { fault, recovered } => {
-            Some(Met { at: Timestamp::now(), fault: fault.clone(), recovered: *recovered })
+            Some(RunFault { at: Timestamp::now(), fault: fault.clone(), recovered: *recovered })
         }
         _ => None,
     }

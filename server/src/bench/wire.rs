@@ -1,7 +1,7 @@
 //! Messages between server and bench worker, over standard input and output of the worker. A message is MessagePack,
 //! preceded by its length.
 
-use super::health::Incoming;
+use super::health::ChannelInput;
 use crate::config::BenchDescription;
 use crate::store::{RunCommit, SafetyRecord};
 use crate::view::Instrument;
@@ -76,7 +76,7 @@ pub enum Report {
     /// The instruments after they were opened or reconnected.
     Opened {
         instruments: Vec<Instrument>,
-        channels: Vec<Incoming>,
+        channels: Vec<ChannelInput>,
         open: bool,
     },
     /// Result of securing the bench without a run.
@@ -186,10 +186,11 @@ mod tests {
             let plans =
                 catalogue().iter().filter_map(|one: &&dyn Procedure| one.plan(&Default::default(), &facts).ok());
             for plan in plans {
-                let Order::Run { plan: told, .. } = over(&Order::Run { run: 1, plan: Box::new(plan.clone()) }) else {
+                let Order::Run { plan: received, .. } = over(&Order::Run { run: 1, plan: Box::new(plan.clone()) })
+                else {
                     panic!("another order")
                 };
-                assert_eq!(*told, plan, "{}", plan.procedure);
+                assert_eq!(*received, plan, "{}", plan.procedure);
             }
         }
     }
@@ -202,16 +203,16 @@ mod tests {
         let events = vec![Event { at_s: 0.25, kind: control }];
         let commit = RunCommit { run: 7, number: 2, state: RunState::Running, events, rows };
         let entry = Entry { number: 3, commit };
-        let told = over(&entry);
-        let [was, told] = [entry.commit, told.commit];
-        assert_eq!((&told.events, told.rows.channels()), (&was.events, was.rows.channels()));
+        let received = over(&entry);
+        let [was, received] = [entry.commit, received.commit];
+        assert_eq!((&received.events, received.rows.channels()), (&was.events, was.rows.channels()));
         let [was, is] =
-            [&was, &told].map(|commit| commit.rows.columns()[0].iter().map(|v| v.to_bits()).collect::<Vec<_>>());
+            [&was, &received].map(|commit| commit.rows.columns()[0].iter().map(|v| v.to_bits()).collect::<Vec<_>>());
         assert_eq!(was, is);
     }
 
     #[test]
-    fn a_message_that_is_cut_off_is_told() {
+    fn a_truncated_message_is_an_error() {
         let mut bytes = Vec::new();
         send(&mut bytes, &Order::Quit).unwrap();
         bytes.pop();

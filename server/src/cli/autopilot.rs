@@ -4,8 +4,9 @@ use super::arguments::Autopilot as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::offline::decided;
+use super::outcome::is_over;
 use super::progress::RunProgress;
-use super::run::{LOOK_EVERY, choose_bench, is_over, parameters};
+use super::run::{POLL_INTERVAL, choose_bench, parameters};
 use crate::view::{Autopilot, AutopilotState, AutopilotStep, Diagnosis, Model, NewAutopilot, NewExperiment, Run};
 
 pub fn autopilot(arguments: &Arguments) -> Done {
@@ -43,20 +44,20 @@ pub fn autopilot(arguments: &Arguments) -> Done {
 }
 
 /// Waits for the end and prints each step when it is complete.
-fn wait(client: &Client, id: i64, tells: bool) -> Result<Autopilot, Exit> {
-    let mut told = 0;
+fn wait(client: &Client, id: i64, prints: bool) -> Result<Autopilot, Exit> {
+    let mut printed = 0;
     let mut shown: Option<RunProgress> = None;
     loop {
         let autopilot: Autopilot = client.get(&format!("/autopilots/{id}"))?;
-        for step in autopilot.steps.iter().skip(told) {
+        for step in autopilot.steps.iter().skip(printed) {
             if let Some(shown) = shown.take() {
                 shown.end();
             }
-            if tells {
+            if prints {
                 println!("{}", line(step));
             }
         }
-        told = autopilot.steps.len();
+        printed = autopilot.steps.len();
         if autopilot.state.is_over() {
             return Ok(autopilot);
         }
@@ -66,7 +67,7 @@ fn wait(client: &Client, id: i64, tells: bool) -> Result<Autopilot, Exit> {
                 shown.get_or_insert_with(RunProgress::begin).show(&progress);
             }
         }
-        std::thread::sleep(LOOK_EVERY);
+        std::thread::sleep(POLL_INTERVAL);
     }
 }
 
@@ -92,7 +93,7 @@ fn conclude(client: &Client, autopilot: &Autopilot) -> Done {
 
 /// Has the exit code of its last diagnosis, like `discover`: a verdict without an effect is a result, too.
 fn ending(client: &Client, autopilot: &Autopilot) -> Done {
-    let said = || autopilot.reason.clone().unwrap_or_default();
+    let reason = || autopilot.reason.clone().unwrap_or_default();
     match autopilot.state {
         AutopilotState::Running => Ok(()),
         AutopilotState::Finished => match autopilot.steps.iter().rev().find_map(|step| step.diagnosis) {
@@ -100,6 +101,6 @@ fn ending(client: &Client, autopilot: &Autopilot) -> Done {
             Some(id) => decided(client.get::<Diagnosis>(&format!("/diagnoses/{id}"))?.finding.undecided.as_ref()),
         },
         AutopilotState::BudgetSpent => Err(Exit::undecided("the budget is used up before the model was decided")),
-        AutopilotState::Stopped | AutopilotState::Failed | AutopilotState::Interrupted => Err(Exit::failed(said())),
+        AutopilotState::Stopped | AutopilotState::Failed | AutopilotState::Interrupted => Err(Exit::failed(reason())),
     }
 }

@@ -3,7 +3,7 @@
 use super::arguments::Check;
 use super::exit::{Done, Exit};
 use super::serve::describe;
-use crate::bench::{Look, look, reach};
+use crate::bench::{InstrumentCheck, check_instruments, reach};
 use crate::config::{BenchDescription, READY_MADE, unread};
 use jiff::Zoned;
 use jointbench_instrument::roles::Identity;
@@ -42,19 +42,19 @@ fn check_bench(description: &BenchDescription) -> usize {
             return 1;
         }
     };
-    let looks = look(&mut reached.slots);
+    let checks = check_instruments(&mut reached.slots);
     let mut not_ready = 0;
     for asked in &reached.slots.asked {
         let (role, port) = (asked.role, &asked.port);
-        let seen = looks.iter().find(|look| look.role == role);
-        let (mark, said) = match (&asked.identity, seen.map(|look| &look.state)) {
+        let seen = checks.iter().find(|check| check.role == role);
+        let (mark, text) = match (&asked.identity, seen.map(|check| &check.state)) {
             (Err(fault), _) => ("FAIL", fault.to_string()),
             (Ok(who), Some(Err(why))) => ("FAIL", format!("{} {}, {why}", who.maker, who.model)),
             (Ok(who), _) => ("ok  ", named(who)),
         };
         not_ready += usize::from(mark == "FAIL");
-        println!("  {mark}  {role:<18} {port:<16} {said}");
-        let Some(Look { state, timing, .. }) = seen else { continue };
+        println!("  {mark}  {role:<18} {port:<16} {text}");
+        let Some(InstrumentCheck { state, timing, .. }) = seen else { continue };
         if let Ok(state) = state {
             println!("        {:<18} {state}", "");
         }
@@ -72,10 +72,10 @@ fn check_bench(description: &BenchDescription) -> usize {
 }
 
 fn named(who: &Identity) -> String {
-    let told = [("serial", &who.serial), ("firmware", &who.firmware)];
-    let told = told.into_iter().filter(|(_, value)| !value.is_empty());
-    let told: String = told.map(|(name, value)| format!(", {name} {value}")).collect();
-    format!("{} {}{told}", who.maker, who.model)
+    let details = [("serial", &who.serial), ("firmware", &who.firmware)];
+    let details = details.into_iter().filter(|(_, value)| !value.is_empty());
+    let details: String = details.map(|(name, value)| format!(", {name} {value}")).collect();
+    format!("{} {}{details}", who.maker, who.model)
 }
 
 fn calibrations(description: &BenchDescription) {

@@ -86,7 +86,7 @@ impl Client {
             return Ok(bytes);
         }
         Err(match serde_json::from_slice::<Problem>(&bytes) {
-            Ok(problem) => Exit { code: problem.exit_code(), said: problem.detail },
+            Ok(problem) => Exit { code: problem.exit_code(), message: problem.detail },
             Err(_) => Exit::failed(format!(
                 "{} answered {status}: check that a jointbench daemon runs at this address",
                 self.base

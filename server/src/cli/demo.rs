@@ -4,22 +4,22 @@ mod hidden;
 
 use super::arguments::Demo;
 use super::exit::{Done, Exit};
+use super::outcome::ending;
 use super::print;
 use super::progress::RunProgress;
-use super::run::ending;
 use super::serve::{runtime, settings};
 use crate::config::BenchDescription;
-use crate::daemon::{Daemon, asked_to_end};
-use crate::lab::{LOCAL, Lab, reread};
-use crate::view::{Model, Run, RunState, Suggestion};
+use crate::daemon::{Daemon, shutdown_signal};
+use crate::lab::{LOCAL, Lab};
+use crate::view::{Model, Run, RunState, Suggestion, reread};
 use hidden::{Hidden, Setup};
 use jointbench_devices::MockSettings;
 use serde_json::Map;
 use std::time::Instant;
 
-/// More than this never is missing in the demo; a surprise shall still come to an end.
+/// Limit of added effects: the demo never hides more.
 const MOST_EFFECTS: usize = 5;
-/// An effect is added where the error on data outside the fit falls below this share of what it was.
+/// An effect is added if the validation error falls below this share of its previous value.
 const WORTH_ADDING: f64 = 0.98;
 
 pub fn demo(arguments: Demo) -> Done {
@@ -37,13 +37,13 @@ pub fn demo(arguments: Demo) -> Done {
                         println!();
                         println!("dashboard: {address}/  (model workbench of this run: {address}/workbench/{run})");
                         println!("Press Ctrl-C to exit.");
-                        asked_to_end().await;
+                        shutdown_signal().await;
                     }
                     Ok(())
                 }
                 Err(error) => Err(error),
             },
-            () = asked_to_end() => {
+            () = shutdown_signal() => {
                 eprintln!("Stop requested: moving the bench to its safe state");
                 Err(Exit::failed("stopped before the demo was complete; the bench is in its safe state"))
             }

@@ -1,6 +1,7 @@
 //! Exit code and message of a failed command.
 
 use crate::lab::LabError;
+use crate::view::ConversionError;
 use jointbench_files::{FileError, OptionFault};
 use jointbench_model::{FormulaFault, ModelError, words};
 use std::path::Path;
@@ -10,7 +11,7 @@ use std::process::ExitCode;
 pub struct Exit {
     pub code: u8,
     /// Message for a person; empty if it is already printed.
-    pub said: String,
+    pub message: String,
 }
 
 pub type Done = Result<(), Exit>;
@@ -20,33 +21,39 @@ impl Exit {
     pub fn of(files: &[impl AsRef<Path>], fault: ModelError) -> Self {
         let exit = Exit::from(fault);
         let names: Vec<String> = files.iter().map(|file| file.as_ref().display().to_string()).collect();
-        Exit { said: format!("{}: {}", words::list(&names), exit.said), ..exit }
+        Exit { message: format!("{}: {}", words::list(&names), exit.message), ..exit }
     }
 
     /// Prints the message on standard error.
-    pub fn tell(&self) -> ExitCode {
-        if !self.said.is_empty() {
-            eprintln!("jointbench: {}", self.said);
+    pub fn print(&self) -> ExitCode {
+        if !self.message.is_empty() {
+            eprintln!("jointbench: {}", self.message);
         }
         ExitCode::from(self.code)
     }
 
-    pub fn failed(said: impl Into<String>) -> Self {
-        Self { code: 1, said: said.into() }
+    pub fn failed(message: impl Into<String>) -> Self {
+        Self { code: 1, message: message.into() }
     }
 
-    pub fn bad_input(said: impl Into<String>) -> Self {
-        Self { code: 2, said: said.into() }
+    pub fn bad_input(message: impl Into<String>) -> Self {
+        Self { code: 2, message: message.into() }
     }
 
-    pub fn undecided(said: impl Into<String>) -> Self {
-        Self { code: 3, said: said.into() }
+    pub fn undecided(message: impl Into<String>) -> Self {
+        Self { code: 3, message: message.into() }
     }
 }
 
 impl From<LabError> for Exit {
     fn from(error: LabError) -> Self {
-        Self { code: error.exit_code(), said: error.to_string() }
+        Self { code: error.exit_code(), message: error.to_string() }
+    }
+}
+
+impl From<ConversionError> for Exit {
+    fn from(error: ConversionError) -> Self {
+        LabError::from(error).into()
     }
 }
 
@@ -73,13 +80,13 @@ impl From<ModelError> for Exit {
     /// Errors in arguments or metadata are bad input; data without a clear result is undecided.
     fn from(error: ModelError) -> Self {
         use ModelError as E;
-        let said = error.to_string();
+        let message = error.to_string();
         match error {
             E::Formula(fault) => Exit::from(*fault),
             E::TooFewSamples { .. } | E::NotVisible { .. } | E::Collinear { .. } | E::Constant { .. } => {
-                Exit::undecided(said)
+                Exit::undecided(message)
             }
-            _ => Exit::bad_input(said),
+            _ => Exit::bad_input(message),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::arguments::{Identify, Report};
 use super::exit::{Done, Exit};
 use super::files::write;
 use super::serve::runtime;
-use super::transfer::{Way, open};
+use super::transfer::{Target, open};
 use crate::report::with_interval;
 use crate::view::{Identification, Identified, Shown, command, word};
 use std::path::PathBuf;
@@ -13,8 +13,8 @@ pub fn identify(arguments: &Identify) -> Done {
     let runtime = runtime()?;
     let run = arguments.run;
     let found = match open(&runtime, &arguments.store, false)? {
-        Way::Folder(lab) => runtime.block_on(lab.identification(run))?,
-        Way::Daemon(client) => client.get(&format!("/runs/{run}/identification"))?,
+        Target::Folder(lab) => runtime.block_on(lab.identification(run))?,
+        Target::Daemon(client) => client.get(&format!("/runs/{run}/identification"))?,
     };
     if arguments.json {
         let text = serde_json::to_string_pretty(&found).map_err(|fault| Exit::failed(fault.to_string()))?;
@@ -38,8 +38,8 @@ pub fn report(arguments: &Report) -> Done {
     let runtime = runtime()?;
     let run = arguments.run;
     let page = match open(&runtime, &arguments.store, false)? {
-        Way::Folder(lab) => runtime.block_on(lab.report(run, None))?.into_bytes(),
-        Way::Daemon(client) => client.get_bytes(&format!("/runs/{run}/report"))?,
+        Target::Folder(lab) => runtime.block_on(lab.report(run, None))?.into_bytes(),
+        Target::Daemon(client) => client.get_bytes(&format!("/runs/{run}/report"))?,
     };
     let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("run-{run}.html")));
     write(&path, &page)?;

@@ -3,8 +3,8 @@
 use super::arguments::Run as Arguments;
 use super::exit::Exit;
 use super::identify;
-use super::require::{Kept, Requirement};
-use super::run::{Found, ending, title};
+use super::outcome::{Found, ending, title};
+use super::require::{Requirement, RequirementResult};
 use crate::view::Run;
 
 /// The run's test case is a failure if it did not complete or has no result, and an error if there is no run. The other
@@ -13,7 +13,7 @@ pub fn junit(
     arguments: &Arguments,
     ended: &Result<Run, Exit>,
     found: Option<&Found>,
-    demands: &[(&Requirement, Kept)],
+    demands: &[(&Requirement, RequirementResult)],
 ) -> String {
     let procedure = title(arguments);
     let (suite, case, time_s) = match ended {
@@ -23,7 +23,7 @@ pub fn junit(
         Err(_) => ("jointbench".to_owned(), procedure, 0.0),
     };
     let outcome = match (ended, found) {
-        (Err(exit), _) | (_, Some(Err(exit))) => Some(("error", exit.said.clone())),
+        (Err(exit), _) | (_, Some(Err(exit))) => Some(("error", exit.message.clone())),
         (_, Some(Ok(found))) if identify::ending(found).is_ok() => None,
         (_, Some(Ok(found))) => Some(("failure", identify::verdict(found))),
         (Ok(run), None) => Some(("failure", ending(run))),
@@ -32,9 +32,9 @@ pub fn junit(
     let mut cases = vec![(case, time_s, outcome)];
     cases.extend(demands.iter().map(|(demand, kept)| {
         let outcome = match kept {
-            Kept::Yes(_) => None,
-            Kept::No(said) | Kept::Unsure(said) => Some(("failure", said.clone())),
-            Kept::Unknown(said) => Some(("error", said.clone())),
+            RequirementResult::Yes(_) => None,
+            RequirementResult::No(message) | RequirementResult::Unsure(message) => Some(("failure", message.clone())),
+            RequirementResult::Unknown(message) => Some(("error", message.clone())),
         };
         (demand.text().to_owned(), 0.0, outcome)
     }));
@@ -55,7 +55,7 @@ pub fn junit(
     );
     for (name, time_s, outcome) in &cases {
         let body = match outcome {
-            Some((kind, said)) => format!("\n      <{kind} message=\"{}\"/>\n    ", escape(said)),
+            Some((kind, message)) => format!("\n      <{kind} message=\"{}\"/>\n    ", escape(message)),
             None => String::new(),
         };
         report += &format!(
@@ -100,7 +100,7 @@ pub(super) mod tests {
     #[test]
     fn a_broken_limit_is_a_failure_of_its_own() {
         let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
-        let demands = [(&demand, Kept::No("said".to_owned()))];
+        let demands = [(&demand, RequirementResult::No("message".to_owned()))];
         let report = junit(&asked(&["friction"]), &Err(Exit::bad_input("no run")), None, &demands);
         assert!(report.contains("tests=\"2\" failures=\"1\" errors=\"1\" skipped=\"0\""), "{report}");
         assert!(report.contains("name=\"tau_c &lt; 0.03 Nm\""), "{report}");

@@ -48,9 +48,9 @@ mod tests {
             unit: text("ticks"),
             meaning: text("Clock ticks between set-points"),
         };
-        let told: Vec<String> = line(&variable).split("  ").filter(|part| !part.is_empty()).map(text).collect();
-        let told: Vec<&str> = told.iter().map(|part| part.trim()).collect();
-        assert_eq!(told, ["0x06", "ninter", "20", "32 ticks", "Clock ticks between set-points"]);
+        let columns: Vec<String> = line(&variable).split("  ").filter(|part| !part.is_empty()).map(text).collect();
+        let columns: Vec<&str> = columns.iter().map(|part| part.trim()).collect();
+        assert_eq!(columns, ["0x06", "ninter", "20", "32 ticks", "Clock ticks between set-points"]);
         let buffer = MemoryVariable { bytes: vec![0; 32], ..variable };
         assert!(line(&buffer).contains("00 00 …"), "{}", line(&buffer));
     }

@@ -5,18 +5,20 @@ mod autopilot;
 mod backup;
 mod check;
 mod client;
+mod control;
 mod convert;
 mod demo;
 mod exit;
 mod files;
 mod identify;
+mod job;
 mod junit;
 mod library;
 mod log;
 mod memory;
 mod model;
 mod offline;
-mod own;
+mod outcome;
 mod ports;
 mod print;
 mod progress;
@@ -26,8 +28,8 @@ mod run;
 mod runs;
 mod secrets;
 mod serve;
-mod steer;
 mod transfer;
+mod user_effects;
 mod verify;
 
 use crate::bench::worker;
@@ -41,8 +43,8 @@ pub use exit::Exit;
 /// input, 3 no decision possible.
 pub fn main() -> ExitCode {
     jointbench_model::one_heap();
-    if let Err(exit) = secrets::take_out_of_sight() {
-        return exit.tell();
+    if let Err(exit) = secrets::hide_tokens() {
+        return exit.print();
     }
     let arguments = Arguments::parse();
     // `jointbench fit … | head` ends without an error. Not for a process with a bench: the engine ends it.
@@ -52,7 +54,7 @@ pub fn main() -> ExitCode {
     let default_level = if matches!(arguments.command, Command::Serve(_) | Command::Worker) { "info" } else { "warn" };
     log::start(arguments.log, default_level);
     let done = match arguments.command {
-        Command::Job => return crate::job::main(),
+        Command::Job => return job::main(),
         Command::Demo(arguments) => demo::demo(arguments),
         Command::Serve(arguments) => serve::serve(arguments),
         Command::Worker => worker::serve().map_err(|fault| Exit::failed(fault.to_string())),
@@ -61,10 +63,10 @@ pub fn main() -> ExitCode {
         Command::Procedures(arguments) => library::procedures(arguments.id.as_deref()),
         Command::Effects(arguments) => library::effects(arguments.id.as_deref()),
         Command::Run(arguments) => run::run(&arguments),
-        Command::Stop(arguments) => steer::stop(&arguments),
-        Command::Pause(arguments) => steer::pause(&arguments),
-        Command::Resume(arguments) => steer::resume(&arguments),
-        Command::Reset(arguments) => steer::reset(&arguments),
+        Command::Stop(arguments) => control::stop(&arguments),
+        Command::Pause(arguments) => control::pause(&arguments),
+        Command::Resume(arguments) => control::resume(&arguments),
+        Command::Reset(arguments) => control::reset(&arguments),
         Command::ServoMemory(arguments) => memory::memory(&arguments),
         Command::Runs(arguments) => runs::runs(&arguments),
         Command::Autopilot(arguments) => autopilot::autopilot(&arguments),
@@ -84,6 +86,6 @@ pub fn main() -> ExitCode {
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(exit) => exit.tell(),
+        Err(exit) => exit.print(),
     }
 }

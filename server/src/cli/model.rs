@@ -6,10 +6,10 @@ use super::files::{self, write};
 use super::offline::{json_out, read};
 use super::print;
 use super::serve::runtime;
-use super::transfer::{self, Way};
-use crate::lab::{LOCAL, reread};
-use crate::view;
-use jointbench_model::export::{Format, ModelFile, export};
+use super::transfer::{self, Target};
+use crate::lab::LOCAL;
+use crate::view::{self, reread};
+use jointbench_model::export::{ModelFile, export};
 use jointbench_model::{Fit, words};
 use std::path::Path;
 
@@ -54,12 +54,12 @@ fn import(model: &Path, run: i64, json: bool, store: &StorePlace) -> Done {
     let fit = open(model)?;
     let file = reread(&ModelFile::new(fit.clone()))?;
     let import = view::ModelImport { run, model: file };
-    let refused = |exit: Exit| Exit { said: format!("{}: {}", model.display(), exit.said), ..exit };
+    let refused = |exit: Exit| Exit { message: format!("{}: {}", model.display(), exit.message), ..exit };
     let (imported, page) = match transfer::open(&runtime, store, false)? {
-        Way::Folder(lab) => {
+        Target::Folder(lab) => {
             (runtime.block_on(lab.import_model(import, LOCAL)).map_err(|fault| refused(fault.into()))?, None)
         }
-        Way::Daemon(client) => {
+        Target::Daemon(client) => {
             let imported: view::ImportedModel = client.post("/models/import", &import).map_err(refused)?;
             let page = client.page(&format!("/workbench/{run}?model={}", imported.model.id));
             (imported, Some(page))
@@ -80,10 +80,6 @@ fn import(model: &Path, run: i64, json: bool, store: &StorePlace) -> Done {
 }
 
 /// Writes a fit in the format of `fit --out`.
-pub fn save(fit: &Fit, path: &Path) -> Done {
-    write(path, export(fit, Format::Json)?.as_bytes())
-}
-
 fn open(path: &Path) -> Result<Fit, Exit> {
     let refuse = |fault: &dyn std::fmt::Display| Exit::bad_input(format!("{}: {fault}", path.display()));
     let bytes = files::read(path)?;

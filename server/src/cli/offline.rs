@@ -2,11 +2,13 @@
 
 use super::arguments::{Columns, Diagnose, Discover, Fit, Measured, Preparation};
 use super::exit::{Done, Exit};
-use super::files;
+use super::files::{self, write};
 use super::print;
-use crate::lab::{Offer, next_run, reread};
+use crate::lab::{Offer, next_run};
+use crate::view::reread;
 use jointbench_files::{ReadOptions, Understood, paragraph, understand};
 use jointbench_instrument::RunTable;
+use jointbench_model::export::{Format, export};
 use jointbench_model::{ModelSpec, Open, Options};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -39,7 +41,7 @@ pub fn discover(arguments: &Discover) -> Done {
     let open = Open { own: spec.own, ..Open::from(&discovery) };
     let next = next_run(&run, &open, &Offer::shown_by(&run), &options);
     discovery.experiment = next.experiment;
-    discovery.summary.extend(next.in_vain.map(|said| format!(" {said}")));
+    discovery.summary.extend(next.in_vain.map(|reason| format!(" {reason}")));
     if arguments.run.json {
         json_out(&discovery)?;
     } else {
@@ -64,7 +66,7 @@ pub fn fit(arguments: &Fit) -> Done {
     }
     let fit = jointbench_model::fit(&run, &spec, &options).map_err(|fault| Exit::of(&arguments.run.files, fault))?;
     if let Some(path) = &arguments.out {
-        super::model::save(&fit, path)?;
+        save(&fit, path)?;
     }
     let evaluation = match &arguments.evaluate {
         None => None,
@@ -76,8 +78,8 @@ pub fn fit(arguments: &Fit) -> Done {
     if arguments.run.json {
         let mut object: Value = reread(&fit)?;
         if let (Some((file, evaluation)), Some(object)) = (&evaluation, object.as_object_mut()) {
-            let told: Value = reread(evaluation)?;
-            object.insert("evaluation".to_owned(), json!({ "file": file.display().to_string(), "result": told }));
+            let result: Value = reread(evaluation)?;
+            object.insert("evaluation".to_owned(), json!({ "file": file.display().to_string(), "result": result }));
         }
         return json_out(&object);
     }
@@ -87,6 +89,10 @@ pub fn fit(arguments: &Fit) -> Done {
         print::evaluation(file, evaluation);
     }
     Ok(())
+}
+
+fn save(fit: &jointbench_model::Fit, path: &Path) -> Done {
+    write(path, export(fit, Format::Json)?.as_bytes())
 }
 
 fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {

@@ -28,8 +28,8 @@ pub fn ports(arguments: &Ports) -> Done {
 fn line(port: &FoundPort) -> String {
     let mark = if port.closed.is_some() { "closed" } else { "ok    " };
     let usb = port.usb.as_ref().map(|usb| {
-        let told = [usb.maker.as_deref(), usb.product.as_deref()].into_iter().flatten().collect::<Vec<_>>().join(" ");
-        format!("{:04X}:{:04X} {told}", usb.vendor_id, usb.product_id)
+        let names = [usb.maker.as_deref(), usb.product.as_deref()].into_iter().flatten().collect::<Vec<_>>().join(" ");
+        format!("{:04X}:{:04X} {names}", usb.vendor_id, usb.product_id)
     });
     let mut line = format!("{mark}  {:<16} {}", port.address.to_string(), usb.as_deref().unwrap_or("not a USB device"));
     if let Some(likely) = port.likely {
@@ -51,7 +51,7 @@ mod tests {
     use jointbench_devices::transport::UsbDevice;
 
     #[test]
-    fn a_port_that_may_not_be_opened_says_why_and_how_to_name_it() {
+    fn a_port_without_permission_shows_reason_and_name() {
         let usb = UsbDevice {
             vendor_id: 0x10C4,
             product_id: 0x8056,
@@ -66,7 +66,7 @@ mod tests {
             likely: Some("torque sensor (Lorenz)"),
             closed: Some("in use by screen (process 7); end it first".into()),
         };
-        let said = line(&port);
+        let text = line(&port);
         for part in [
             "closed  /dev/ttyUSB1",
             "10C4:8056 Lorenz",
@@ -74,7 +74,7 @@ mod tests {
             "port = \"usb://L7\"",
             "end it first",
         ] {
-            assert!(said.contains(part), "{part:?} in {said}");
+            assert!(text.contains(part), "{part:?} in {text}");
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Prints results for a person.
 
 mod advice;
+mod excluded;
 mod maps;
-mod others;
 
 use jointbench_model::{
     Comparison, Diagnosis, Discovery, Evaluation, Evidence, Fit, NoiseFloor, Parameter, ParameterPair, ParameterState,
@@ -121,11 +121,11 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     println!("{}", diagnosis.summary);
     regions(&diagnosis.regions, &diagnosis.fit.unit);
     if advice::is_any(diagnosis.undecided.as_ref(), diagnosis.verdict) {
-        advice::own_formula(&diagnosis.shows_over, &diagnosis.fit);
+        advice::user_formula(&diagnosis.shows_over, &diagnosis.fit);
         suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
         advice::next_run(diagnosis.experiment.as_ref());
     }
-    others::print(&diagnosis.silent, &diagnosis.not_visible, &diagnosis.left_out, &diagnosis.fit.unit);
+    excluded::print(&diagnosis.silent, &diagnosis.not_visible, &diagnosis.left_out, &diagnosis.fit.unit);
 }
 
 pub fn discovery(discovery: &Discovery) {
@@ -160,10 +160,10 @@ pub fn discovery(discovery: &Discovery) {
     }
     regions(&discovery.regions, &discovery.fit.unit);
     if advice::is_any(discovery.undecided.as_ref(), discovery.verdict) {
-        advice::own_formula(&discovery.shows_over, &discovery.fit);
+        advice::user_formula(&discovery.shows_over, &discovery.fit);
         advice::next_run(discovery.experiment.as_ref());
     }
-    others::print(&discovery.silent, &discovery.not_visible, &discovery.left_out, &discovery.fit.unit);
+    excluded::print(&discovery.silent, &discovery.not_visible, &discovery.left_out, &discovery.fit.unit);
 }
 
 pub fn parameters(parameters: &[Parameter]) {
@@ -319,20 +319,20 @@ pub fn fall(steps: &[(String, f64)], floor: Option<f64>, unit: &str) {
 
 fn prepared(fit: &Fit) -> String {
     let prepared = &fit.preparation;
-    let mut said = format!("{} samples at {} Hz", prepared.samples, (1e3 * prepared.sample_rate_hz).round() / 1e3);
+    let mut text = format!("{} samples at {} Hz", prepared.samples, (1e3 * prepared.sample_rate_hz).round() / 1e3);
     if let Some(cutoff_hz) = prepared.cutoff_hz {
-        said += &format!(", low-pass {cutoff_hz:.1} Hz");
+        text += &format!(", low-pass {cutoff_hz:.1} Hz");
     }
     if let Some(lag_s) = prepared.velocity_lag_s.filter(|lag_s| lag_s.abs() * prepared.sample_rate_hz > 0.01) {
-        said += &format!(", velocity delay of {:.1} ms corrected", 1e3 * lag_s);
+        text += &format!(", velocity delay of {:.1} ms corrected", 1e3 * lag_s);
     }
     if prepared.decimation > 1 {
-        said += &format!(", decimated by {}", prepared.decimation);
+        text += &format!(", decimated by {}", prepared.decimation);
     }
     if let Some(chunk_s) = prepared.chunk_s {
-        said += &format!(", steady-state means over {chunk_s:.3} s");
+        text += &format!(", steady-state means over {chunk_s:.3} s");
     }
-    said + &format!("; {} points in {} independent blocks", prepared.rows, prepared.blocks)
+    text + &format!("; {} points in {} independent blocks", prepared.rows, prepared.blocks)
 }
 
 fn of(residual: ResidualKind) -> &'static str {
@@ -373,7 +373,7 @@ mod tests {
     use super::{figure, with_interval};
 
     #[test]
-    fn the_ends_of_an_interval_are_told_apart() {
+    fn the_ends_of_an_interval_are_distinguishable() {
         let interval = |low: f64, high: f64| with_interval(0.5 * (low + high), [low, high]).1;
         assert_eq!(interval(0.0306, 0.0312), "0.03060 … 0.03120");
         assert_eq!(interval(1.000012, 1.000031), "1.00001 … 1.00003");
@@ -384,7 +384,7 @@ mod tests {
 
     #[test]
     fn figures_have_four_digits() {
-        for (value, said) in [
+        for (value, text) in [
             (0.0, "0"),
             (0.030612, "0.03061"),
             (-203.5034, "-203.5"),
@@ -394,7 +394,7 @@ mod tests {
             (1e9, "1.000e9"),
             (f64::INFINITY, "∞"),
         ] {
-            assert_eq!(figure(value), said);
+            assert_eq!(figure(value), text);
         }
     }
 }

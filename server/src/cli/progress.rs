@@ -9,7 +9,7 @@ const LINE_EVERY: Duration = Duration::from_secs(5);
 
 pub struct RunProgress {
     bar: Option<ProgressBar>,
-    told: Option<Instant>,
+    printed_at: Option<Instant>,
     paused: bool,
 }
 
@@ -20,23 +20,23 @@ impl RunProgress {
             ProgressBar::new(1000)
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("##-"))
         });
-        Self { bar, told: None, paused: false }
+        Self { bar, printed_at: None, paused: false }
     }
 
     /// Printed once for each pause.
     pub fn paused(&mut self, run: i64) {
-        let said = format!("paused: resume it with `jointbench resume {run}`");
+        let message = format!("paused: resume it with `jointbench resume {run}`");
         if let Some(bar) = &self.bar {
-            bar.set_message(said);
+            bar.set_message(message);
         } else if !self.paused {
-            eprintln!("  {said}");
+            eprintln!("  {message}");
         }
         self.paused = true;
     }
 
     pub fn show(&mut self, progress: &Progress) {
         if std::mem::take(&mut self.paused) {
-            self.told = None;
+            self.printed_at = None;
         }
         let whole_s = progress.elapsed_s + progress.remaining_s;
         let share = if whole_s > 0.0 { (progress.elapsed_s / whole_s).clamp(0.0, 1.0) } else { 0.0 };
@@ -46,8 +46,8 @@ impl RunProgress {
         if let Some(bar) = &self.bar {
             bar.set_position((1000.0 * share) as u64);
             bar.set_message(format!("{left}  {step}  {}", progress.label));
-        } else if self.told.is_none_or(|told| told.elapsed() >= LINE_EVERY) {
-            self.told = Some(Instant::now());
+        } else if self.printed_at.is_none_or(|printed_at| printed_at.elapsed() >= LINE_EVERY) {
+            self.printed_at = Some(Instant::now());
             eprintln!("  {:>3.0} %  {left}  {step}  {}", 100.0 * share, progress.label);
         }
     }

@@ -2,9 +2,8 @@
 
 use super::arguments::Reproduce;
 use super::exit::{Done, Exit};
-use crate::lab::reread;
 use crate::report::{svg, with_interval};
-use crate::view;
+use crate::view::{self, reread};
 use jointbench_devices::sim::{Load, Truth};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::identification::Quantity;
@@ -40,14 +39,14 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
             *delay_without_s = delay.map_or(0.0, |delay| delay.value);
         }
         for chapter in measure(joint, subject, arguments.seed)? {
-            page += &told(&chapter, title, arguments.out.as_deref())?;
+            page += &chapter_text(&chapter, title, arguments.out.as_deref())?;
             chapters.push((title, chapter));
         }
     }
     let outcome = Outcome::of(&chapters);
-    let said = outcome.said();
-    println!("{said}");
-    page += &format!("\n## Summary\n\n{said}\n");
+    let summary = outcome.summary();
+    println!("{summary}");
+    page += &format!("\n## Summary\n\n{summary}\n");
     if let Some(path) = &arguments.out {
         fs::write(path, page).map_err(|fault| unwritable(path, &fault))?;
         println!("{}", path.display());
@@ -97,18 +96,18 @@ impl Outcome {
         }
     }
 
-    fn said(&self) -> String {
+    fn summary(&self) -> String {
         let Self { compared, missed, beyond, .. } = self;
-        let besides =
+        let except =
             |names: &[String]| if names.is_empty() { String::new() } else { format!(", not {}", names.join(", ")) };
         format!(
             "{} of {compared} intervals contain the true value{}; one in twenty may miss by chance. For simultaneous 95 % \
              coverage the intervals must be {:.2} times as wide; then {} contain it{}.",
             compared - missed.len() as u64,
-            besides(missed),
+            except(missed),
             wider_for(*compared),
             if beyond.is_empty() { "all".to_owned() } else { (compared - beyond.len() as u64).to_string() },
-            besides(beyond),
+            except(beyond),
         )
     }
 
@@ -226,7 +225,7 @@ fn asked(demand: Demand, unit: &str) -> String {
 }
 
 /// A chapter of the page. Its figures are written to a folder with the name of the page.
-fn told(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<String, Exit> {
+fn chapter_text(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<String, Exit> {
     let mut text = format!("\n### {}\n\n{}\n", chapter.title, chapter.identification.summary);
     if !chapter.comparisons.is_empty() {
         let _ = writeln!(text, "\n{COLUMNS}\n|---|---|---|---|---|---|---|---|---|");
@@ -298,7 +297,7 @@ mod tests {
         let page = fs::read_to_string(PAGE).unwrap();
         for (title, joint, subject) in SUBJECTS.into_iter().filter(|(.., subject)| *subject == Subject::Puma) {
             for chapter in measure(joint, subject, 1).unwrap() {
-                let text = told(&chapter, title, None).unwrap();
+                let text = chapter_text(&chapter, title, None).unwrap();
                 assert!(page.contains(&text), "docs/reproduction.md has other figures than this program:\n{text}");
             }
         }

@@ -23,7 +23,7 @@ pub struct Requirement {
 
 /// Result of a requirement.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Kept {
+pub enum RequirementResult {
     Yes(String),
     /// The value exceeds the limit.
     No(String),
@@ -58,7 +58,7 @@ impl Requirement {
     }
 
     /// Whether a procedure with these results can meet the requirement, or why not.
-    pub fn could_be_kept_by(&self, procedure: &str, finds: &[Findable]) -> Result<(), String> {
+    pub fn can_be_met_by(&self, procedure: &str, finds: &[Findable]) -> Result<(), String> {
         match finds.iter().find(|findable| findable.is(&self.name)) {
             Some(findable) => factor(&self.unit, findable.unit).map(drop).ok_or_else(|| self.in_unit(findable.unit)),
             None => {
@@ -80,38 +80,38 @@ impl Requirement {
         format!("{} is in {unit}: write the limit so", self.name)
     }
 
-    pub fn check(&self, found: &Identification) -> Kept {
+    pub fn check(&self, found: &Identification) -> RequirementResult {
         let quantities = &found.result.quantities;
         let Some(quantity) = quantities.iter().find(|quantity| quantity.name == self.name) else {
             let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name.as_str()).collect();
             let there = if names.is_empty() { "it contains no quantities".to_owned() } else { self.instead(&names) };
-            return Kept::Unknown(format!(
+            return RequirementResult::Unknown(format!(
                 "--require '{}': the result does not contain {}; {there}",
                 self.text, self.name
             ));
         };
         let Some(factor) = factor(&self.unit, &quantity.unit) else {
-            return Kept::Unknown(self.in_unit(&quantity.unit));
+            return RequirementResult::Unknown(self.in_unit(&quantity.unit));
         };
         self.judge(quantity, self.limit * factor)
     }
 
-    fn judge(&self, quantity: &Quantity, limit: f64) -> Kept {
+    fn judge(&self, quantity: &Quantity, limit: f64) -> RequirementResult {
         let keeps = |value: f64| match self.side {
             Side::Below => value <= limit,
             Side::Above => value >= limit,
         };
         let (value, interval) = crate::report::with_interval(quantity.value, quantity.ci95, &quantity.unit);
-        let said = match &interval {
+        let message = match &interval {
             Some(ends) => format!("{}: {} = {value} [{ends}]", self.text, self.name),
             None => format!("{}: {} = {value}", self.text, self.name),
         };
         if !keeps(quantity.value) {
-            Kept::No(said)
+            RequirementResult::No(message)
         } else if quantity.ci95.is_some_and(|ends| !ends.into_iter().all(keeps)) {
-            Kept::Unsure(format!("{said}: the interval exceeds the limit"))
+            RequirementResult::Unsure(format!("{message}: the interval exceeds the limit"))
         } else {
-            Kept::Yes(said)
+            RequirementResult::Yes(message)
         }
     }
 }
@@ -160,20 +160,22 @@ pub(super) mod tests {
     #[test]
     fn the_whole_interval_must_keep_the_limit() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
-        assert!(matches!(check("tau_c < 0.035 Nm"), Kept::Yes(_)));
-        assert!(matches!(check("tau_c<=35 mNm"), Kept::Yes(_)));
-        assert!(matches!(check("tau_c > 0.02 Nm"), Kept::Yes(_)));
-        assert!(matches!(check("tau_c < 0.030 Nm"), Kept::No(_)));
-        assert!(matches!(check("tau_c < 0.0308 Nm"), Kept::Unsure(said) if said.contains("30.60 mNm [30.20 … 31.00]")));
+        assert!(matches!(check("tau_c < 0.035 Nm"), RequirementResult::Yes(_)));
+        assert!(matches!(check("tau_c<=35 mNm"), RequirementResult::Yes(_)));
+        assert!(matches!(check("tau_c > 0.02 Nm"), RequirementResult::Yes(_)));
+        assert!(matches!(check("tau_c < 0.030 Nm"), RequirementResult::No(_)));
+        assert!(
+            matches!(check("tau_c < 0.0308 Nm"), RequirementResult::Unsure(message) if message.contains("30.60 mNm [30.20 … 31.00]"))
+        );
     }
 
     #[test]
-    fn what_cannot_be_checked_says_why() {
+    fn an_unknown_requirement_has_a_reason() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
         let why = "--require 'tau_x < 1 Nm': the result does not contain tau_x; did you mean tau_c? available: tau_c";
-        assert_eq!(check("tau_x < 1 Nm"), Kept::Unknown(why.to_owned()));
-        assert_eq!(check("tau_c < 1 A"), Kept::Unknown("tau_c is in Nm: write the limit so".to_owned()));
-        assert_eq!(check("tau_c < 1"), Kept::Unknown("tau_c is in Nm: write the limit so".to_owned()));
+        assert_eq!(check("tau_x < 1 Nm"), RequirementResult::Unknown(why.to_owned()));
+        assert_eq!(check("tau_c < 1 A"), RequirementResult::Unknown("tau_c is in Nm: write the limit so".to_owned()));
+        assert_eq!(check("tau_c < 1"), RequirementResult::Unknown("tau_c is in Nm: write the limit so".to_owned()));
         for text in ["tau_c", "< 3 Nm", "tau_c < much", "tau_c < NaN Nm"] {
             assert!(text.parse::<Requirement>().unwrap_err().contains("NAME < VALUE UNIT"), "{text}");
         }

@@ -4,26 +4,24 @@ use super::arguments::Run as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::junit::junit;
+use super::outcome::{Found, ending, is_over};
 use super::progress::RunProgress;
-use super::require::{Kept, Requirement};
+use super::require::{Requirement, RequirementResult};
 use super::{files, identify};
-use crate::view::{Bench, Identification, NewRun, Run, RunState, word};
+use crate::view::{Bench, NewRun, Run, RunState};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
 use std::time::{Duration, Instant};
 
-pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
-
-/// Result of the run, or why it is not available.
-pub(super) type Found = Result<Identification, Exit>;
+pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(250);
 
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach)?;
     arguments.junit.iter().try_for_each(|path| files::writable(path))?;
-    let ended = demand_what_can_be_found(&client, arguments).and_then(|()| start(&client, arguments));
+    let ended = check_requirements(&client, arguments).and_then(|()| start(&client, arguments));
     let found =
         ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
-    let demands: Vec<(&Requirement, Kept)> = match &found {
+    let demands: Vec<(&Requirement, RequirementResult)> = match &found {
         Some(found) => arguments.require.iter().map(|demand| (demand, check(demand, found))).collect(),
         None => Vec::new(),
     };
@@ -31,24 +29,24 @@ pub fn run(arguments: &Arguments) -> Done {
         files::write(path, junit(arguments, &ended, found.as_ref(), &demands).as_bytes())?;
     }
     let run = ended?;
-    let said = if is_over(run.summary.state) { ending(&run) } else { String::new() };
+    let message = if is_over(run.summary.state) { ending(&run) } else { String::new() };
     if arguments.json {
         let text = serde_json::to_string_pretty(&run).map_err(|fault| Exit::failed(fault.to_string()))?;
         println!("{text}");
-    } else if !said.is_empty() {
-        println!("{said}");
+    } else if !message.is_empty() {
+        println!("{message}");
         if let Some(Ok(found)) = &found {
             identify::print(found);
         }
     }
     match is_over(run.summary.state) && run.summary.state != RunState::Completed {
-        true => Err(Exit::failed(if arguments.json { said } else { String::new() })),
+        true => Err(Exit::failed(if arguments.json { message } else { String::new() })),
         false => judge(found.as_ref(), &demands, arguments.json),
     }
 }
 
 /// Refuses a requirement that the procedure cannot meet, before any motion.
-fn demand_what_can_be_found(client: &Client, arguments: &Arguments) -> Done {
+fn check_requirements(client: &Client, arguments: &Arguments) -> Done {
     if arguments.require.is_empty() {
         return Ok(());
     }
@@ -61,51 +59,46 @@ fn demand_what_can_be_found(client: &Client, arguments: &Arguments) -> Done {
     let finds = procedure.finds();
     arguments.require.iter().try_for_each(|demand| {
         let wrong = |why| Exit::bad_input(format!("--require '{}': {why}", demand.text()));
-        demand.could_be_kept_by(&id, &finds).map_err(wrong)
+        demand.can_be_met_by(&id, &finds).map_err(wrong)
     })
-}
-
-pub(super) fn title(arguments: &Arguments) -> String {
-    match (&arguments.procedure, arguments.continues) {
-        (Some(procedure), _) => procedure.clone(),
-        (None, before) => format!("run {} continued", before.unwrap_or_default()),
-    }
 }
 
 fn shown(client: &Client, run: &Run) -> Found {
     client.get(&format!("/runs/{}/identification", run.summary.id))
 }
 
-fn check(demand: &Requirement, found: &Found) -> Kept {
+fn check(demand: &Requirement, found: &Found) -> RequirementResult {
     match found {
         Ok(found) => demand.check(found),
-        Err(exit) => Kept::Unknown(exit.said.clone()),
+        Err(exit) => RequirementResult::Unknown(exit.message.clone()),
     }
 }
 
 /// Prints the result of each requirement. Exit codes in order of priority: 2 for a requirement that cannot be checked,
 /// 1 for a failed result or an exceeded limit, 3 for no decision.
-fn judge(found: Option<&Found>, demands: &[(&Requirement, Kept)], quiet: bool) -> Done {
-    let told = demands.iter().map(|(_, kept)| match kept {
-        Kept::Yes(said) => ("kept", said, 0),
-        Kept::No(said) => ("broken", said, 1),
-        Kept::Unsure(said) => ("unsure", said, 3),
-        Kept::Unknown(said) => ("unknown", said, 2),
+fn judge(found: Option<&Found>, demands: &[(&Requirement, RequirementResult)], quiet: bool) -> Done {
+    let results = demands.iter().map(|(_, kept)| match kept {
+        RequirementResult::Yes(message) => ("kept", message, 0),
+        RequirementResult::No(message) => ("broken", message, 1),
+        RequirementResult::Unsure(message) => ("unsure", message, 3),
+        RequirementResult::Unknown(message) => ("unknown", message, 2),
     });
     // A requirement that cannot be checked is reported with the exit code.
     if !quiet {
-        told.clone().filter(|(_, _, code)| *code != 2).for_each(|(word, said, _)| println!("{word}: {said}"));
+        results.clone().filter(|(_, _, code)| *code != 2).for_each(|(word, message, _)| println!("{word}: {message}"));
     }
     let result = match found {
         None => Ok(()),
         Some(Ok(found)) => {
-            let said = if quiet { identify::verdict(found) } else { String::new() };
-            identify::ending(found).map_err(|exit| Exit { said, ..exit })
+            let message = if quiet { identify::verdict(found) } else { String::new() };
+            identify::ending(found).map_err(|exit| Exit { message, ..exit })
         }
         Some(Err(exit)) => Err(exit.clone()),
     };
-    let of_demands =
-        told.map(|(_, said, code)| Exit { code, said: if quiet || code == 2 { said.clone() } else { String::new() } });
+    let of_demands = results.map(|(_, message, code)| Exit {
+        code,
+        message: if quiet || code == 2 { message.clone() } else { String::new() },
+    });
     let exits: Vec<Exit> = result.err().into_iter().chain(of_demands).collect();
     match [2, 1, 3].into_iter().find_map(|code| exits.iter().find(|exit| exit.code == code)) {
         None => Ok(()),
@@ -137,9 +130,9 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
     if !waits {
         return Ok(run);
     }
-    say_that_it_goes_on(id);
+    notify_on_interrupt(id);
     // The arguments are valid: later errors belong to the run.
-    wait_at_most(client, id, arguments.timeout).map_err(|exit| lost(id, client.is_answered(), &exit.said))
+    wait_at_most(client, id, arguments.timeout).map_err(|exit| lost(id, client.is_answered(), &exit.message))
 }
 
 /// Waiting time for a daemon that does not answer.
@@ -148,7 +141,7 @@ const RESTARTED: Duration = Duration::from_secs(15);
 const INTERRUPTED: i32 = 130;
 
 /// Ctrl-C ends only the wait, not the run: informs the person at the bench.
-fn say_that_it_goes_on(id: i64) {
+fn notify_on_interrupt(id: i64) {
     std::thread::spawn(move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         // Without the runtime, Ctrl-C ends this command without a message.
@@ -161,9 +154,9 @@ fn say_that_it_goes_on(id: i64) {
 }
 
 /// Message about a run whose daemon is gone, or whose state cannot be requested.
-fn lost(id: i64, is_answered: bool, said: &str) -> Exit {
+fn lost(id: i64, is_answered: bool, message: &str) -> Exit {
     Exit::failed(match is_answered {
-        true => format!("run {id}: its state is unknown ({said})"),
+        true => format!("run {id}: its state is unknown ({message})"),
         false => format!(
             "run {id}: the daemon does not answer, so the state of the run is unknown. The bench worker moves the \
              bench to its safe state; if it was killed too, the daemon does so at its next start (jointbench serve). \
@@ -226,7 +219,7 @@ fn wait_at_most(client: &Client, id: i64, limit: Option<Duration>) -> Result<Run
             Ok(run) => run,
             // A restarted daemon knows the end of the run.
             Err(_) if answered.elapsed() < RESTARTED && !client.is_answered() => {
-                std::thread::sleep(LOOK_EVERY);
+                std::thread::sleep(POLL_INTERVAL);
                 continue;
             }
             Err(exit) => return Err(exit),
@@ -247,40 +240,13 @@ fn wait_at_most(client: &Client, id: i64, limit: Option<Duration>) -> Result<Run
             Some(progress) => shown.show(progress),
             None => {}
         }
-        std::thread::sleep(LOOK_EVERY);
+        std::thread::sleep(POLL_INTERVAL);
     }
 }
 
 fn timed_out(mut run: Run, limit: Duration) -> Run {
     run.summary.reason = Some(format!("it took longer than --timeout {} s", limit.as_secs_f64()));
     run
-}
-
-pub(super) fn is_over(state: RunState) -> bool {
-    use RunState as S;
-    matches!(state, S::Completed | S::Stopped | S::Aborted | S::Failed | S::Interrupted)
-}
-
-pub(super) fn ending(run: &Run) -> String {
-    let summary = &run.summary;
-    let mut said = format!("run {} {}: {} rows", summary.id, word(summary.state), summary.rows);
-    if let Some(duration_s) = summary.duration_s {
-        said += &format!(" in {duration_s:.1} s of bench time");
-    }
-    if let Some(safe) = summary.safe {
-        said += &format!(", bench {}", word(safe));
-    }
-    if let Some(reason) = &summary.reason {
-        said += &format!(": {reason}");
-    }
-    if let Some(why) = &summary.not_stored {
-        said += &format!("; not yet stored: {why}");
-    }
-    let can_go_on = jointbench_procedure::procedure(&summary.procedure).is_some_and(|one| one.goes_on().is_ok());
-    if can_go_on && is_over(summary.state) && summary.state != RunState::Completed && summary.rows > 0 {
-        said += &format!("; complete it with `jointbench run --continue {}`", summary.id);
-    }
-    said
 }
 
 #[cfg(test)]
@@ -299,10 +265,10 @@ mod tests {
     }
 
     #[test]
-    fn of_a_run_whose_daemon_has_gone_it_is_said_what_is_known() {
+    fn a_lost_daemon_is_reported_with_the_known_state() {
         let (gone, refused) = (lost(7, false, "no daemon answers"), lost(7, true, "a token is needed"));
-        assert!(gone.code == 1 && gone.said.contains("safe state") && gone.said.contains("jointbench runs id:7"));
-        assert_eq!((refused.code, refused.said.as_str()), (1, "run 7: its state is unknown (a token is needed)"));
+        assert!(gone.code == 1 && gone.message.contains("safe state") && gone.message.contains("jointbench runs id:7"));
+        assert_eq!((refused.code, refused.message.as_str()), (1, "run 7: its state is unknown (a token is needed)"));
     }
 
     #[test]
@@ -316,15 +282,22 @@ mod tests {
     #[test]
     fn a_broken_limit_weighs_more_than_one_that_is_not_sure() {
         let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
-        let said = || "said".to_owned();
-        let code = |kept: &[Kept]| {
+        let message = || "message".to_owned();
+        let code = |kept: &[RequirementResult]| {
             let demands: Vec<_> = kept.iter().map(|kept| (&demand, kept.clone())).collect();
             judge(None, &demands, true).err().map_or(0, |exit| exit.code)
         };
-        assert_eq!(code(&[Kept::Yes(said())]), 0);
-        assert_eq!(code(&[Kept::Yes(said()), Kept::Unsure(said())]), 3);
-        assert_eq!(code(&[Kept::Unsure(said()), Kept::No(said()), Kept::Unsure(said())]), 1);
-        assert_eq!(code(&[Kept::No(said()), Kept::Unknown(said())]), 2);
+        assert_eq!(code(&[RequirementResult::Yes(message())]), 0);
+        assert_eq!(code(&[RequirementResult::Yes(message()), RequirementResult::Unsure(message())]), 3);
+        assert_eq!(
+            code(&[
+                RequirementResult::Unsure(message()),
+                RequirementResult::No(message()),
+                RequirementResult::Unsure(message())
+            ]),
+            1
+        );
+        assert_eq!(code(&[RequirementResult::No(message()), RequirementResult::Unknown(message())]), 2);
     }
 
     #[test]
@@ -335,9 +308,10 @@ mod tests {
             Ok(found)
         };
         let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
-        let code =
-            |found: Found, kept: Kept| judge(Some(&found), &[(&demand, kept)], true).err().map_or(0, |exit| exit.code);
-        let (yes, no) = (Kept::Yes(String::new()), Kept::No(String::new()));
+        let code = |found: Found, kept: RequirementResult| {
+            judge(Some(&found), &[(&demand, kept)], true).err().map_or(0, |exit| exit.code)
+        };
+        let (yes, no) = (RequirementResult::Yes(String::new()), RequirementResult::No(String::new()));
         assert_eq!(code(shown(Identified::Identified), yes.clone()), 0);
         assert_eq!(code(shown(Identified::IdentifiedWithWarning), yes.clone()), 0);
         assert_eq!(code(shown(Identified::Inconclusive), yes.clone()), 3);

@@ -3,9 +3,9 @@
 use super::arguments::Runs;
 use super::exit::Done;
 use super::offline::json_out;
-use super::run::is_over;
+use super::outcome::is_over;
 use super::serve::runtime;
-use super::transfer::{Way, open};
+use super::transfer::{Target, open};
 use crate::lab::{LabError, Order, RunFilter};
 use crate::view::{RunList, RunSummary, word};
 use jiff::Timestamp;
@@ -24,7 +24,7 @@ pub fn runs(arguments: &Runs) -> Done {
     let runtime = runtime()?;
     let search = arguments.search.join(" ");
     let list: RunList = match open(&runtime, &arguments.store, false)? {
-        Way::Folder(lab) => {
+        Target::Folder(lab) => {
             let order =
                 arguments.sort.as_deref().map(Order::parse).transpose().map_err(LabError::from)?.unwrap_or_default();
             let filter = RunFilter { limit: arguments.limit, offset: 0, search: Some(search.clone()), order };
@@ -34,7 +34,7 @@ pub fn runs(arguments: &Runs) -> Done {
             }
             list
         }
-        Way::Daemon(client) => {
+        Target::Daemon(client) => {
             let sort = arguments.sort.as_deref().map(|sort| format!("&sort={}", encoded(sort))).unwrap_or_default();
             client.get(&format!("/runs?limit={}&search={}{sort}", arguments.limit, encoded(&search)))?
         }
@@ -97,7 +97,7 @@ mod tests {
     use jiff::tz::TimeZone;
 
     #[test]
-    fn a_moment_is_told_on_the_clock_of_who_reads_it() {
+    fn times_are_shown_in_local_time() {
         let tokyo = TimeZone::fixed(jiff::tz::offset(9));
         assert_eq!(local("2026-11-26T18:13:02.602Z", &tokyo), "2026-11-27 03:13");
         assert_eq!(local("", &tokyo), "");

@@ -73,7 +73,7 @@ fn warn_if_shared(_: &Path, _: &std::fs::File) {}
 
 /// Removes tokens from the arguments, which all users of the computer can see (`ps`). The program restarts itself with
 /// the tokens in its environment. Returns if the arguments contain no token.
-pub fn take_out_of_sight() -> Result<(), Exit> {
+pub fn hide_tokens() -> Result<(), Exit> {
     let given: Vec<OsString> = std::env::args_os().skip(1).collect();
     let (rest, secrets) = parted(&given);
     match secrets.is_empty() {
@@ -115,7 +115,7 @@ fn start_again(rest: &[OsString], secrets: &Secrets) -> Result<(), Exit> {
     warn("it has been removed from the process list");
     let name = std::env::args_os().next().unwrap_or_else(|| OsStr::new("jointbench").to_owned());
     // Uses the path, so that the process list still shows the name of the program.
-    let program = std::env::current_exe().unwrap_or_else(|_| crate::program::own());
+    let program = std::env::current_exe().unwrap_or_else(|_| crate::program::path());
     let mut command = std::process::Command::new(program);
     command.arg0(name).args(rest).envs(secrets.iter().map(|(variable, value)| (variable, value)));
     // Returns only on failure.
@@ -167,13 +167,13 @@ mod tests {
         let file = folder.path().join("token");
         let of = |text: &str| {
             std::fs::write(&file, text).unwrap();
-            choose(Some(&file), Some("given".into()), None).map_err(|exit| exit.said)
+            choose(Some(&file), Some("given".into()), None).map_err(|exit| exit.message)
         };
         assert_eq!(of("correct horse battery\n").unwrap().as_deref(), Some("correct horse battery"));
         assert!(of(" \n").unwrap_err().contains("openssl rand"));
         assert!(of("one\ntwo").unwrap_err().contains("more than one line"));
         assert_eq!(choose(None, Some("given".into()), Some(file)).unwrap().as_deref(), Some("given"));
         let none = choose(Some(Path::new("/no/such/file")), None, None).unwrap_err();
-        assert!(none.code == 2 && none.said.contains("/no/such/file"), "{}", none.said);
+        assert!(none.code == 2 && none.message.contains("/no/such/file"), "{}", none.message);
     }
 }

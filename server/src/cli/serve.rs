@@ -4,7 +4,7 @@ use super::arguments::{Place, Serve};
 use super::exit::{Done, Exit};
 use super::secrets;
 use crate::config::{self, BenchDescription};
-use crate::daemon::{Daemon, DaemonSettings, Network, asked_to_end};
+use crate::daemon::{Daemon, DaemonSettings, Network, shutdown_signal};
 use crate::job::{GIB, Limits};
 use crate::listener::TlsFiles;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ pub fn serve(arguments: Serve) -> Done {
     let done = runtime.block_on(async {
         let daemon = Daemon::start(settings(arguments.place, "jointbench-data", benches)?).await?;
         println!("dashboard and API on {}://{}  (Ctrl-C to exit)", daemon.scheme, daemon.address);
-        asked_to_end().await;
+        shutdown_signal().await;
         daemon.stop().await;
         Ok(())
     });
@@ -32,7 +32,7 @@ pub(super) fn describe(config: &str) -> Result<Vec<BenchDescription>, Exit> {
         Some((name, text)) => config::parse(name, text),
         None => config::read(Path::new(config)),
     };
-    benches.map_err(|mistakes| Exit::bad_input(mistakes.to_string()))
+    benches.map_err(|errors| Exit::bad_input(errors.to_string()))
 }
 
 pub(super) fn settings(place: Place, data: &str, mut benches: Vec<BenchDescription>) -> Result<DaemonSettings, Exit> {
@@ -53,7 +53,7 @@ pub(super) fn settings(place: Place, data: &str, mut benches: Vec<BenchDescripti
         read_token,
         network: Network { tls, behind_proxy: place.behind_proxy, ..Network::default() },
         benches,
-        program: crate::program::own(),
+        program: crate::program::path(),
         analysis,
     })
 }

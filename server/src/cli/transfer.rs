@@ -19,16 +19,16 @@ pub fn import(arguments: &Import) -> Done {
         let file = &table(file)?;
         let request = read(file, arguments.meta.as_deref(), &arguments.columns)?;
         let run = match &store {
-            Way::Folder(lab) => runtime.block_on(lab.import(request, LOCAL))?,
-            Way::Daemon(client) => upload(client, &request)?,
+            Target::Folder(lab) => runtime.block_on(lab.import(request, LOCAL))?,
+            Target::Daemon(client) => upload(client, &request)?,
         };
         let summary = &run.summary;
         println!("run {}: {} ({}, {} rows)", summary.id, file.display(), summary.kind, summary.rows);
         if let Some(original) = run.provenance["imported"][COPY_OF].as_i64() {
             println!("  its samples are identical to those of run {original} (a copy, not a repeat)");
         }
-        if let Some(said) = run.provenance["imported"][UNDERSTOOD].as_str() {
-            println!("  {said}");
+        if let Some(note) = run.provenance["imported"][UNDERSTOOD].as_str() {
+            println!("  {note}");
         }
         for sentence in run.provenance["imported"][ATTENTION].as_array().into_iter().flatten() {
             println!("  warning: {}", sentence.as_str().unwrap_or_default());
@@ -45,11 +45,11 @@ pub fn export(arguments: &Export) -> Done {
         return Err(Exit::bad_input("--spreadsheet-safe requires --format csv"));
     }
     let (bytes, meta) = match open(&runtime, &arguments.store, false)? {
-        Way::Folder(lab) => runtime.block_on(async {
+        Target::Folder(lab) => runtime.block_on(async {
             let request = ExportRequest { run, format, from_s: None, to_s: None, spreadsheet_safe: safe };
             Ok::<_, LabError>((lab.answer(Job::Export(request)).await?, lab.export_meta(run).await?))
         })?,
-        Way::Daemon(client) => {
+        Target::Daemon(client) => {
             let safe = if safe { "&spreadsheet_safe=true" } else { "" };
             let bytes = client.get_bytes(&format!("/runs/{run}/export?format={}{safe}", format.extension()))?;
             (bytes, String::from_utf8_lossy(&client.get_bytes(&format!("/runs/{run}/meta"))?).into_owned())
@@ -60,9 +60,9 @@ pub fn export(arguments: &Export) -> Done {
     write(&path, &bytes)?;
     println!("{}", path.display());
     if format == FileFormat::Csv {
-        let beside = meta_path_of(&path);
-        write(&beside, meta.as_bytes())?;
-        println!("{}", beside.display());
+        let meta_file = meta_path_of(&path);
+        write(&meta_file, meta.as_bytes())?;
+        println!("{}", meta_file.display());
     }
     Ok(())
 }
@@ -70,33 +70,33 @@ pub fn export(arguments: &Export) -> Done {
 /// The requested format, or the format of the file extension.
 fn format(arguments: &Export) -> Result<FileFormat, Exit> {
     let ending = arguments.out.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
-    let said = [FileFormat::Csv, FileFormat::Parquet, FileFormat::Mat]
+    let by_name = [FileFormat::Csv, FileFormat::Parquet, FileFormat::Mat]
         .into_iter()
         .find(|format| Some(format.extension()) == ending);
-    match (arguments.format, said) {
-        (Some(asked), Some(said)) if asked != said => Err(Exit::bad_input(format!(
+    match (arguments.format, by_name) {
+        (Some(asked), Some(by_name)) if asked != by_name => Err(Exit::bad_input(format!(
             "--format {} contradicts the file extension .{}: omit one of them",
             asked.extension(),
-            said.extension()
+            by_name.extension()
         ))),
         (None, None) if ending.is_some() => Err(Exit::bad_input(format!(
             "unknown file extension .{}: use .csv, .parquet or .mat, or choose the format with --format",
             ending.unwrap_or_default()
         ))),
-        (asked, said) => Ok(asked.or(said).unwrap_or(FileFormat::Csv)),
+        (asked, by_name) => Ok(asked.or(by_name).unwrap_or(FileFormat::Csv)),
     }
 }
 
-pub(super) enum Way {
+pub(super) enum Target {
     Folder(Lab),
     Daemon(Client),
 }
 
-pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_it: bool) -> Result<Way, Exit> {
+pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_it: bool) -> Result<Target, Exit> {
     // Priority: explicit address, explicit folder, address from the environment.
     let outweighed = place.data.is_some() && place.reach.daemon == std::env::var("JOINTBENCH_URL").ok();
     if place.reach.daemon.is_some() && !outweighed {
-        return Ok(Way::Daemon(Client::new(&place.reach)?));
+        return Ok(Target::Daemon(Client::new(&place.reach)?));
     }
     let data = place.data.as_deref().unwrap_or(Path::new("jointbench-data"));
     if !makes_it && !crate::store::Store::is_in(data) {
@@ -106,13 +106,13 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
         )));
     }
     match runtime.block_on(crate::store::Store::open(data)) {
-        Ok(store) => Ok(Way::Folder(Lab::of_store(store))),
+        Ok(store) => Ok(Target::Folder(Lab::of_store(store))),
         Err(in_use @ crate::store::StoreError::InUse { .. }) => {
             // The folder probably belongs to the daemon at the default address; verify this.
             let client = Client::new(&place.reach)?;
             match client.get::<Health>("/health") {
                 Ok(health) if in_use.to_string().contains(&format!("(process {})", health.process)) => {
-                    Ok(Way::Daemon(client))
+                    Ok(Target::Daemon(client))
                 }
                 _ => Err(Exit::bad_input(format!("{in_use}, or give the address of its daemon with --daemon"))),
             }
@@ -122,10 +122,10 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
 }
 
 fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportRequest, Exit> {
-    let beside = [meta_path_of(file), file.with_file_name("meta.json")].into_iter().find(|path| path.is_file());
+    let meta_file = [meta_path_of(file), file.with_file_name("meta.json")].into_iter().find(|path| path.is_file());
     let carries_its_own =
         matches!(file.extension().and_then(|end| end.to_str()), Some("parquet" | "arrow" | "feather"));
-    let meta = match (meta, beside) {
+    let meta = match (meta, meta_file) {
         (Some(path), _) => Some(files::read_text(path)?),
         (None, Some(path)) if !carries_its_own => Some(files::read_text(&path)?),
         _ => None,

@@ -1,8 +1,8 @@
 //! Checks raw values and converts them.
 
+use super::error::{Collector, ConfigErrors};
 use super::figures::{Sheet, check_reach};
 use super::instruments::{calibrations, instruments};
-use super::mistake::{Collector, Mistakes};
 use super::raw::{RawBench, RawFile, RawMock};
 use super::values::{choice, positive};
 use super::{BenchDescription, Source};
@@ -15,7 +15,7 @@ use toml::Spanned;
 /// Of the name of a bench.
 const LONGEST_NAME: usize = 64;
 
-pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
+pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, ConfigErrors> {
     let mut wrong = Collector::new(text);
     let raw: RawFile = match toml::from_str(text) {
         Ok(raw) => raw,
@@ -79,12 +79,12 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
         constants: constants?,
         calibrated: calibrated?,
         record: None,
-        text: own_part(text, raw.name.span().start).to_owned(),
+        text: bench_section(text, raw.name.span().start).to_owned(),
     })
 }
 
 /// The text of the bench whose name is at `name_at`: its section, or the whole file if it has one bench.
-fn own_part(text: &str, name_at: usize) -> &str {
+fn bench_section(text: &str, name_at: usize) -> &str {
     let lines = text.split_inclusive('\n').scan(0, |end, line| {
         *end += line.len();
         Some((*end - line.len(), line))

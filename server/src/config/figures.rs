@@ -1,6 +1,6 @@
 //! Limits and constants: from the description, from a data sheet, or not needed by the bench.
 
-use super::mistake::Collector;
+use super::error::Collector;
 use super::raw::{RawBench, RawConstants, RawLimits};
 use super::values::{flip, positive};
 use jointbench_instrument::Limits;
@@ -121,18 +121,19 @@ pub fn check_reach(raw: &RawBench, limits: &Limits, constants: &JointConstants, 
     if let (Some(place), Some(sensor)) = (&given.link_torque_nm, &raw.torque_sensor) {
         let nominal_nm = *sensor.nominal_nm.get_ref();
         if limits.link_torque_nm > nominal_nm {
-            let told = format!(
+            let message = format!(
                 "limits.link_torque_nm = {}: the range of the torque sensor is {nominal_nm} Nm",
                 limits.link_torque_nm
             );
-            wrong.add(place.span(), format!("{told}; reduce the limit to this value"));
+            wrong.add(place.span(), format!("{message}; reduce the limit to this value"));
         }
     }
     if let (Some(place), Some(_)) = (&given.brake_current_a, &raw.brake)
         && limits.brake_current_a > ABOVE_RATED * constants.brake_rated_current_a
     {
         let rated_a = constants.brake_rated_current_a;
-        let told = format!("limits.brake_current_a = {}: the brake is rated for {rated_a} A", limits.brake_current_a);
-        wrong.add(place.span(), format!("{told}; reduce the limit to at most 110 % of the rating"));
+        let message =
+            format!("limits.brake_current_a = {}: the brake is rated for {rated_a} A", limits.brake_current_a);
+        wrong.add(place.span(), format!("{message}; reduce the limit to at most 110 % of the rating"));
     }
 }

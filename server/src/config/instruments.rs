@@ -1,6 +1,6 @@
 //! The instruments of a description.
 
-use super::mistake::Collector;
+use super::error::Collector;
 use super::raw::{RawBench, RawCounter, RawJoint, RawPort, RawThermometer, RawTorqueSensor};
 use super::values::{calibrated, choice, deadline_ms, flip, port, positive, within};
 use jiff::civil::Date;

@@ -1,15 +1,15 @@
 //! Bench descriptions: raw values are checked once during parsing.
 
 mod check;
+mod error;
 mod figures;
 mod instruments;
-mod mistake;
 mod raw;
 #[cfg(test)]
 mod tests;
 mod values;
 
-pub use mistake::{Mistake, Mistakes};
+pub use error::{ConfigError, ConfigErrors};
 
 use jiff::civil::Date;
 use jointbench_devices::sim::{ENCODER_COUNTS, Load, MockInstrument};
@@ -142,11 +142,11 @@ impl BenchDescription {
 }
 
 /// Reads a description. Reports every error with line and remedy.
-pub fn read(path: &Path) -> Result<Vec<BenchDescription>, Mistakes> {
+pub fn read(path: &Path) -> Result<Vec<BenchDescription>, ConfigErrors> {
     let file = path.display().to_string();
     match std::fs::read_to_string(path) {
         Ok(text) => parse(&file, &text),
-        Err(fault) => Err(Mistakes { mistakes: vec![Mistake { line: 1, what: unread(&file, &fault) }], file }),
+        Err(fault) => Err(ConfigErrors { errors: vec![ConfigError { line: 1, what: unread(&file, &fault) }], file }),
     }
 }
 
@@ -162,6 +162,6 @@ pub fn unread(name: &str, fault: &std::io::Error) -> String {
 }
 
 /// `file` is the name in messages.
-pub fn parse(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
+pub fn parse(file: &str, text: &str) -> Result<Vec<BenchDescription>, ConfigErrors> {
     check::check(file, text)
 }

@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn the_ready_made_descriptions_are_right() {
     for (name, text) in READY_MADE {
-        let benches = parse(name, text).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        let benches = parse(name, text).unwrap_or_else(|errors| panic!("{errors}"));
         assert_eq!((benches.len(), benches[0].name.as_str()), (1, name));
         assert_eq!(benches[0].is_simulated(), name.ends_with("-mock"));
         assert_eq!(
@@ -46,8 +46,8 @@ brake_power_w = 350.0
 [[bench]]
 name = \"two\"
 ";
-    let mistakes = parse("bench.toml", text).unwrap_err();
-    let said = mistakes.to_string();
+    let errors = parse("bench.toml", text).unwrap_err();
+    let message = errors.to_string();
     for expected in [
         "line 2: name \"bench one\"",
         "line 4: unknown driver \"odrve\": write \"odrive\" or \"puma\"",
@@ -58,9 +58,9 @@ name = \"two\"
         "line 2: constants.gear_ratio is missing",
         "line 19: bench \"two\" has no joint: add [bench.joint], or [bench.mock]",
     ] {
-        assert!(said.contains(expected), "{expected:?} in\n{said}");
+        assert!(message.contains(expected), "{expected:?} in\n{message}");
     }
-    assert!(mistakes.mistakes.windows(2).all(|pair| pair[0].line <= pair[1].line));
+    assert!(errors.errors.windows(2).all(|pair| pair[0].line <= pair[1].line));
 }
 
 #[test]
@@ -94,7 +94,7 @@ driver = \"adam\"
 port = \"/dev/ttyUSB3\"
 channels = []
 ";
-    let said = parse("bench.toml", text).unwrap_err().to_string();
+    let message = parse("bench.toml", text).unwrap_err().to_string();
     for expected in [
         "line 5: port has no serial number: write usb://",
         "line 8: port has no host or port number: write tcp://host:port",
@@ -108,9 +108,9 @@ channels = []
         "line 26: channels is empty",
         "line 2: constants.gear_ratio is missing",
     ] {
-        assert!(said.contains(expected), "{expected:?} in\n{said}");
+        assert!(message.contains(expected), "{expected:?} in\n{message}");
     }
-    assert!(!said.contains("limits.brake"), "no brake, no limit for it:\n{said}");
+    assert!(!message.contains("limits.brake"), "no brake, no limit for it:\n{message}");
 }
 
 #[test]
@@ -118,23 +118,26 @@ fn a_limit_beyond_the_instrument_protects_nothing() {
     let (_, text) = READY_MADE.iter().find(|(name, _)| *name == "joint-a").unwrap();
     let text =
         text.replace("link_torque_nm = ", "link_torque_nm = 1").replace("brake_current_a = ", "brake_current_a = 1");
-    let said = parse("bench.toml", &text).unwrap_err().to_string();
-    assert!(said.contains("the range of the torque sensor is") && said.contains("the brake is rated for"), "{said}");
-    let said = parse("b.toml", "[[bench]]\nname = \"a\"\n[bench.mock]\njoint = \"z\"\n").unwrap_err().to_string();
-    assert!(said.contains("unknown joint \"z\"") && !said.contains("missing"), "{said}");
+    let message = parse("bench.toml", &text).unwrap_err().to_string();
+    assert!(
+        message.contains("the range of the torque sensor is") && message.contains("the brake is rated for"),
+        "{message}"
+    );
+    let message = parse("b.toml", "[[bench]]\nname = \"a\"\n[bench.mock]\njoint = \"z\"\n").unwrap_err().to_string();
+    assert!(message.contains("unknown joint \"z\"") && !message.contains("missing"), "{message}");
 }
 
 #[test]
 fn what_toml_itself_refuses_has_a_line_too() {
-    for (text, line, said) in [
+    for (text, line, message) in [
         ("[[bench]]\nname = \n", 2, ""),
         ("[[bench]]\nname = \"a\"\nmok.joint = \"a\"\n", 3, "unknown value mok: did you mean mock?"),
         ("[[bench]]\nname = \"a\"\n\n[bench.mock]\njoint = 3\n", 5, "expected a string"),
         ("", 1, "no bench described"),
     ] {
-        let mistakes = parse("b.toml", text).unwrap_err();
-        assert_eq!(mistakes.mistakes[0].line, line, "{mistakes}");
-        assert!(mistakes.to_string().contains(said), "{mistakes}");
+        let errors = parse("b.toml", text).unwrap_err();
+        assert_eq!(errors.errors[0].line, line, "{errors}");
+        assert!(errors.to_string().contains(message), "{errors}");
     }
 }
 
@@ -149,27 +152,27 @@ link_encoder = true
 counts_per_turn = 800
 ninter = 0
 ";
-    let said = parse("bench.toml", text).unwrap_err().to_string();
+    let message = parse("bench.toml", text).unwrap_err().to_string();
     for expected in [
         "line 4: a puma requires counts_per_turn of its encoder and amperes_per_volt",
         "line 6: link_encoder does not apply to driver \"puma\": remove it",
         "line 8: ninter 0: choose 1 to 255",
     ] {
-        assert!(said.contains(expected), "{expected:?} in\n{said}");
+        assert!(message.contains(expected), "{expected:?} in\n{message}");
     }
     let text = text.replace("puma", "odrive");
-    let said = parse("bench.toml", &text).unwrap_err().to_string();
-    assert!(said.contains("line 8: ninter does not apply to driver \"odrive\": remove it"), "{said}");
+    let message = parse("bench.toml", &text).unwrap_err().to_string();
+    assert!(message.contains("line 8: ninter does not apply to driver \"odrive\": remove it"), "{message}");
     let mock = "[[bench]]\nname = \"arm\"\n[bench.mock]\njoint = \"puma\"\nload = \"brake_a\"\n";
-    let said = parse("bench.toml", mock).unwrap_err().to_string();
-    assert!(said.contains("line 5: this joint has no load"), "{said}");
+    let message = parse("bench.toml", mock).unwrap_err().to_string();
+    assert!(message.contains("line 5: this joint has no load"), "{message}");
     let geared = |joint: &str| {
         let servo = "servo = { velgan = 8, inttol = 300 }";
         parse("bench.toml", &format!("[[bench]]\nname = \"arm\"\n[bench.mock]\njoint = \"{joint}\"\n{servo}\n"))
     };
     assert!(geared("puma").is_ok());
-    let said = geared("a").unwrap_err().to_string();
-    assert!(said.contains("line 5: this joint has no Puma-type servo: remove servo"), "{said}");
+    let message = geared("a").unwrap_err().to_string();
+    assert!(message.contains("line 5: this joint has no Puma-type servo: remove servo"), "{message}");
 }
 
 #[test]
@@ -185,14 +188,14 @@ fn a_bad_day_comes_to_an_instrument_that_can_have_it() {
         ("brake", "silent", ", until_s = 2.5", "line 5: until_s = 2.5 must be later than from_s = 3"),
         ("brake", "silnet", "", "line 5: unknown value silnet: did you mean silent?"),
     ] {
-        let said = planned(instrument, trouble, more).unwrap_err().to_string();
-        assert!(said.contains(expected), "{expected} in\n{said}");
+        let message = planned(instrument, trouble, more).unwrap_err().to_string();
+        assert!(message.contains(expected), "{expected} in\n{message}");
     }
     assert!(planned("brake", "current_lost", ", until_s = 3.5").is_ok());
     assert!(bench("disk", "disk_full").is_ok());
     for (instrument, trouble) in [("brake", "disk_full"), ("disk", "silent")] {
-        let said = bench(instrument, trouble).unwrap_err().to_string();
-        assert!(said.contains("line 5: instrument \"disk\" and trouble \"disk_full\" belong together"), "{said}");
+        let message = bench(instrument, trouble).unwrap_err().to_string();
+        assert!(message.contains("line 5: instrument \"disk\" and trouble \"disk_full\" belong together"), "{message}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! Checks of single values: each is valid, or reported with a remedy.
 
-use super::mistake::Collector;
+use super::error::Collector;
 use jiff::Zoned;
 use jiff::civil::Date;
 use jointbench_devices::PortSettings;

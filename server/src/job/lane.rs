@@ -1,6 +1,6 @@
 //! Limits the number of simultaneous and waiting computations.
 
-use crate::lab::LabError;
+use crate::error::LabError;
 use std::sync::Arc;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[tokio::test]
-    async fn whoever_comes_too_late_is_sent_away() {
+    async fn a_request_beyond_the_queue_is_refused() {
         let lane = Arc::new(Lane::default());
         let on = [lane.enter().await.unwrap(), lane.enter().await.unwrap()];
         let waiting: Vec<_> = (0..WAITING)

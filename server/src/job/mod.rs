@@ -10,15 +10,15 @@
 //! stdout     one line, answer or refusal; then the answer of the job
 //! ```
 
-mod inside;
 mod lane;
+mod parameters;
 mod process;
 mod reply;
 
-pub use inside::main;
+pub use parameters::{Alignment, ExportRequest, FileFormat, ImportRequest, Offer, PointLimit};
 pub use process::{Jobs, Streamed};
+pub(crate) use reply::{Head, Refusal};
 
-use crate::lab::{Alignment, ExportRequest, ImportRequest, Most, Offer};
 use crate::view::{EffectTrial, Exclusion};
 use jointbench_procedure::Lesson;
 use serde::{Deserialize, Serialize};
@@ -45,7 +45,7 @@ pub enum Job {
     Residuals {
         model: i64,
     },
-    Compare {
+    CompareModels {
         first: i64,
         second: i64,
         run: i64,
@@ -74,7 +74,7 @@ pub enum Job {
         run: i64,
         step: Option<String>,
     },
-    Beside {
+    OverlayModel {
         run: i64,
     },
     /// The model that a run of `brake_hysteresis` has identified.
@@ -92,7 +92,7 @@ pub enum Job {
         from_s: Option<f64>,
         to_s: Option<f64>,
     },
-    Differences {
+    CompareRuns {
         runs: Vec<i64>,
         how: Alignment,
     },
@@ -100,7 +100,7 @@ pub enum Job {
         run: i64,
         formulas: Vec<String>,
         window: [Option<f64>; 2],
-        most: Most,
+        most: PointLimit,
     },
     Spectrum {
         run: i64,
@@ -148,8 +148,8 @@ impl Default for Limits {
 
 /// Input of the process.
 #[derive(Debug, Serialize, Deserialize)]
-struct Request<J> {
-    data: PathBuf,
-    limits: Limits,
-    job: J,
+pub(crate) struct Request<J> {
+    pub data: PathBuf,
+    pub limits: Limits,
+    pub job: J,
 }

@@ -3,7 +3,7 @@
 use super::lane::{Lane, Turn, ending};
 use super::reply::Head;
 use super::{GIB, Job, Limits, Request};
-use crate::lab::LabError;
+use crate::error::LabError;
 use axum::body::Bytes;
 use std::path::{Path, PathBuf};
 use std::process::{ExitStatus, Stdio};
@@ -15,11 +15,11 @@ use tokio::task::JoinHandle;
 use tokio::time::Instant;
 
 /// Limit of a complete answer in memory. Larger answers are streamed ([`Jobs::stream`]).
-const MOST_ANSWERED_BYTES: u64 = 128 << 20;
+const MAX_ANSWER_BYTES: u64 = 128 << 20;
 /// Limit of the head: one line with a sentence.
-const MOST_HEAD_BYTES: u64 = 1 << 20;
+const MAX_HEAD_BYTES: u64 = 1 << 20;
 /// Limit of the stored error output, which contains the last messages of the process.
-const MOST_COMPLAINT_BYTES: u64 = 16 << 10;
+const MAX_STDERR_BYTES: u64 = 16 << 10;
 /// Bytes of a piece, and number of pieces that wait for a slow reader.
 const PIECE_BYTES: usize = 64 << 10;
 const PIECES: usize = 4;
@@ -48,7 +48,7 @@ impl Jobs {
     pub fn new(program: &Path, data: &Path, limits: Limits) -> Jobs {
         let (program, data) = (program.to_owned(), data.to_owned());
         // A process cannot have more memory than its parent.
-        let limits = Limits { memory_bytes: limits.memory_bytes.min(own_memory_bytes()), ..limits };
+        let limits = Limits { memory_bytes: limits.memory_bytes.min(memory_limit_bytes()), ..limits };
         let (computing, moving, ending) = Default::default();
         Jobs { inner: Arc::new(Inner { program, data, limits, computing, moving, ending }) }
     }
@@ -63,10 +63,10 @@ impl Jobs {
         let mut process = self.start(job).await?;
         let mut answer = Vec::new();
         while let Some(piece) = process.piece().await? {
-            if answer.len() as u64 + piece.len() as u64 > MOST_ANSWERED_BYTES {
+            if answer.len() as u64 + piece.len() as u64 > MAX_ANSWER_BYTES {
                 return Err(LabError::TooLarge(format!(
                     "the result exceeds {} MiB: choose a shorter run, or exclude intervals",
-                    MOST_ANSWERED_BYTES >> 20
+                    MAX_ANSWER_BYTES >> 20
                 )));
             }
             answer.extend_from_slice(&piece);
@@ -120,9 +120,9 @@ impl Jobs {
 struct Process {
     child: Child,
     /// Open while a client waits.
-    asked: ChildStdin,
-    said: BufReader<ChildStdout>,
-    complaint: JoinHandle<String>,
+    stdin: ChildStdin,
+    stdout: BufReader<ChildStdout>,
+    stderr: JoinHandle<String>,
     limits: Limits,
     until: Instant,
     ending: watch::Receiver<bool>,
@@ -140,12 +140,12 @@ impl Process {
         let mut child =
             spawned.map_err(|fault| LabError::Internal(format!("the computation cannot be started: {fault}")))?;
         let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
-        let (Some(asked), Some(said), Some(complaint)) = pipes else { unreachable!("all three are piped") };
+        let (Some(stdin), Some(stdout), Some(stderr)) = pipes else { unreachable!("all three are piped") };
         Ok(Process {
             child,
-            asked,
-            said: BufReader::new(said),
-            complaint: tokio::spawn(hear(complaint)),
+            stdin,
+            stdout: BufReader::new(stdout),
+            stderr: tokio::spawn(read_stderr(stderr)),
             limits: inner.limits,
             until: Instant::now() + inner.limits.time,
             ending: inner.ending.subscribe(),
@@ -156,16 +156,16 @@ impl Process {
     /// Sends the request and waits for the head of the reply.
     async fn ask(&mut self, line: &[u8]) -> Result<(), LabError> {
         let mut head = String::new();
-        let (asked, said) = (&mut self.asked, &mut self.said);
-        let hear = async {
+        let (stdin, stdout) = (&mut self.stdin, &mut self.stdout);
+        let exchange = async {
             // A process that ends immediately does not read the request; its exit status contains the reason.
-            let _ = asked.write_all(line).await;
-            said.take(MOST_HEAD_BYTES).read_line(&mut head).await
+            let _ = stdin.write_all(line).await;
+            stdout.take(MAX_HEAD_BYTES).read_line(&mut head).await
         };
-        in_time(self.until, &mut self.ending, self.limits, hear).await?;
+        in_time(self.until, &mut self.ending, self.limits, exchange).await?;
         match serde_json::from_str(&head) {
             Ok(Head::Answer) => Ok(()),
-            Ok(Head::Refused(refusal)) => Err(self.limits.told((*refusal).into())),
+            Ok(Head::Refused(refusal)) => Err(self.limits.with_cause((*refusal).into())),
             Err(_) => Err(self.died().await),
         }
     }
@@ -173,7 +173,7 @@ impl Process {
     /// The next piece; `None` after the last piece of a complete answer.
     async fn piece(&mut self) -> Result<Option<Bytes>, LabError> {
         let mut piece = vec![0; PIECE_BYTES];
-        let read = in_time(self.until, &mut self.ending, self.limits, self.said.read(&mut piece)).await?;
+        let read = in_time(self.until, &mut self.ending, self.limits, self.stdout.read(&mut piece)).await?;
         piece.truncate(read);
         if read > 0 {
             return Ok(Some(piece.into()));
@@ -195,22 +195,22 @@ impl Process {
             Ok(status) => status,
             Err(fault) => return fault,
         };
-        let complaint = (&mut self.complaint).await.unwrap_or_default();
-        tracing::warn!(%status, complaint = complaint.trim(), "a computation died");
-        match lacked_memory(status, &complaint) {
+        let stderr = (&mut self.stderr).await.unwrap_or_default();
+        tracing::warn!(%status, stderr = stderr.trim(), "a computation died");
+        match lacked_memory(status, &stderr) {
             true => self.limits.too_much_memory(),
-            false => LabError::Internal(format!("the computation failed ({status}): {}", last_line(&complaint))),
+            false => LabError::Internal(format!("the computation failed ({status}): {}", last_line(&stderr))),
         }
     }
 }
 
-async fn hear(complaint: ChildStderr) -> String {
-    let mut complaint = BufReader::new(complaint);
-    let mut words = Vec::new();
-    let _ = (&mut complaint).take(MOST_COMPLAINT_BYTES).read_to_end(&mut words).await;
+async fn read_stderr(stderr: ChildStderr) -> String {
+    let mut stderr = BufReader::new(stderr);
+    let mut text = Vec::new();
+    let _ = (&mut stderr).take(MAX_STDERR_BYTES).read_to_end(&mut text).await;
     // Reads the rest, so that the process does not block on a full pipe.
-    let _ = tokio::io::copy(&mut complaint, &mut tokio::io::sink()).await;
-    String::from_utf8_lossy(&words).into_owned()
+    let _ = tokio::io::copy(&mut stderr, &mut tokio::io::sink()).await;
+    String::from_utf8_lossy(&text).into_owned()
 }
 
 async fn in_time<T>(
@@ -227,32 +227,32 @@ async fn in_time<T>(
 }
 
 #[cfg(unix)]
-fn own_memory_bytes() -> u64 {
+fn memory_limit_bytes() -> u64 {
     rustix::process::getrlimit(rustix::process::Resource::As).maximum.unwrap_or(u64::MAX)
 }
 
 #[cfg(not(unix))]
-fn own_memory_bytes() -> u64 {
+fn memory_limit_bytes() -> u64 {
     u64::MAX
 }
 
 /// A failed allocation ends a Rust program by SIGABRT; a system with too little memory ends it by SIGKILL.
-fn lacked_memory(status: ExitStatus, complaint: &str) -> bool {
+fn lacked_memory(status: ExitStatus, stderr: &str) -> bool {
     #[cfg(unix)]
     let killed = std::os::unix::process::ExitStatusExt::signal(&status) == Some(9);
     #[cfg(not(unix))]
     let killed = false;
-    killed || says_memory(complaint)
+    killed || mentions_memory(stderr)
 }
 
 /// Messages of Rust, the system (ENOMEM, and EAGAIN for the stack of a thread) and SQLite.
-fn says_memory(words: &str) -> bool {
+fn mentions_memory(text: &str) -> bool {
     let known = ["memory allocation of", "Cannot allocate memory", "out of memory", "Resource temporarily unavailable"];
-    known.iter().any(|known| words.contains(known))
+    known.iter().any(|known| text.contains(known))
 }
 
-fn last_line(words: &str) -> &str {
-    words.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no message")
+fn last_line(text: &str) -> &str {
+    text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no message")
 }
 
 impl Limits {
@@ -273,9 +273,9 @@ impl Limits {
     }
 
     /// Replaces a refusal whose cause was a lack of memory.
-    fn told(self, error: LabError) -> LabError {
+    fn with_cause(self, error: LabError) -> LabError {
         match &error {
-            LabError::Internal(text) | LabError::Setup(text) if says_memory(text) => self.too_much_memory(),
+            LabError::Internal(text) | LabError::Setup(text) if mentions_memory(text) => self.too_much_memory(),
             _ => error,
         }
     }

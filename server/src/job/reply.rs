@@ -1,6 +1,6 @@
 //! The first line of a reply: an answer follows, or the refusal.
 
-use crate::lab::LabError;
+use crate::error::LabError;
 use jointbench_model::FormulaFault;
 use jointbench_model::formula::Also;
 use serde::{Deserialize, Serialize};
@@ -151,11 +151,11 @@ mod tests {
             })),
         ];
         for error in errors {
-            let said = format!("{error:?}");
+            let expected = format!("{error:?}");
             let line = Head::Refused(Box::new(error.into())).line();
             assert_eq!(line.iter().filter(|byte| **byte == b'\n').count(), 1);
-            let Head::Refused(refusal) = serde_json::from_slice(&line).unwrap() else { panic!("{said}") };
-            assert_eq!(format!("{:?}", LabError::from(*refusal)), said);
+            let Head::Refused(refusal) = serde_json::from_slice(&line).unwrap() else { panic!("{expected}") };
+            assert_eq!(format!("{:?}", LabError::from(*refusal)), expected);
         }
     }
 }

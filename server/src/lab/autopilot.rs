@@ -1,9 +1,9 @@
-//! Autopilots: create, list, stop. [`pilot`](super::pilot) contains their steps.
+//! Autopilots: create, list, stop. [`autopilot_task`](super::autopilot_task) contains their steps.
 
-use super::pilot::{Goal, Pilot};
-use super::{Answer, Lab, LabError, reread};
+use super::autopilot_task::{AutopilotTask, Goal};
+use super::{Answer, Lab, LabError};
 use crate::store::AutopilotRecord;
-use crate::view::{Autopilot, AutopilotState, AutopilotStep, NewAutopilot, NewExperiment};
+use crate::view::{Autopilot, AutopilotState, AutopilotStep, NewAutopilot, NewExperiment, reread};
 use jointbench_instrument::Kind;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -12,7 +12,7 @@ use tokio::sync::watch;
 use tokio::task::JoinHandle;
 
 /// An active autopilot.
-pub(super) struct Flight {
+pub(super) struct ActiveAutopilot {
     bench: String,
     /// Sends the name of the person who requested the end.
     stop: watch::Sender<Option<String>>,
@@ -21,16 +21,16 @@ pub(super) struct Flight {
 
 /// The active autopilots by id.
 #[derive(Default)]
-pub(super) struct Flights(Mutex<HashMap<i64, Flight>>);
+pub(super) struct ActiveAutopilots(Mutex<HashMap<i64, ActiveAutopilot>>);
 
-impl Flights {
-    fn lock(&self) -> MutexGuard<'_, HashMap<i64, Flight>> {
+impl ActiveAutopilots {
+    fn lock(&self) -> MutexGuard<'_, HashMap<i64, ActiveAutopilot>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Aborts all autopilots immediately.
     pub fn abort(&self) {
-        self.lock().drain().for_each(|(_, flight)| flight.task.abort());
+        self.lock().drain().for_each(|(_, active)| active.task.abort());
     }
 }
 
@@ -52,7 +52,7 @@ impl Lab {
         if let Some(effects) = &new.effects {
             self.spec(kind, effects).await?;
         }
-        self.take_off(&new.bench, reread(new)?, Goal::Explain(new.clone()), by).await
+        self.start_task(&new.bench, reread(new)?, Goal::Explain(new.clone()), by).await
     }
 
     /// Refuses an invalid first run now, not after the start.
@@ -73,17 +73,17 @@ impl Lab {
 
     /// Executes the run that a diagnosis recommends and diagnoses the same model again with its data.
     pub async fn start_experiment(&self, diagnosis: i64, new: &NewExperiment, by: &str) -> Answer<Autopilot> {
-        let (model, experiment) = self.asked_for(diagnosis, &new.bench).await?;
+        let (model, experiment) = self.recommended_run(diagnosis, &new.bench).await?;
         let experiment = experiment.ok_or_else(|| {
             LabError::Invalid(format!("diagnosis {diagnosis} recommends no further run on {}", new.bench))
         })?;
         let mut request: Map<String, Value> = reread(new)?;
         request.insert("diagnosis".into(), diagnosis.into());
         let goal = Goal::Decide { runs: model.runs(), model: model.id, effects: model.effects, experiment };
-        self.take_off(&new.bench, request, goal, by).await
+        self.start_task(&new.bench, request, goal, by).await
     }
 
-    async fn take_off(&self, bench: &str, request: Map<String, Value>, goal: Goal, by: &str) -> Answer<Autopilot> {
+    async fn start_task(&self, bench: &str, request: Map<String, Value>, goal: Goal, by: &str) -> Answer<Autopilot> {
         self.check_is_free(bench)?;
         if let Some(block) = self.inner.store.bench_block(bench).await? {
             return Err(LabError::Conflict(format!("bench {bench} is blocked: {}", block.reason)));
@@ -91,25 +91,25 @@ impl Lab {
         let state: String = reread(&AutopilotState::Running)?;
         let id = self.inner.store.create_autopilot(bench, &request, &state).await?;
         tracing::info!(autopilot.id = id, bench, by, "autopilot started");
-        self.send_off(id, bench, goal, format!("{by}, autopilot {id}"));
+        self.spawn_task(id, bench, goal, format!("{by}, autopilot {id}"));
         self.autopilot(id).await
     }
 
-    fn send_off(&self, id: i64, bench: &str, goal: Goal, by: String) {
+    fn spawn_task(&self, id: i64, bench: &str, goal: Goal, by: String) {
         let (stop, stopped) = watch::channel(None);
         let (lab, bench) = (self.clone(), bench.to_owned());
-        let pilot = Pilot::new(lab.clone(), id, bench.clone(), stopped, by);
-        // The lock is held until the flight is inserted: the task must not remove it earlier.
-        let mut flights = self.inner.flights.lock();
+        let task = AutopilotTask::new(lab.clone(), id, bench.clone(), stopped, by);
+        // The lock is held until the autopilot is inserted: the task must not remove it earlier.
+        let mut active_autopilots = self.inner.active_autopilots.lock();
         let task = tokio::spawn(async move {
-            pilot.fly(goal).await;
-            lab.inner.flights.lock().remove(&id);
+            task.run(goal).await;
+            lab.inner.active_autopilots.lock().remove(&id);
         });
-        flights.insert(id, Flight { bench, stop, task });
+        active_autopilots.insert(id, ActiveAutopilot { bench, stop, task });
     }
 
     fn check_is_free(&self, bench: &str) -> Answer<()> {
-        let on = self.inner.flights.lock().iter().find(|(_, f)| f.bench == bench).map(|(id, _)| *id);
+        let on = self.inner.active_autopilots.lock().iter().find(|(_, f)| f.bench == bench).map(|(id, _)| *id);
         match on {
             Some(id) => Err(LabError::Conflict(format!(
                 "autopilot {id} uses bench {bench}: stop it, or wait until it finishes"
@@ -133,9 +133,10 @@ impl Lab {
     /// Ends the autopilot after its current step. An active run ends as with `POST /runs/{id}/stop`.
     pub async fn stop_autopilot(&self, id: i64, by: &str) -> Answer<Autopilot> {
         let by = Some(by.to_owned());
-        let told = self.inner.flights.lock().get(&id).is_some_and(|flight| flight.stop.send(by).is_ok());
+        let is_signalled =
+            self.inner.active_autopilots.lock().get(&id).is_some_and(|active| active.stop.send(by).is_ok());
         let now = self.autopilot(id).await?;
-        if !told {
+        if !is_signalled {
             return Err(LabError::Over(format!("autopilot {id} has already ended")));
         }
         Ok(now)

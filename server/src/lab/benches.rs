@@ -1,13 +1,12 @@
 //! Benches and requests to them.
 
 use super::calibrations::BRAKE_MODEL;
-use super::convert::{bench_view, safety_entry};
 use super::models::blocking;
 use super::{Answer, Lab, LabError};
-use crate::bench::BenchHandle;
+use crate::bench::{BenchHandle, bench_view};
 use crate::job::Job;
 use crate::store::RunFilter;
-use crate::view::{self, Bench, BenchState};
+use crate::view::{self, Bench, BenchState, reread, safety_entry};
 use jointbench_instrument::zero::TORQUE_ZERO;
 use jointbench_procedure::catalogue::{BrakeModel, brake_model};
 use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
@@ -85,7 +84,7 @@ impl Lab {
     /// The catalogue; with a bench, it includes the procedures' problems on that bench.
     pub async fn procedures(&self, bench: Option<&str>) -> Answer<Vec<view::Procedure>> {
         let facts = bench.map(|name| self.handle(name)).transpose()?.map(BenchHandle::facts);
-        let mut told = Vec::new();
+        let mut procedures = Vec::new();
         for one in catalogue() {
             let given = match bench {
                 Some(bench) => self.applied_choices(bench, one.id()).await?.map(|(_, given)| given),
@@ -93,9 +92,9 @@ impl Lab {
             }
             .unwrap_or_default();
             let refused = facts.as_ref().and_then(|facts| refusal(*one, &given, facts));
-            told.push(procedure_view(*one, &given, refused));
+            procedures.push(procedure_view(*one, &given, refused));
         }
-        Ok(told)
+        Ok(procedures)
     }
 
     /// Dry run. Nothing moves.
@@ -126,19 +125,19 @@ impl Lab {
             (source, facts.brake_model) = self.brake_model(bench.name(), i64::from(run)).await?.unzip();
         }
         let mut plan = procedure.plan(&choices, &facts)?;
-        let mut tell = |fact: &str, value: Value| plan.meta.other.insert(fact.to_owned(), value);
+        let mut add = |fact: &str, value: Value| plan.meta.other.insert(fact.to_owned(), value);
         if let Some(run) = source {
-            tell("brake_model_of_run", run.into());
+            add("brake_model_of_run", run.into());
         }
         let used = |(name, value): (&String, &Value)| choices[name].as_f64() == value.as_f64();
         if let Some(run) = friction.filter(|_| given.iter().any(used)) {
-            tell("friction_of_run", run.into());
+            add("friction_of_run", run.into());
         }
         if facts.has_torque_sensor
             && let Some((run, zero_nm)) = self.applied_zero(bench.name(), procedure).await?
         {
-            tell(TORQUE_ZERO, zero_nm.into());
-            tell("torque_sensor_zero_of_run", run.into());
+            add(TORQUE_ZERO, zero_nm.into());
+            add("torque_sensor_zero_of_run", run.into());
         }
         Ok((bench, plan))
     }
@@ -164,7 +163,7 @@ impl Lab {
                 "run {id} is not a {BRAKE_MODEL} run of bench {bench}: enter such a run, or 0 for the latest"
             )));
         }
-        let model: Option<BrakeModel> = self.work_out(Job::BrakeModel { run: id }).await?;
+        let model: Option<BrakeModel> = self.compute(Job::BrakeModel { run: id }).await?;
         let missing = || {
             LabError::Invalid(format!(
                 "run {id} ended before its model was identified: repeat \
@@ -192,7 +191,7 @@ impl Lab {
 
 /// Preview of a plan on its bench, with the conditions that prevent a start now.
 pub(super) fn previewed(bench: &BenchHandle, plan: &Plan) -> Answer<view::Preview> {
-    let mut preview: view::Preview = super::reread(&plan.preview(&bench.facts()))?;
+    let mut preview: view::Preview = reread(&plan.preview(&bench.facts()))?;
     preview.wait_s = bench.description().pace().map(|pace| preview.duration_s / pace);
     preview.checks.extend(readiness(bench));
     Ok(preview)

@@ -47,13 +47,13 @@ impl Lab {
     /// Newest first.
     pub async fn calibrations(&self, bench: &str) -> Answer<Vec<Calibration>> {
         self.handle(bench)?;
-        let mut told: Vec<Calibration> = Vec::new();
+        let mut calibrations: Vec<Calibration> = Vec::new();
         for record in self.inner.store.calibrations(bench).await? {
-            let holds = !told.iter().any(|one| one.procedure == record.procedure);
+            let holds = !calibrations.iter().any(|one| one.procedure == record.procedure);
             let (id, procedure, run, by, at) = (record.id, record.procedure, record.run, record.by, record.at);
-            told.push(Calibration { id, procedure, run, by, at, holds });
+            calibrations.push(Calibration { id, procedure, run, by, at, holds });
         }
-        Ok(told)
+        Ok(calibrations)
     }
 
     /// Applies a run to the next runs. Returns all entries, the new one first.

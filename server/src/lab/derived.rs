@@ -1,24 +1,14 @@
 //! Channels computed from those of a run, and their spectra.
 
 use super::{Answer, Lab, LabError};
-use crate::job::Job;
+use crate::job::{Job, PointLimit};
 use crate::view::{SampleColumn, Samples, SpectrumView, finite};
 use jointbench_model::channels::{ChannelFormula, spectrum};
-use serde::{Deserialize, Serialize};
 
 /// Limit of curves in one plot.
 const FORMULAS: usize = 4;
 const POINTS: u32 = 20_000;
 const TIME: &str = "time_s";
-
-/// Limit of the returned points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Most {
-    /// Smallest and largest value of each pixel, so that a spike of one sample remains visible.
-    Pixels(u32),
-    /// Unchanged rows, evenly selected.
-    Rows(u32),
-}
 
 impl Lab {
     /// A channel for each formula in the window `[from_s, to_s]`.
@@ -27,16 +17,16 @@ impl Lab {
         run: i64,
         formulas: Vec<String>,
         window: [Option<f64>; 2],
-        most: Most,
+        most: PointLimit,
     ) -> Answer<Samples> {
-        let (Most::Pixels(points) | Most::Rows(points)) = most;
+        let (PointLimit::Pixels(points) | PointLimit::Rows(points)) = most;
         if points == 0 || points > POINTS {
             return Err(LabError::Invalid(format!("{points} points: choose 1 to {POINTS}")));
         }
         if formulas.is_empty() || formulas.len() > FORMULAS {
             return Err(LabError::Invalid(format!("{} formulas: write 1 to {FORMULAS}", formulas.len())));
         }
-        self.work_out(Job::Derived { run, formulas, window, most }).await
+        self.compute(Job::Derived { run, formulas, window, most }).await
     }
 
     pub(super) async fn derived_here(
@@ -44,7 +34,7 @@ impl Lab {
         run: i64,
         formulas: &[String],
         window: [Option<f64>; 2],
-        most: Most,
+        most: PointLimit,
     ) -> Answer<Samples> {
         let (time_s, channels) = self.computed(run, formulas, window).await?;
         let rows = time_s.len();
@@ -67,7 +57,7 @@ impl Lab {
     }
 
     pub async fn spectrum(&self, run: i64, formula: String, window: [Option<f64>; 2]) -> Answer<SpectrumView> {
-        self.work_out(Job::Spectrum { run, formula, window }).await
+        self.compute(Job::Spectrum { run, formula, window }).await
     }
 
     pub(super) async fn spectrum_here(
@@ -123,13 +113,13 @@ impl Lab {
 }
 
 /// The row range of each point.
-fn grouped(rows: usize, most: Most) -> Vec<std::ops::Range<usize>> {
-    let (Most::Pixels(points) | Most::Rows(points)) = most;
+fn grouped(rows: usize, most: PointLimit) -> Vec<std::ops::Range<usize>> {
+    let (PointLimit::Pixels(points) | PointLimit::Rows(points)) = most;
     let points = (points as usize).min(rows);
     let begin = |point: usize| point * rows / points.max(1);
     let group = |point: usize| match most {
-        Most::Pixels(_) => begin(point)..begin(point + 1),
-        Most::Rows(_) => begin(point)..begin(point) + 1,
+        PointLimit::Pixels(_) => begin(point)..begin(point + 1),
+        PointLimit::Rows(_) => begin(point)..begin(point) + 1,
     };
     (0..points).map(group).collect()
 }
@@ -140,11 +130,11 @@ mod tests {
 
     #[test]
     fn every_row_is_in_one_pixel_and_rows_are_chosen_evenly() {
-        let pixels = grouped(10, Most::Pixels(4));
+        let pixels = grouped(10, PointLimit::Pixels(4));
         assert_eq!(pixels, [0..2, 2..5, 5..7, 7..10]);
-        let rows = grouped(10, Most::Rows(4));
+        let rows = grouped(10, PointLimit::Rows(4));
         assert_eq!(rows, [0..1, 2..3, 5..6, 7..8]);
-        assert_eq!(grouped(3, Most::Pixels(9)).len(), 3);
-        assert!(grouped(0, Most::Rows(9)).is_empty());
+        assert_eq!(grouped(3, PointLimit::Pixels(9)).len(), 3);
+        assert!(grouped(0, PointLimit::Rows(9)).is_empty());
     }
 }

@@ -1,28 +1,13 @@
 //! Recommended next run: selects from the menu of a bench, or of the conditions that the run itself covers.
 
-use super::{Answer, Lab, LabError, convert};
-use crate::job::Job;
+use super::{Answer, Lab, LabError};
+use crate::job::{Job, Offer};
 use crate::store::{DiagnosisRecord, ModelRecord};
-use crate::view;
+use crate::view::{self, reread};
 use jointbench_instrument::RunTable;
 use jointbench_model::{Next, Open, Options};
 use jointbench_procedure::{BenchFacts, menu};
-use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
-
-/// A bench with the parameters of its runs so far.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Offer {
-    pub bench: BenchFacts,
-    pub parameters: Map<String, Value>,
-}
-
-impl Offer {
-    /// Without a bench: the conditions that the run covers.
-    pub fn shown_by(run: &RunTable) -> Self {
-        Self { bench: BenchFacts::shown_by(run), parameters: Map::new() }
-    }
-}
+use serde_json::Value;
 
 /// The recommended next run. A diagnosis is valid without one: an error gives an empty recommendation.
 pub fn next_run(run: &RunTable, open: &Open, offer: &Offer, options: &Options) -> Next {
@@ -55,7 +40,7 @@ impl Lab {
     }
 
     /// The run that a stored diagnosis recommends on this bench, and the diagnosed model.
-    pub(super) async fn asked_for(
+    pub(super) async fn recommended_run(
         &self,
         diagnosis: i64,
         bench: &str,
@@ -63,7 +48,7 @@ impl Lab {
         let record: DiagnosisRecord = self.inner.store.diagnosis(diagnosis).await?;
         let model = self.inner.store.model(record.model).await?;
         let next = match self.offer(&model.runs(), Some(bench)).await? {
-            Some(offer) => self.work_out(Job::NextRun { diagnosis, offer }).await?,
+            Some(offer) => self.compute(Job::NextRun { diagnosis, offer }).await?,
             None => None,
         };
         Ok((model, next))
@@ -74,10 +59,10 @@ impl Lab {
         let model = self.inner.store.model(record.model).await?;
         let table = self.tables(&model.runs()).await?;
         check_same_joint(&table, &offer.bench)?;
-        let found: jointbench_model::Diagnosis = convert::reread(&record.diagnosis)?;
-        let open = Open { own: self.own_effects(table.kind()).await?, ..Open::from(&found) };
+        let found: jointbench_model::Diagnosis = reread(&record.diagnosis)?;
+        let open = Open { own: self.user_effects(table.kind()).await?, ..Open::from(&found) };
         let next = super::models::blocking(move || Ok(next_run(&table, &open, &offer, &Options::default()))).await?;
-        next.experiment.map(|next| convert::reread(&next)).transpose()
+        Ok(next.experiment.map(|next| reread(&next)).transpose()?)
     }
 }
 

@@ -4,53 +4,12 @@ use super::spreadsheet::defused_channels;
 use super::statistics::ROWS_AT_ONCE;
 use super::transfer::SIMULATED;
 use super::{Answer, Lab, LabError};
-use crate::job::{Job, Streamed};
+use crate::job::{ExportRequest, FileFormat, Job, Streamed};
 use crate::store::RunRecord;
 use jointbench_files::{CsvWriter, MatWriter, ParquetWriter, meta_json};
 use jointbench_instrument::{Channel, Meta};
-use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 use std::ops::Range;
-use utoipa::ToSchema;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum FileFormat {
-    Csv,
-    Parquet,
-    /// For MATLAB, Octave and SciPy; out only
-    Mat,
-}
-
-impl FileFormat {
-    pub fn extension(self) -> &'static str {
-        match self {
-            FileFormat::Csv => "csv",
-            FileFormat::Parquet => "parquet",
-            FileFormat::Mat => "mat",
-        }
-    }
-
-    pub fn media_type(self) -> &'static str {
-        match self {
-            FileFormat::Csv => "text/csv; charset=utf-8",
-            FileFormat::Parquet => "application/vnd.apache.parquet",
-            FileFormat::Mat => "application/x-matlab-data",
-        }
-    }
-}
-
-/// Export of a run, or of a section of it, to a file.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct ExportRequest {
-    pub run: i64,
-    pub format: FileFormat,
-    /// On the run's clock; default: the first row.
-    pub from_s: Option<f64>,
-    pub to_s: Option<f64>,
-    /// Prevents that a spreadsheet reads a column name of a CSV file as a formula.
-    pub spreadsheet_safe: bool,
-}
 
 impl Lab {
     /// The file in parts. [`Lab::import`] reads it back unchanged.
@@ -72,7 +31,7 @@ impl Lab {
 
     pub(crate) async fn export_into(&self, request: ExportRequest, out: impl Write + Send + 'static) -> Answer<()> {
         let ExportRequest { run, format, from_s, to_s, spreadsheet_safe } = request;
-        let (meta, record) = self.leaving(run).await?;
+        let (meta, record) = self.export_facts(run).await?;
         let rows = self.inner.store.rows_between(run, from_s, to_s).await?;
         let channels = record.channels;
         match format {
@@ -116,7 +75,7 @@ impl Lab {
     }
 
     /// The metadata of a run for an export.
-    async fn leaving(&self, id: i64) -> Answer<(Meta, RunRecord)> {
+    async fn export_facts(&self, id: i64) -> Answer<(Meta, RunRecord)> {
         let (mut meta, record) = self.facts(id).await?;
         if record.simulated {
             meta.other.insert(SIMULATED.to_owned(), true.into());
@@ -126,7 +85,7 @@ impl Lab {
 
     /// The metadata of a run as `meta.json`, for a table format without metadata.
     pub async fn export_meta(&self, id: i64) -> Answer<String> {
-        let (meta, record) = self.leaving(id).await?;
+        let (meta, record) = self.export_facts(id).await?;
         Ok(meta_json(&meta, &record.channels))
     }
 }

@@ -1,12 +1,12 @@
 //! Results that a procedure identifies from a stored run.
 
 use super::calibrations::applies;
-use super::working::{Subject as Turn, patiently};
-use super::{Answer, Lab, LabError, reread};
+use super::computation::{Subject as Turn, with_retries};
+use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
 use crate::job::Job;
 use crate::store::Subject;
-use crate::view::{Earlier, FollowUp, Identification, LiveMessage, Quantity, Shown, word};
+use crate::view::{Earlier, FollowUp, Identification, LiveMessage, Quantity, Shown, reread, word};
 use jointbench_procedure::RunState;
 use jointbench_procedure::parameter::Values;
 use serde::Serialize;
@@ -28,15 +28,15 @@ impl Lab {
         let record = self.inner.store.run(id).await?;
         let applied = self.inner.store.calibration(&record.bench, &record.procedure).await?;
         let _turn = self.inner.turns.of(Turn::Earlier).await;
-        let mut told = Vec::new();
+        let mut earlier = Vec::new();
         for (run, created_at) in self.inner.store.earlier(id, applied, EARLIER).await? {
             match self.quantities(run).await {
-                Ok(quantities) => told.push(Earlier { run, created_at, holds: applied == Some(run), quantities }),
+                Ok(quantities) => earlier.push(Earlier { run, created_at, holds: applied == Some(run), quantities }),
                 Err(LabError::NotFound(_) | LabError::Invalid(_)) => {}
                 Err(fault) => return Err(fault),
             }
         }
-        Ok(told)
+        Ok(earlier)
     }
 
     /// The quantities of a complete run.
@@ -46,7 +46,7 @@ impl Lab {
 
     /// The same if they are already in the cache.
     pub(super) async fn quantities_known(&self, run: i64) -> Answer<Option<Vec<Quantity>>> {
-        let kept = self.inner.store.kept(Subject::Run(run), QUANTITIES).await?;
+        let kept = self.inner.store.cached_result(Subject::Run(run), QUANTITIES).await?;
         kept.map(|kept| serde_json::from_slice(&kept))
             .transpose()
             .map_err(|fault| LabError::Internal(fault.to_string()))
@@ -65,12 +65,12 @@ impl Lab {
         part: impl FnOnce(Identification) -> T,
     ) -> Answer<T> {
         let damaged = |fault: serde_json::Error| LabError::Internal(fault.to_string());
-        if let Some(kept) = self.inner.store.kept(Subject::Run(run), what).await? {
+        if let Some(kept) = self.inner.store.cached_result(Subject::Run(run), what).await? {
             return serde_json::from_slice(&kept).map_err(damaged);
         }
         let part = part(self.identification(run).await?);
         let json = serde_json::to_vec(&part).map_err(damaged)?;
-        self.inner.store.keep(Subject::Run(run), what, &json).await?;
+        self.inner.store.cache_result(Subject::Run(run), what, &json).await?;
         Ok(part)
     }
 
@@ -82,11 +82,11 @@ impl Lab {
         }
         let cut = record.state.is_final() && record.state != RunState::Completed;
         let step = if cut { self.last_step(id).await? } else { None };
-        let found: Identification = self.work_out(Job::Identify { run: id, step }).await?;
+        let found: Identification = self.compute(Job::Identify { run: id, step }).await?;
         let verdict = found.result.verdict;
         if record.state.is_final() && record.verdict.as_ref() != Some(&word(verdict)) {
             match self.inner.store.keep_verdict(id, &word(verdict)).await {
-                Ok(()) => self.hub().tell(LiveMessage::Verdict { run: id, verdict }),
+                Ok(()) => self.hub().publish(LiveMessage::Verdict { run: id, verdict }),
                 // The result is valid although its verdict is not stored.
                 Err(fault) => {
                     tracing::warn!(run.id = id, %fault, "what came of the run is not kept for the list of runs");
@@ -130,16 +130,16 @@ impl Lab {
         let mut warnings = Vec::new();
         for run in runs {
             let journal = self.inner.store.events(*run, 0).await?;
-            let told =
+            let texts =
                 journal.iter().filter(|event| event.kind == WARNING).filter_map(|event| event.data["text"].as_str());
-            warnings.extend(told.map(str::to_owned));
+            warnings.extend(texts.map(str::to_owned));
         }
         warnings.dedup();
         Ok(warnings)
     }
 
     /// Stores the verdict after the end of a run, because the list of runs does not compute results.
-    pub(super) fn judge_at_its_end(&self, bench: &BenchHandle, run: i64) {
+    pub(super) fn judge_when_ended(&self, bench: &BenchHandle, run: i64) {
         let (lab, bench) = (self.clone(), bench.clone());
         tokio::spawn(async move {
             bench.until_free().await;
@@ -148,7 +148,7 @@ impl Lab {
     }
 
     /// The same for older runs without a verdict, for example after a crash; one after another.
-    pub(super) fn judge_what_was_left(&self) {
+    pub(super) fn judge_unjudged_runs(&self) {
         let lab = self.clone();
         tokio::spawn(async move {
             match lab.inner.store.unjudged(LEFT).await {
@@ -164,7 +164,7 @@ impl Lab {
 
     /// A run without a result is not a fault.
     async fn judge(&self, run: i64) {
-        if let Err(fault) = patiently(|| self.identification(run)).await {
+        if let Err(fault) = with_retries(|| self.identification(run)).await {
             tracing::debug!(run.id = run, %fault, "no result of the run");
         }
     }

@@ -1,9 +1,8 @@
 //! The log: safety records of the benches, events of runs, model versions and tokens in one list.
 
-use super::convert::run_event;
 use super::{Answer, Lab, LabError};
 use crate::store::{CalibrationRecord, RunFilter, RunRecord, SafetyRecord};
-use crate::view::{Effect, LogEntry};
+use crate::view::{Effect, LogEntry, run_event};
 use jiff::{SignedDuration, Timestamp};
 
 /// Number of runs in one request.
@@ -43,7 +42,7 @@ impl Lab {
         log.retain(meanwhile);
         let effects = self.effects(None).await?;
         for run in &runs {
-            self.tell_run(run, &effects, &mut log).await?;
+            self.add_run(run, &effects, &mut log).await?;
         }
         // Stable sort: entries of equal time keep their order.
         log.sort_by(|a, b| a.at.cmp(&b.at));
@@ -51,7 +50,7 @@ impl Lab {
         Ok(log)
     }
 
-    async fn tell_run(&self, run: &RunRecord, effects: &[Effect], log: &mut Vec<LogEntry>) -> Answer<()> {
+    async fn add_run(&self, run: &RunRecord, effects: &[Effect], log: &mut Vec<LogEntry>) -> Answer<()> {
         let of_run = LogEntry {
             at: run.created_at.clone(),
             bench: Some(run.bench.clone()),
@@ -108,14 +107,14 @@ impl Lab {
     }
 
     async fn token_log(&self) -> Answer<Vec<LogEntry>> {
-        let told = |(at, text, by): (String, String, String)| LogEntry {
+        let entry = |(at, text, by): (String, String, String)| LogEntry {
             at,
             kind: OF_TOKENS.into(),
             text,
             by: Some(by),
             ..LogEntry::default()
         };
-        Ok(self.inner.store.told_of_tokens().await?.into_iter().map(told).collect())
+        Ok(self.inner.store.token_events().await?.into_iter().map(entry).collect())
     }
 }
 
@@ -138,11 +137,11 @@ fn of_bench(bench: &str, entry: SafetyRecord) -> LogEntry {
 }
 
 fn applied_to(bench: &str, entry: CalibrationRecord) -> LogEntry {
-    let whose = entry.run.map_or("the latest complete run".to_owned(), |run| format!("run {run}"));
+    let source = entry.run.map_or("the latest complete run".to_owned(), |run| format!("run {run}"));
     LogEntry {
         at: entry.at,
         kind: "calibration".into(),
-        text: format!("{} of {whose} applied to {bench}", entry.procedure),
+        text: format!("{} of {source} applied to {bench}", entry.procedure),
         by: Some(entry.by),
         bench: Some(bench.to_owned()),
         run: entry.run,

@@ -11,7 +11,7 @@ impl Lab {
         let wanted = wanted(address)?;
         let ranges = wanted.iter().map(|variable| (variable.address, variable.bytes)).collect();
         let bench = self.handle(bench)?;
-        self.let_go(bench).await;
+        self.wait_for_stored_ends(bench).await;
         let read = bench.read_memory(ranges).await?;
         let variables = wanted.iter().zip(read).map(|(variable, bytes)| shown(variable, bytes)).collect();
         Ok(ServoMemory { variables })

@@ -1,27 +1,25 @@
 //! The one service layer: REST API, demo and command line access benches and runs only through a [`Lab`].
 
 mod autopilot;
+mod autopilot_task;
 mod benches;
-mod beside;
 mod calibrations;
-mod continuing;
-mod convert;
+mod computation;
 mod derived;
-mod differences;
-mod error;
-mod excluding;
+mod exclusions;
 mod experiment;
 mod export;
 mod identifications;
 mod log;
 mod memory;
+mod model_overlay;
 mod models;
 pub mod names;
 mod notes;
-mod own_effects;
-mod pilot;
 mod report;
+mod resume;
 mod revisions;
+mod run_comparison;
 mod runs;
 mod spreadsheet;
 mod statistics;
@@ -29,33 +27,30 @@ mod tables;
 mod tokens;
 mod transfer;
 mod trends;
-mod working;
+mod user_effects;
 
+pub use crate::error::LabError;
+pub use crate::job::{Alignment, ExportRequest, FileFormat, ImportRequest, Offer, PointLimit};
 pub use crate::store::{Order, RunFilter};
-pub use convert::{bench_view, reread, run_event, safe_view, state_view};
-pub use derived::Most;
-pub use differences::Alignment;
-pub use error::LabError;
-pub use experiment::{Offer, next_run};
-pub use export::{ExportRequest, FileFormat};
+pub use experiment::next_run;
 pub use log::OF_TOKENS;
 pub use models::diagnose;
 pub use tables::TableFormat;
 pub use tokens::{Caller, LOCAL, Tokens, weakness};
-pub use transfer::{ATTENTION, COPY_OF, ImportRequest, UNDERSTOOD};
+pub use transfer::{ATTENTION, COPY_OF, UNDERSTOOD};
 
-use crate::bench::{Beginning, BenchHandle, store_leftovers, worker};
+use crate::bench::{BenchHandle, InitialState, store_leftovers, worker};
 use crate::config::BenchDescription;
 use crate::job::{Jobs, Limits};
 use crate::live::Hub;
 use crate::store::{Store, StoreHealth};
-use crate::view::AutopilotState;
-use autopilot::Flights;
+use crate::view::{AutopilotState, reread};
+use autopilot::ActiveAutopilots;
+use computation::Turns;
 use jointbench_procedure::{RunState, Safe};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use working::Turns;
 
 type Answer<T> = Result<T, LabError>;
 
@@ -72,7 +67,7 @@ struct Inner {
     tokens: Tokens,
     /// Path of the `jointbench` executable.
     program: PathBuf,
-    flights: Flights,
+    active_autopilots: ActiveAutopilots,
     /// Worker processes for computations on whole runs; `None` computes in this process.
     jobs: Option<Jobs>,
     turns: Turns,
@@ -104,7 +99,7 @@ impl Lab {
             let interrupted = interrupted.remove(&description.name).unwrap_or_default();
             let block = store.bench_block(&description.name).await?;
             let name = description.name.clone();
-            let beginning = Beginning { description, block, interrupted };
+            let beginning = InitialState { description, block, interrupted };
             let bench = BenchHandle::start(beginning, store.clone(), hub.clone(), data, &program)
                 .map_err(|fault| LabError::Setup(format!("bench {name} gets no thread: {fault}")))?;
             benches.push(bench);
@@ -124,13 +119,13 @@ impl Lab {
                 tokens,
                 jobs: Some(Jobs::new(&program, data, analysis)),
                 program,
-                flights: Flights::default(),
+                active_autopilots: ActiveAutopilots::default(),
                 turns: Turns::default(),
             }),
         };
         lab.open_tokens().await?;
         lab.wait_until_secured().await;
-        lab.judge_what_was_left();
+        lab.judge_unjudged_runs();
         tokio::spawn(lab.inner.store.clone().check_daily());
         Ok(lab)
     }
@@ -143,8 +138,8 @@ impl Lab {
                 hub: Hub::new(),
                 benches: Vec::new(),
                 tokens: Tokens::default(),
-                program: crate::program::own(),
-                flights: Flights::default(),
+                program: crate::program::path(),
+                active_autopilots: ActiveAutopilots::default(),
                 jobs: None,
                 turns: Turns::default(),
             }),
@@ -167,7 +162,7 @@ impl Lab {
 
     /// Ends all runs, secures all benches and closes the store.
     pub async fn shut_down(&self) {
-        self.inner.flights.abort();
+        self.inner.active_autopilots.abort();
         self.inner.jobs.iter().for_each(Jobs::end);
         let benches = self.inner.benches.clone();
         let ended = tokio::task::spawn_blocking(move || benches.iter().for_each(BenchHandle::shut_down)).await;

@@ -1,11 +1,13 @@
 //! Effects, model versions and diagnoses.
 
-use super::excluding;
-use super::working::{Subject as Turn, json, parsed};
-use super::{Answer, Lab, LabError, Offer, convert, next_run, reread};
+use super::computation::{Subject as Turn, json, parsed};
+use super::exclusions;
+use super::{Answer, Lab, LabError, Offer, next_run};
 use crate::job::Job;
 use crate::store::{ModelRecord, NewModel, Subject, packed, unpacked};
-use crate::view::{self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ResidualSet, finite};
+use crate::view::{
+    self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ResidualSet, diagnosis_view, finite, model_view, reread,
+};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, OwnEffect};
 use serde::{Deserialize, Serialize};
@@ -81,11 +83,11 @@ impl Lab {
         if parent.is_none()
             && let Some(there) = self.first_version(run, more_runs, &spec, &excluded).await?
         {
-            return convert::model(there);
+            return Ok(model_view(there)?);
         }
         let offer = self.offer(runs, None).await?;
         let job = Job::Fit { runs: runs.to_vec(), effects: effects.to_vec(), excluded: excluded.clone(), offer };
-        let answer = self.worked_out(job).await?;
+        let answer = self.compute_json(job).await?;
         let end = answer.iter().position(|byte| *byte == b'\n').unwrap_or(answer.len());
         let (mut fitted, residuals) = (parsed::<Fitted>(&answer[..end])?, answer.get(end + 1..).unwrap_or_default());
         let (diagnosis, excluded) = (fitted.diagnosis.take(), reread(&excluded)?);
@@ -100,8 +102,8 @@ impl Lab {
             effects = record.effects.join(","),
             "model fitted"
         );
-        self.hub().tell(LiveMessage::Model { run, model: record.id });
-        convert::model(record)
+        self.hub().publish(LiveMessage::Model { run, model: record.id });
+        Ok(model_view(record)?)
     }
 
     /// What a new version leaves out: the given exclusions, otherwise those of its parent.
@@ -115,7 +117,7 @@ impl Lab {
             excluded = Some(excluded.map_or_else(|| reread(&before.excluded), Ok)?);
         }
         let excluded = excluded.unwrap_or_default();
-        excluding::check(&excluded)?;
+        exclusions::check(&excluded)?;
         Ok(excluded)
     }
 
@@ -141,7 +143,7 @@ impl Lab {
         offer: Option<Offer>,
     ) -> Answer<Vec<u8>> {
         let whole = self.tables(runs).await?;
-        let table = excluding::without(whole.clone(), excluded)?;
+        let table = exclusions::without(whole.clone(), excluded)?;
         let spec = self.spec(table.kind(), effects).await?;
         let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
         let options = Options::default();
@@ -175,8 +177,8 @@ impl Lab {
     /// Keeps a version that was tried or is idle: it counts as a version of the run from now on.
     pub async fn keep_model(&self, id: i64, by: &str) -> Answer<Model> {
         let record = self.inner.store.keep_model(id, by).await?;
-        self.hub().tell(LiveMessage::Model { run: record.run, model: id });
-        convert::model(record)
+        self.hub().publish(LiveMessage::Model { run: record.run, model: id });
+        Ok(model_view(record)?)
     }
 
     /// An existing version of the same effects, runs and exclusions without a parent. Pages that open a run at the same
@@ -202,30 +204,30 @@ impl Lab {
     }
 
     pub async fn models(&self, run: i64) -> Answer<Vec<Model>> {
-        self.inner.store.models(run).await?.into_iter().map(convert::model).collect()
+        self.inner.store.models(run).await?.into_iter().map(|record| Ok(model_view(record)?)).collect()
     }
 
     pub async fn model(&self, id: i64) -> Answer<Model> {
-        convert::model(self.inner.store.model(id).await?)
+        Ok(model_view(self.inner.store.model(id).await?)?)
     }
 
     /// The data that a version was fitted to.
     pub(super) async fn fitted_table(&self, record: &ModelRecord) -> Answer<RunTable> {
-        excluding::without(self.tables(&record.runs()).await?, &reread::<_, Vec<Exclusion>>(&record.excluded)?)
+        exclusions::without(self.tables(&record.runs()).await?, &reread::<_, Vec<Exclusion>>(&record.excluded)?)
     }
 
     /// The residuals of the version as JSON ([`ResidualSet`]), from the cache if they are there.
     pub async fn residuals(&self, id: i64) -> Answer<Vec<u8>> {
         let subject = Subject::Model(id);
-        if let Some(kept) = self.inner.store.kept(subject, RESIDUALS).await? {
+        if let Some(kept) = self.inner.store.cached_result(subject, RESIDUALS).await? {
             return Ok(kept);
         }
         let _turn = self.inner.turns.of(Turn::Residuals(id)).await;
-        if let Some(kept) = self.inner.store.kept(subject, RESIDUALS).await? {
+        if let Some(kept) = self.inner.store.cached_result(subject, RESIDUALS).await? {
             return Ok(kept);
         }
-        let packed = self.worked_out(Job::Residuals { model: id }).await?;
-        self.inner.store.keep_packed(subject, RESIDUALS, &packed).await?;
+        let packed = self.compute_json(Job::Residuals { model: id }).await?;
+        self.inner.store.cache_packed_result(subject, RESIDUALS, &packed).await?;
         Ok(unpacked(&packed)?)
     }
 
@@ -250,48 +252,50 @@ impl Lab {
             return Ok(kept);
         }
         let offer = self.offer(&record.runs(), None).await?;
-        let diagnosis: Value = self.work_out(Job::Diagnose { model, offer }).await?;
+        let diagnosis: Value = self.compute(Job::Diagnose { model, offer }).await?;
         let kept = self.inner.store.save_diagnosis(model, &diagnosis).await?;
-        convert::diagnosis(kept, record.run)
+        Ok(diagnosis_view(kept, record.run)?)
     }
 
     /// The last diagnosis, if it is based on the current effects.
     async fn diagnosis_kept(&self, record: &ModelRecord) -> Answer<Option<Diagnosis>> {
         let Some(kept) = self.inner.store.diagnoses(record.id).await?.pop() else { return Ok(None) };
         let known: jointbench_model::Diagnosis = reread(&kept.diagnosis)?;
-        if known.own != self.own_of(&reread(&record.fit)?).await? {
+        if known.own != self.user_effects_of(&reread(&record.fit)?).await? {
             return Ok(None);
         }
-        convert::diagnosis(kept, record.run).map(Some)
+        Ok(Some(diagnosis_view(kept, record.run)?))
     }
 
     pub(super) async fn diagnose_here(&self, model: i64, offer: Option<Offer>) -> Answer<Value> {
         let record = self.inner.store.model(model).await?;
-        let own = self.own_of(&reread(&record.fit)?).await?;
+        let own = self.user_effects_of(&reread(&record.fit)?).await?;
         let table = self.fitted_table(&record).await?;
         let spec = ModelSpec::with_own(table.kind(), &record.effects, own)?;
         let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
         let diagnosis = blocking(move || diagnose(&table, &spec, &Options::default(), &offer)).await?;
-        reread(&diagnosis)
+        Ok(reread(&diagnosis)?)
     }
 
     /// Users' effects in their version of the fit, and the other effects of this kind.
-    async fn own_of(&self, fit: &Fit) -> Answer<Vec<OwnEffect>> {
+    async fn user_effects_of(&self, fit: &Fit) -> Answer<Vec<OwnEffect>> {
         let mut own = fit.own.clone();
-        own.extend(self.own_effects(fit.kind).await?.into_iter().filter(|o| !fit.own.iter().any(|f| f.id() == o.id())));
+        own.extend(
+            self.user_effects(fit.kind).await?.into_iter().filter(|o| !fit.own.iter().any(|f| f.id() == o.id())),
+        );
         Ok(own)
     }
 
     pub async fn diagnosis(&self, id: i64) -> Answer<Diagnosis> {
         let record = self.inner.store.diagnosis(id).await?;
         let run = self.inner.store.model(record.model).await?.run;
-        convert::diagnosis(record, run)
+        Ok(diagnosis_view(record, run)?)
     }
 
     pub async fn diagnoses(&self, model: i64) -> Answer<Vec<Diagnosis>> {
         let run = self.inner.store.model(model).await?.run;
         let records = self.inner.store.diagnoses(model).await?;
-        records.into_iter().map(|record| convert::diagnosis(record, run)).collect()
+        records.into_iter().map(|record| Ok(diagnosis_view(record, run)?)).collect()
     }
 }
 
@@ -304,7 +308,7 @@ fn written(left: &jointbench_model::ResidualSet, excluded: &[Exclusion]) -> Answ
     if !excluded.is_empty()
         && let Some(time) = set.axes.iter().find(|axis| axis.name == "time_s")
     {
-        set.excluded = excluding::marked(&time.values, excluded);
+        set.excluded = exclusions::marked(&time.values, excluded);
     }
     serde_json::to_vec(&set).map_err(unfit)
 }
@@ -320,7 +324,7 @@ pub fn diagnose(
     let open = Open { own: spec.own.clone(), ..Open::from(&diagnosis) };
     let next = next_run(table, &open, offer, options);
     diagnosis.experiment = next.experiment;
-    diagnosis.summary.extend(next.in_vain.map(|said| format!(" {said}")));
+    diagnosis.summary.extend(next.in_vain.map(|reason| format!(" {reason}")));
     Ok(diagnosis)
 }
 

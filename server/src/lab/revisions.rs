@@ -1,11 +1,11 @@
 //! Model versions: comparison, evaluation on other runs, export and import.
 
+use super::computation::Subject as Turn;
 use super::models::blocking;
-use super::working::Subject as Turn;
-use super::{Answer, Lab, LabError, convert, reread};
+use super::{Answer, Lab, LabError};
 use crate::job::Job;
 use crate::store::{NewModel, Subject};
-use crate::view::{Comparison, Evaluation, ImportedModel, LiveMessage, ModelImport, Worth, finite};
+use crate::view::{Comparison, Evaluation, ImportedModel, LiveMessage, ModelImport, Worth, finite, model_view, reread};
 use jointbench_model::export::{Format, ModelFile, export};
 use jointbench_model::{Fit, ModelSpec, Options, OwnEffect};
 
@@ -19,25 +19,25 @@ impl Lab {
             Some(run) => run,
             None => self.inner.store.model(first).await?.run,
         };
-        self.work_out(Job::Compare { first, second, run }).await
+        self.compute(Job::CompareModels { first, second, run }).await
     }
 
     pub(super) async fn compare_here(&self, first: i64, second: i64, run: i64) -> Answer<Comparison> {
         let (first, second) = (self.fit(first).await?, self.fit(second).await?);
         let table = self.measurement(run).await?;
-        reread(&blocking(move || jointbench_model::compare(&first, &second, &table)).await?)
+        Ok(reread(&blocking(move || jointbench_model::compare(&first, &second, &table)).await?)?)
     }
 
     /// The validation error without each effect in turn; the order of addition has no influence. Cached, and computed
     /// once for simultaneous requests.
     pub async fn worth(&self, model: i64) -> Answer<Vec<Worth>> {
         let _turn = self.inner.turns.of(Turn::Worth(model)).await;
-        if let Some(kept) = self.inner.store.kept(Subject::Model(model), WORTH).await? {
+        if let Some(kept) = self.inner.store.cached_result(Subject::Model(model), WORTH).await? {
             return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
         }
-        let worth: Vec<Worth> = self.work_out(Job::Worth { model }).await?;
+        let worth: Vec<Worth> = self.compute(Job::Worth { model }).await?;
         let json = serde_json::to_vec(&worth).map_err(|fault| LabError::Internal(fault.to_string()))?;
-        self.inner.store.keep(Subject::Model(model), WORTH, &json).await?;
+        self.inner.store.cache_result(Subject::Model(model), WORTH, &json).await?;
         Ok(worth)
     }
 
@@ -51,37 +51,38 @@ impl Lab {
             jointbench_model::fit(&table, &spec, &Options::default())
         };
         let effects = fit.effects.clone();
-        let said = move |effect: String| {
+        let worth = move |effect: String| {
             let (without_rms, reason) = match refit(&effect) {
                 Ok(fit) => (finite(fit.validation_rms), None),
                 Err(fault) => (None, Some(fault.to_string())),
             };
             Worth { effect, without_rms, reason }
         };
-        blocking(move || Ok(effects.into_iter().map(said).collect())).await
+        blocking(move || Ok(effects.into_iter().map(worth).collect())).await
     }
 
     /// Change of the prediction at each point of the residuals if an effect is added and the model is fitted again.
     /// Cached, except for users' effects, whose formula may change.
     pub async fn with_effect(&self, model: i64, effect: String) -> Answer<Vec<f64>> {
         let kept_as = format!("with {effect}");
-        if let Some(kept) = self.inner.store.kept(Subject::Model(model), &kept_as).await? {
+        if let Some(kept) = self.inner.store.cached_result(Subject::Model(model), &kept_as).await? {
             return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
         }
         let record = self.inner.store.model(model).await?;
-        let changes = self.own_with(&reread(&record.fit)?, &effect).await?.iter().any(|one| one.id() == effect);
-        let added: Vec<f64> = self.work_out(Job::WithEffect { model, effect }).await?;
+        let changes =
+            self.user_effects_with(&reread(&record.fit)?, &effect).await?.iter().any(|one| one.id() == effect);
+        let added: Vec<f64> = self.compute(Job::WithEffect { model, effect }).await?;
         if !changes {
             let json = serde_json::to_vec(&added).map_err(|fault| LabError::Internal(fault.to_string()))?;
-            self.inner.store.keep(Subject::Model(model), &kept_as, &json).await?;
+            self.inner.store.cache_result(Subject::Model(model), &kept_as, &json).await?;
         }
         Ok(added)
     }
 
     /// Users' effects of a fit, and the requested effect if a user wrote it.
-    async fn own_with(&self, fit: &Fit, effect: &str) -> Answer<Vec<OwnEffect>> {
+    async fn user_effects_with(&self, fit: &Fit, effect: &str) -> Answer<Vec<OwnEffect>> {
         let mut own = fit.own.clone();
-        let theirs = self.own_effects(fit.kind).await?;
+        let theirs = self.user_effects(fit.kind).await?;
         own.extend(theirs.into_iter().filter(|one| one.id() == effect && !fit.own.iter().any(|o| o.id() == effect)));
         Ok(own)
     }
@@ -91,7 +92,7 @@ impl Lab {
         let before: Fit = reread(&record.fit)?;
         let whole = self.tables(&record.runs()).await?;
         let fitted = self.fitted_table(&record).await?;
-        let own = self.own_with(&before, effect).await?;
+        let own = self.user_effects_with(&before, effect).await?;
         let effects = record.effects.iter().map(String::as_str).chain([effect]);
         let spec = ModelSpec::with_own(before.kind, effects, own)?;
         blocking(move || {
@@ -104,13 +105,13 @@ impl Lab {
     }
 
     pub async fn evaluate(&self, model: i64, run: i64) -> Answer<Evaluation> {
-        self.work_out(Job::Evaluate { model, run }).await
+        self.compute(Job::Evaluate { model, run }).await
     }
 
     pub(super) async fn evaluate_here(&self, model: i64, run: i64) -> Answer<Evaluation> {
         let fit = self.fit(model).await?;
         let table = self.measurement(run).await?;
-        reread(&blocking(move || jointbench_model::evaluate(&fit, &table)).await?)
+        Ok(reread(&blocking(move || jointbench_model::evaluate(&fit, &table)).await?)?)
     }
 
     /// The exported model and the run that it was fitted to.
@@ -131,8 +132,8 @@ impl Lab {
                 kept.kind, kept.kind
             )));
         }
-        let held: Evaluation = self.work_out(Job::EvaluateFile { file, run }).await?;
-        self.bring_effects(&kept.own).await?;
+        let held: Evaluation = self.compute(Job::EvaluateFile { file, run }).await?;
+        self.import_effects(&kept.own).await?;
         let new = NewModel {
             run: import.run,
             more_runs: Vec::new(),
@@ -151,8 +152,8 @@ impl Lab {
         };
         let record = self.inner.store.save_model(&new).await?;
         tracing::info!(run.id = import.run, model.id = record.id, "model imported");
-        self.hub().tell(LiveMessage::Model { run: import.run, model: record.id });
-        Ok(ImportedModel { model: convert::model(record)?, notes: held.notes })
+        self.hub().publish(LiveMessage::Model { run: import.run, model: record.id });
+        Ok(ImportedModel { model: model_view(record)?, notes: held.notes })
     }
 
     pub(super) async fn evaluate_file_here(&self, file: serde_json::Value, run: i64) -> Answer<Evaluation> {
@@ -163,11 +164,11 @@ impl Lab {
             let why = "predictions of this model on the run are not finite: check its parameters";
             return Err(LabError::Invalid(why.to_owned()));
         }
-        reread(&held)
+        Ok(reread(&held)?)
     }
 
     async fn fit(&self, model: i64) -> Answer<Fit> {
-        reread(&self.inner.store.model(model).await?.fit)
+        Ok(reread(&self.inner.store.model(model).await?.fit)?)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Runs: start, control, read.
 
-use super::{Answer, Lab, LabError, convert};
-use crate::bench::{BenchHandle, Status};
+use super::{Answer, Lab, LabError};
+use crate::bench::{BenchHandle, Status, show_unstored_end};
 use crate::store::{NewRun, RunFilter, RunRecord, Search};
-use crate::view::{self, Run, RunEvent, RunList, Samples};
+use crate::view::{self, Run, RunEvent, RunList, Samples, reread, run_event, run_summary, run_view};
 use jointbench_instrument::{Meta, RunTable};
 use jointbench_procedure::{Control, Demand, Plan};
 use serde_json::{Map, Value, json};
@@ -45,7 +45,7 @@ impl Lab {
                 block.reason
             )));
         }
-        self.let_go(bench).await;
+        self.wait_for_stored_ends(bench).await;
         let claim = bench.claim()?;
         if bench.status().faults().is_some() {
             bench.reopen().await?;
@@ -57,12 +57,12 @@ impl Lab {
         let procedure = plan.procedure;
         tracing::info!(run.id = run, bench = bench.name(), procedure, by, planned_s = plan.duration_s(), "run queued");
         claim.start(run, plan).await?;
-        self.judge_at_its_end(bench, run);
+        self.judge_when_ended(bench, run);
         self.run(run).await
     }
 
     /// Waits until every ended run of this bench is stored and has released the bench.
-    pub(super) async fn let_go(&self, bench: &BenchHandle) {
+    pub(super) async fn wait_for_stored_ends(&self, bench: &BenchHandle) {
         let over: Vec<i64> =
             bench.status().runs.iter().filter(|(_, run)| run.state.is_final()).map(|(id, _)| *id).collect();
         let gone = |status: &Status| over.iter().all(|run| !status.runs.contains_key(run));
@@ -75,17 +75,17 @@ impl Lab {
         let status = self.inner.benches.iter().map(BenchHandle::status).find(|status| status.runs.contains_key(&id));
         let progress =
             status.as_ref().filter(|status| status.run == Some(id)).and_then(|status| status.progress.clone());
-        let mut run = convert::run(record, progress);
-        status.inspect(|status| convert::as_it_is(&mut run.summary, status));
+        let mut run = run_view(record, progress);
+        status.inspect(|status| show_unstored_end(&mut run.summary, status));
         Ok(run)
     }
 
     pub async fn runs(&self, filter: &RunFilter) -> Answer<RunList> {
         let (total, records) = self.inner.store.runs(filter).await?;
-        let mut runs: Vec<view::RunSummary> = records.iter().map(convert::summary).collect();
+        let mut runs: Vec<view::RunSummary> = records.iter().map(run_summary).collect();
         for bench in &self.inner.benches {
             let status = bench.status();
-            runs.iter_mut().for_each(|run| convert::as_it_is(run, &status));
+            runs.iter_mut().for_each(|run| show_unstored_end(run, &status));
         }
         Ok(RunList { total, runs, unclear: None })
     }
@@ -105,7 +105,7 @@ impl Lab {
         let demand = Demand { control, by: Some(by.to_owned()) };
         if !self.inner.benches.iter().any(|bench| bench.control(id, demand.clone())) {
             let state = self.run(id).await?.summary.state;
-            let state: String = super::reread(&state)?;
+            let state: String = reread(&state)?;
             return Err(LabError::Over(format!("run {id} has already ended ({state})")));
         }
         self.run(id).await
@@ -113,7 +113,7 @@ impl Lab {
 
     pub async fn events(&self, id: i64, after: Option<u64>) -> Answer<Vec<RunEvent>> {
         let events = self.inner.store.events(id, after.unwrap_or(0)).await?;
-        Ok(events.into_iter().map(convert::run_event).collect())
+        Ok(events.into_iter().map(run_event).collect())
     }
 
     /// A window of samples, at most `px` points.
@@ -128,7 +128,7 @@ impl Lab {
         if px == 0 || px > 20_000 {
             return Err(LabError::Invalid(format!("px = {px}: choose 1 to 20000")));
         }
-        let window = self.inner.store.view(id, channels, from_s, to_s, px as usize).await?;
+        let window = self.inner.store.window(id, channels, from_s, to_s, px as usize).await?;
         let column = |values: Vec<f64>| values.into_iter().map(view::finite).collect();
         let channels = window.columns.into_iter().map(|found| view::SampleColumn {
             unit: found.channel.unit().map(str::to_owned),
@@ -192,7 +192,7 @@ fn new_run(bench: &BenchHandle, plan: &Plan, by: &str) -> Answer<NewRun> {
         kind: plan.kind.to_string(),
         simulated: description.is_simulated(),
         parameters: plan.parameters.clone(),
-        provenance: super::reread(&provenance)?,
-        meta: super::reread(&plan.meta)?,
+        provenance: reread(&provenance)?,
+        meta: reread(&plan.meta)?,
     })
 }

@@ -17,7 +17,7 @@ impl Lab {
         to_s: Option<f64>,
     ) -> Answer<Vec<ChannelStatistics>> {
         let channels = channels.map(<[String]>::to_vec);
-        self.work_out(Job::Statistics { run: id, channels, from_s, to_s }).await
+        self.compute(Job::Statistics { run: id, channels, from_s, to_s }).await
     }
 
     pub(super) async fn statistics_here(

@@ -1,9 +1,9 @@
 //! Access tokens. The tokens at the start of the daemon decide whether a token is required, and cannot be revoked here:
 //! a person who can start the daemon has access anyway.
 
-use super::{Answer, Lab, LabError, names, reread};
+use super::{Answer, Lab, LabError, names};
 use crate::store::TokenRecord;
-use crate::view::{Access, MadeToken, NewToken, Token, word};
+use crate::view::{Access, MadeToken, NewToken, Token, reread, word};
 use jiff::{SignedDuration, Timestamp};
 use sha2::{Digest, Sha256};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -145,7 +145,7 @@ impl Lab {
     }
 
     /// Stores the use of a token in the background.
-    pub fn came_in(&self, caller: &Caller) {
+    pub fn record_token_use(&self, caller: &Caller) {
         let Some(id) = self.tokens().note_use(caller) else { return };
         let store = self.inner.store.clone();
         tokio::spawn(async move {
@@ -196,7 +196,7 @@ impl Lab {
     }
 
     /// Returns when the token of this caller is revoked.
-    pub async fn shut_out(&self, caller: &Caller) {
+    pub async fn until_revoked(&self, caller: &Caller) {
         let mut revoked = self.tokens().revoked.subscribe();
         let is_known = || self.tokens().read().iter().any(|known| known.caller.token == caller.token);
         while caller.token.is_none() || is_known() {
@@ -232,15 +232,15 @@ mod tests {
     use super::weakness;
 
     #[test]
-    fn a_weak_token_is_told_with_the_way_to_a_better_one() {
-        for (token, said) in [
+    fn a_weak_token_is_refused_with_a_remedy() {
+        for (token, expected) in [
             ("hunter2", "7 characters"),
             ("aaaaaaaaaaaaaaaaaaaaaaaa", "1 different"),
             ("0101010101010101", "2 different"),
             ("correct höorse battery", "non-ASCII"),
         ] {
             let why = weakness(token).unwrap();
-            assert!(why.contains(said) && why.contains("openssl rand"), "{token}: {why}");
+            assert!(why.contains(expected) && why.contains("openssl rand"), "{token}: {why}");
         }
         assert_eq!(weakness("correct horse battery"), None);
         assert_eq!(weakness("9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822c"), None);

@@ -3,18 +3,16 @@
 
 use super::statistics::ROWS_AT_ONCE;
 use super::{Answer, Lab, LabError, UPLOADS};
-use crate::job::Job;
+use crate::job::{ImportRequest, Job};
 use crate::store::{BLOCK_ROWS, NewRun, RunFilter};
-use crate::view::Run;
-use jointbench_files::{
-    Bounds, Choices, Note, Preview, ReadOptions, paragraph, parse_meta, preview, understand_upload,
-};
+use crate::view::{Run, reread};
+use jointbench_files::{Bounds, Note, Preview, ReadOptions, paragraph, parse_meta, preview, understand_upload};
 use jointbench_instrument::{Channel, Meta, RunTable, Trace};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tempfile::{NamedTempFile, TempPath};
 use tokio::sync::mpsc;
 
@@ -26,19 +24,6 @@ pub const ATTENTION: &str = "attention";
 pub const UNDERSTOOD: &str = "understood";
 /// Exported metadata of a simulated run, so that an import does not show it as a hardware run.
 pub(super) const SIMULATED: &str = "simulated";
-
-/// A measured file and the data needed to read it.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct ImportRequest {
-    /// Name of the run; default: name of the file.
-    pub name: Option<String>,
-    /// Determines the format, and appears in messages.
-    pub file_name: String,
-    /// Path of the data.
-    pub file: PathBuf,
-    pub meta: Option<String>,
-    pub choices: Choices,
-}
 
 /// Content of a file except for its rows.
 #[derive(Debug, Serialize, Deserialize)]
@@ -76,7 +61,7 @@ impl Lab {
         }
         let (_, rows) = self.upload()?;
         let uploaded = self.inner.jobs.is_some();
-        let found = self.work_out(Job::Import { request, rows: rows.to_path_buf(), uploaded }).await?;
+        let found = self.compute(Job::Import { request, rows: rows.to_path_buf(), uploaded }).await?;
         self.keep(&name, source, found, &rows, by).await
     }
 
@@ -84,12 +69,12 @@ impl Lab {
     pub async fn preview_file(&self, request: ImportRequest) -> Answer<Preview> {
         let request = request.with_names()?;
         let uploaded = self.inner.jobs.is_some();
-        self.work_out(Job::Preview { request, uploaded }).await
+        self.compute(Job::Preview { request, uploaded }).await
     }
 
     pub(super) async fn preview_here(&self, request: ImportRequest, uploaded: bool) -> Answer<Preview> {
-        let look = move || Ok(preview(&request.file_name, &request.file, &request.options(uploaded)?)?);
-        tokio::task::spawn_blocking(look)
+        let read = move || Ok(preview(&request.file_name, &request.file, &request.options(uploaded)?)?);
+        tokio::task::spawn_blocking(read)
             .await
             .map_err(|fault| LabError::Internal(format!("reading the file failed: {fault}")))?
     }
@@ -127,8 +112,8 @@ impl Lab {
             kind,
             simulated,
             parameters: serde_json::Map::new(),
-            provenance: super::reread(&provenance)?,
-            meta: super::reread(&meta)?,
+            provenance: reread(&provenance)?,
+            meta: reread(&meta)?,
         };
         let run = self.inner.store.import_parts(&new, parts(rows, channels, count)).await?;
         tracing::info!(run.id = run, name, rows = count, "run imported");
@@ -145,7 +130,7 @@ impl Lab {
         let kind = table.kind().to_string();
         let (meta, trace) = table.into_parts();
         let copy_of = self.original_of(&kind, &trace).await?;
-        lay_down(&trace, rows).map_err(unkept)?;
+        write_rows(&trace, rows).map_err(unkept)?;
         Ok(Found { kind, meta, rows: trace.len(), channels: trace.channels().to_vec(), attention, understood, copy_of })
     }
 
@@ -192,7 +177,7 @@ fn unkept(fault: io::Error) -> LabError {
 }
 
 /// Writes block by block, column by column, each value as eight bytes, little endian.
-fn lay_down(trace: &Trace, file: &Path) -> io::Result<()> {
+fn write_rows(trace: &Trace, file: &Path) -> io::Result<()> {
     let mut out = BufWriter::new(File::create(file)?);
     for first in (0..trace.len()).step_by(BLOCK_ROWS) {
         for column in trace.columns() {
@@ -245,7 +230,7 @@ mod tests {
         let channels = vec![Channel::new("time_s"), Channel::counted("motor_position_rad", 1e-4)];
         let trace = Trace::from_columns(channels.clone(), vec![column(0.004), column(-1e-4)]);
         let file = NamedTempFile::new().unwrap();
-        lay_down(&trace, file.path()).unwrap();
+        write_rows(&trace, file.path()).unwrap();
 
         let mut taken = vec![Vec::new(); 2];
         let mut blocks = parts(file.path(), channels.clone(), rows);

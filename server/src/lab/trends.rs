@@ -24,14 +24,14 @@ impl Lab {
             ..RunFilter::default()
         };
         let (total, records) = self.inner.store.runs(&filter).await?;
-        let (mut runs, mut pending, mut worked_out) = (Vec::new(), 0, 0);
+        let (mut runs, mut pending, mut computed) = (Vec::new(), 0, 0);
         for record in records.iter().rev().filter(|record| has_result(record)) {
             let known = self.quantities_known(record.id).await?;
-            if known.is_none() && worked_out == AT_ONCE {
+            if known.is_none() && computed == AT_ONCE {
                 pending += 1;
                 continue;
             }
-            worked_out += usize::from(known.is_none());
+            computed += usize::from(known.is_none());
             let quantities = match known {
                 Some(quantities) => quantities,
                 None => match self.quantities(record.id).await {
@@ -61,7 +61,8 @@ impl Lab {
         let Some(channel) = record.channels.iter().find(|channel| channel.unit() == Some("°C")) else {
             return Ok(None);
         };
-        let view = self.inner.store.view(run, Some(std::slice::from_ref(&channel.name)), None, None, STRETCHES).await?;
+        let view =
+            self.inner.store.window(run, Some(std::slice::from_ref(&channel.name)), None, None, STRETCHES).await?;
         let middles = view.columns.iter().flat_map(|column| column.min.iter().zip(&column.max));
         let middles: Vec<f64> =
             middles.map(|(low, high)| (low + high) / 2.0).filter(|middle| middle.is_finite()).collect();

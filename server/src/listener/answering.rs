@@ -1,7 +1,7 @@
 //! Requests of one connection, each executed in its own task.
 
 use super::body::{Arriving, Leaving};
-use super::seats::Seat;
+use super::slots::ConnectionSlot;
 use super::stage::Stage;
 use super::{Demand, Limits};
 use crate::api::{Presence, Problem};
@@ -24,7 +24,7 @@ pub struct Answering {
     pub router: Router,
     pub peer: SocketAddr,
     pub limits: Arc<Limits>,
-    pub seat: Arc<Seat>,
+    pub slot: Arc<ConnectionSlot>,
 }
 
 type Answer = hyper::Response<Leaving>;
@@ -37,10 +37,10 @@ impl Service<Request<Incoming>> for Answering {
     /// Starts the execution of the request before it returns. A client that disconnects drops only the returned future;
     /// the request continues unless it is read-only.
     fn call(&self, request: Request<Incoming>) -> Self::Future {
-        let progress = self.seat.progress.clone();
+        let progress = self.slot.progress.clone();
         progress.enter(Stage::Answer);
         let demand = Demand::of(request.method(), request.uri().path());
-        if !self.seat.admits(demand) {
+        if !self.slot.admits(demand) {
             return Box::pin(async { Ok(Problem::full().into_response().map(|body| Leaving::new(body, None))) });
         }
         let (is_safe, presence) = (request.method().is_safe(), Presence::default());
@@ -64,7 +64,7 @@ impl Service<Request<Incoming>> for Answering {
 
 impl Answering {
     fn begin(&self, request: Request<Incoming>, demand: Demand, presence: Presence) -> JoinHandle<Response> {
-        let (limits, progress) = (self.limits.clone(), self.seat.progress.clone());
+        let (limits, progress) = (self.limits.clone(), self.slot.progress.clone());
         let mut request = request.map(|body| Body::new(Arriving::new(body, demand, limits, progress)));
         request.extensions_mut().insert(ConnectInfo(self.peer));
         request.extensions_mut().insert(presence);

@@ -7,7 +7,7 @@ mod answering;
 mod body;
 mod demand;
 mod limits;
-mod seats;
+mod slots;
 mod stage;
 mod tls;
 mod wire;
@@ -20,7 +20,7 @@ use answering::Answering;
 use axum::Router;
 use hyper::server::conn::http1;
 use hyper_util::rt::TokioIo;
-use seats::{Seat, Seats};
+use slots::{ConnectionSlot, ConnectionSlots};
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
@@ -30,7 +30,7 @@ use tokio::task::JoinSet;
 use wire::Wire;
 
 /// Interval of the check for clients that exceed a time limit.
-const LOOK_EVERY: Duration = Duration::from_millis(250);
+const CHECK_INTERVAL: Duration = Duration::from_millis(250);
 /// Pause after the system has refused a connection, usually because of too many open files.
 const REFUSED_PAUSE: Duration = Duration::from_millis(50);
 
@@ -45,18 +45,18 @@ struct Shared {
 /// Serves until it is dropped, which closes every connection.
 pub async fn serve(listener: TcpListener, router: Router, tls: Option<Tls>, limits: Limits) {
     let limits = Arc::new(limits);
-    let seats = Seats::new(limits.clone());
+    let slots = ConnectionSlots::new(limits.clone());
     let mut connections = JoinSet::new();
     if let Some(tls) = tls.clone() {
         connections.spawn(async move { tls.follow().await });
     }
     let shared = Shared { router, tls, limits };
-    let mut look = tokio::time::interval(LOOK_EVERY);
+    let mut check = tokio::time::interval(CHECK_INTERVAL);
     loop {
         tokio::select! {
             accepted = listener.accept() => match accepted {
-                Ok((stream, peer)) => match seats.take() {
-                    Some(seat) => drop(connections.spawn(connection(shared.clone(), stream, peer, seat))),
+                Ok((stream, peer)) => match slots.take() {
+                    Some(slot) => drop(connections.spawn(connection(shared.clone(), stream, peer, slot))),
                     None => tracing::warn!(%peer, "a connection is refused: every other one is being answered"),
                 },
                 Err(fault) => {
@@ -67,38 +67,38 @@ pub async fn serve(listener: TcpListener, router: Router, tls: Option<Tls>, limi
             Some(ended) = connections.join_next() => if let Err(fault) = ended {
                 tracing::error!(%fault, "a connection has panicked");
             },
-            _ = look.tick() => seats.close_overdue(),
+            _ = check.tick() => slots.close_overdue(),
         }
     }
 }
 
-async fn connection(shared: Shared, stream: TcpStream, peer: SocketAddr, seat: Seat) {
-    let close = seat.close.clone();
+async fn connection(shared: Shared, stream: TcpStream, peer: SocketAddr, slot: ConnectionSlot) {
+    let close = slot.close.clone();
     tokio::select! {
         () = close.cancelled() => tracing::debug!(%peer, "connection closed: it has waited for its client for too long"),
-        () = greet(shared, stream, peer, seat) => {}
+        () = handshake(shared, stream, peer, slot) => {}
     }
 }
 
-async fn greet(shared: Shared, stream: TcpStream, peer: SocketAddr, seat: Seat) {
+async fn handshake(shared: Shared, stream: TcpStream, peer: SocketAddr, slot: ConnectionSlot) {
     // Sends small answers immediately. This fails if the client has already disconnected, but its request still counts.
     let _ = stream.set_nodelay(true);
     match &shared.tls {
-        None => converse(&shared, stream, peer, seat).await,
+        None => serve_connection(&shared, stream, peer, slot).await,
         Some(tls) => match tls.accept(stream).await {
-            Ok(stream) => converse(&shared, stream, peer, seat).await,
+            Ok(stream) => serve_connection(&shared, stream, peer, slot).await,
             Err(fault) => tracing::debug!(%peer, %fault, "no TLS connection"),
         },
     }
 }
 
-async fn converse<S>(shared: &Shared, stream: S, peer: SocketAddr, seat: Seat)
+async fn serve_connection<S>(shared: &Shared, stream: S, peer: SocketAddr, slot: ConnectionSlot)
 where
     S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
 {
-    let seat = Arc::new(seat);
-    let wire = Wire::new(stream, seat.clone(), shared.limits.write_stall);
-    let service = Answering { router: shared.router.clone(), peer, limits: shared.limits.clone(), seat };
+    let slot = Arc::new(slot);
+    let wire = Wire::new(stream, slot.clone(), shared.limits.write_stall);
+    let service = Answering { router: shared.router.clone(), peer, limits: shared.limits.clone(), slot };
     let served = http1::Builder::new()
         // The limits of this module distinguish a slow head from an idle connection.
         .header_read_timeout(None)

@@ -43,7 +43,7 @@ impl Progress {
     }
 
     /// The first byte after an idle time starts a head; later bytes belong to it.
-    pub fn heard(&self) {
+    pub fn received(&self) {
         if self.state().stage == Stage::Idle {
             self.enter(Stage::Head);
         }

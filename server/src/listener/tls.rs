@@ -11,7 +11,7 @@ use tokio_rustls::rustls::{self, ServerConfig};
 use tokio_rustls::server::TlsStream;
 
 /// Interval of the check for changed files.
-const LOOK_EVERY: Duration = Duration::from_secs(60);
+const POLL_INTERVAL: Duration = Duration::from_secs(60);
 
 /// PEM files: the certificate with its intermediate certificates, and its key.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -50,12 +50,12 @@ impl Tls {
     /// Loads replaced files for new connections, until it is dropped.
     pub async fn follow(&self) {
         loop {
-            tokio::time::sleep(LOOK_EVERY).await;
-            self.look();
+            tokio::time::sleep(POLL_INTERVAL).await;
+            self.reload_if_changed();
         }
     }
 
-    fn look(&self) {
+    fn reload_if_changed(&self) {
         let before = self.now.read().unwrap_or_else(PoisonError::into_inner).written;
         if written(&self.files) == before {
             return;
@@ -116,7 +116,7 @@ mod tests {
         let tls = Tls::open(files.clone()).unwrap();
         let config = || tls.now.read().unwrap().config.clone();
         let first = config();
-        tls.look();
+        tls.reload_if_changed();
         assert!(Arc::ptr_eq(&first, &config()), "nothing has changed");
         let later = |file: &Path| {
             let file = std::fs::File::options().append(true).open(file).unwrap();
@@ -124,11 +124,11 @@ mod tests {
         };
         std::fs::write(&files.key, "no key").unwrap();
         later(&files.key);
-        tls.look();
+        tls.reload_if_changed();
         assert!(Arc::ptr_eq(&first, &config()), "the old one is still used");
         write(&files, "second.lab");
         later(&files.certificate);
-        tls.look();
+        tls.reload_if_changed();
         assert!(!Arc::ptr_eq(&first, &config()));
     }
 

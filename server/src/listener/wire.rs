@@ -1,7 +1,7 @@
 //! The byte stream of one connection: input starts a request, and output that is not accepted in time ends the
 //! connection.
 
-use super::seats::Seat;
+use super::slots::ConnectionSlot;
 use std::io;
 use std::pin::Pin;
 use std::sync::Arc;
@@ -10,29 +10,29 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::{Sleep, sleep};
 
-/// A plain or TLS stream that fails if its client accepts nothing for too long. It holds the seat of its connection,
+/// A plain or TLS stream that fails if its client accepts nothing for too long. It holds the slot of its connection,
 /// also for a live stream.
 pub struct Wire<S> {
     stream: S,
-    seat: Arc<Seat>,
+    slot: Arc<ConnectionSlot>,
     write_stall: Duration,
     stall: Option<Pin<Box<Sleep>>>,
 }
 
 impl<S> Wire<S> {
-    pub fn new(stream: S, seat: Arc<Seat>, write_stall: Duration) -> Self {
-        Self { stream, seat, write_stall, stall: None }
+    pub fn new(stream: S, slot: Arc<ConnectionSlot>, write_stall: Duration) -> Self {
+        Self { stream, slot, write_stall, stall: None }
     }
 
     fn timed<T>(&mut self, polled: Poll<io::Result<T>>, context: &mut Context<'_>) -> Poll<io::Result<T>> {
         if polled.is_ready() {
             if self.stall.take().is_some() {
-                self.seat.progress.stalls(false);
+                self.slot.progress.stalls(false);
             }
             return polled;
         }
         if self.stall.is_none() {
-            self.seat.progress.stalls(true);
+            self.slot.progress.stalls(true);
         }
         let stall = self.stall.get_or_insert_with(|| Box::pin(sleep(self.write_stall)));
         ready!(stall.as_mut().poll(context));
@@ -45,7 +45,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Wire<S> {
         let before = into.filled().len();
         let polled = Pin::new(&mut self.stream).poll_read(context, into);
         if into.filled().len() > before {
-            self.seat.progress.heard();
+            self.slot.progress.received();
         }
         polled
     }

@@ -33,18 +33,18 @@ impl Hub {
         Self { pieces: broadcast::channel(CAPACITY).0 }
     }
 
-    pub fn tell(&self, message: LiveMessage) {
+    pub fn publish(&self, message: LiveMessage) {
         // An error only means that there are no subscribers.
         let _ = self.pieces.send(Piece::Message(Arc::new(message)));
     }
 
-    pub fn show(&self, rows: Rows) {
+    pub fn publish_rows(&self, rows: Rows) {
         if self.pieces.receiver_count() > 0 {
             let _ = self.pieces.send(Piece::Rows(Arc::new(rows)));
         }
     }
 
-    pub fn listen(&self) -> Receiver<Piece> {
+    pub fn subscribe(&self) -> Receiver<Piece> {
         self.pieces.subscribe()
     }
 }

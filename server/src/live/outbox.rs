@@ -20,7 +20,7 @@ pub struct Outbox {
     texts: Vec<String>,
     waiting: Option<Trace>,
     /// Run and channels of the last channel message to the client.
-    told: Option<(i64, Vec<Channel>)>,
+    sent_channels: Option<(i64, Vec<Channel>)>,
     sequence: u32,
     dropped: u32,
 }
@@ -49,13 +49,13 @@ impl Outbox {
 
     fn rows(&mut self, piece: &Rows) {
         let channels = piece.rows.channels();
-        let same = self.told.as_ref().is_some_and(|(run, told)| *run == piece.run && told == channels);
+        let same = self.sent_channels.as_ref().is_some_and(|(run, sent)| *run == piece.run && sent == channels);
         if !same {
             // The client would read rows of the previous run with the wrong columns.
             if self.waiting.take().is_some() {
                 self.lost(1);
             }
-            self.told = Some((piece.run, channels.to_vec()));
+            self.sent_channels = Some((piece.run, channels.to_vec()));
             let channels = channels.iter().map(ChannelInfo::from).collect();
             self.text(&LiveMessage::Channels { bench: piece.bench.clone(), run: piece.run, channels });
         }

@@ -274,11 +274,11 @@ fn plain(value: &Value) -> String {
             format!("{name} (from segment {})", of("first_segment"))
         }
         Value::Object(items) => {
-            let said = |(name, value): (&String, &Value)| match plain(value) {
+            let labelled = |(name, value): (&String, &Value)| match plain(value) {
                 text if text.is_empty() => None,
                 text => Some(format!("{} {text}", title(name))),
             };
-            items.iter().filter_map(said).collect::<Vec<_>>().join(" · ")
+            items.iter().filter_map(labelled).collect::<Vec<_>>().join(" · ")
         }
         other => typed(other),
     }

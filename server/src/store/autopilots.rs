@@ -1,7 +1,7 @@
 //! Autopilots and their steps. Steps are only appended.
 
-use super::runs::{json, now};
 use super::seal::AUTOPILOT_STEPS;
+use super::values::{json, now};
 use super::{AutopilotRecord, Store, StoreError};
 use serde_json::{Map, Value};
 use sqlx::Row;

@@ -1,7 +1,7 @@
 //! Calibrations: runs whose results the next runs of a bench use.
 
-use super::runs::now;
 use super::seal::CALIBRATIONS;
+use super::values::now;
 use super::{CalibrationRecord, Store, StoreError};
 use jointbench_procedure::RunId;
 use sqlx::Row;

@@ -6,9 +6,10 @@
 
 use super::codec;
 use super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
-use super::runs::{channels, insert_events, insert_run, now, seal_state};
+use super::runs::{channels, insert_events, insert_run, seal_state};
 use super::samples::{TailPiece, tail};
 use super::seal::{BLOCKS, CHANNELS, COARSE, Cell, FINE, SPANS, TAIL};
+use super::values::now;
 use super::{BLOCK_ROWS, NewRun, Store, StoreError};
 use jointbench_instrument::{Channel, Trace};
 use jointbench_procedure::{Event, RunId, RunState};

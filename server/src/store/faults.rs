@@ -11,7 +11,7 @@ impl Store {
         let query = "SELECT * FROM instrument_faults WHERE bench = ? AND instrument = ? ORDER BY id DESC LIMIT ?";
         let rows = sqlx::query(query).bind(bench).bind(instrument).bind(limit).fetch_all(&self.readers).await?;
         let damaged = |row: &SqliteRow, fault: StoreError| (row.try_get("at").unwrap_or_default(), fault.to_string());
-        Ok(rows.iter().map(|row| told(row).unwrap_or_else(|fault| damaged(row, fault))).collect())
+        Ok(rows.iter().map(|row| record(row).unwrap_or_else(|fault| damaged(row, fault))).collect())
     }
 
     pub async fn keep_fault(&self, bench: &str, instrument: &str, at: &str, text: &str) -> Result<(), StoreError> {
@@ -28,7 +28,7 @@ impl Store {
     }
 }
 
-fn told(row: &SqliteRow) -> Result<(String, String), StoreError> {
+fn record(row: &SqliteRow) -> Result<(String, String), StoreError> {
     INSTRUMENT_FAULTS.check(row)?;
     Ok((row.try_get("at")?, row.try_get("text")?))
 }

@@ -15,7 +15,7 @@ impl Store {
         }
         let mut writer = self.writer.acquire().await?;
         limit(&mut writer, full).await?;
-        if full { take_free_pages(&mut writer).await } else { give_back(&mut writer).await }
+        if full { take_free_pages(&mut writer).await } else { release_pages(&mut writer).await }
     }
 }
 
@@ -40,7 +40,7 @@ async fn take_free_pages(writer: &mut SqliteConnection) -> Result<(), StoreError
 }
 
 /// Also removes the table that a daemon left when it was killed during a simulated full disk.
-pub(super) async fn give_back(writer: &mut SqliteConnection) -> Result<(), StoreError> {
+pub(super) async fn release_pages(writer: &mut SqliteConnection) -> Result<(), StoreError> {
     sqlx::query("DROP TABLE IF EXISTS full_disk").execute(writer).await?;
     Ok(())
 }

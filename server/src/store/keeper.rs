@@ -2,8 +2,7 @@
 //! commit waits for it.
 
 use super::mark::{Mark, MarkFile};
-use super::open::PATIENCE;
-use super::runs::now;
+use super::values::now;
 use super::{Store, StoreError};
 use serde::{Deserialize, Serialize};
 use sqlx::sqlite::SqliteConnectOptions;
@@ -13,6 +12,9 @@ use std::time::Duration;
 use tokio::sync::{Mutex, watch};
 use tokio::task::JoinHandle;
 use utoipa::ToSchema;
+
+/// Waiting time for a database that another program has locked, and for the one writer connection.
+pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The hook runs before its commit is on the disk. The keeper checks after this pause and doubles it each time.
 const FIRST_PAUSE: Duration = Duration::from_millis(2);
@@ -60,7 +62,7 @@ impl Keeper {
             MarkFile::open(&folder).map_err(|fault| StoreError::Unwritable { folder, what: fault.to_string() })?;
         let mut work = Work { database, writer, file, marked: -1, ended: 0, is_due: true };
         work.turn().await?;
-        let task = tokio::spawn(work.go_on(signals.subscribe()));
+        let task = tokio::spawn(work.run(signals.subscribe()));
         Ok(Self { signals, task: Mutex::new(Some(task)) })
     }
 
@@ -96,13 +98,13 @@ struct Work {
 }
 
 impl Work {
-    async fn go_on(mut self, mut signals: watch::Receiver<Signal>) {
+    async fn run(mut self, mut signals: watch::Receiver<Signal>) {
         // Time until the next check, while a commit may be in progress.
         let mut pause = None;
         loop {
             tokio::select! {
-                told = signals.changed() => {
-                    if told.is_err() {
+                changed = signals.changed() => {
+                    if changed.is_err() {
                         break;
                     }
                     pause = Some(FIRST_PAUSE);
@@ -125,7 +127,7 @@ impl Work {
     }
 
     async fn turn(&mut self) -> Result<(), StoreError> {
-        self.look().await?;
+        self.mark_last_change().await?;
         // Uses the writer's own connection, so that no transaction of it finds the database locked.
         if self.is_due
             && let Some(mut writer) = self.writer.try_acquire()
@@ -136,7 +138,7 @@ impl Work {
     }
 
     /// Marks the last change. A change that a reader sees is on the disk.
-    async fn look(&mut self) -> Result<(), StoreError> {
+    async fn mark_last_change(&mut self) -> Result<(), StoreError> {
         let (store, changes, ended) = state(&mut self.database).await?;
         self.is_due |= ended > self.ended;
         self.ended = ended;
@@ -220,7 +222,7 @@ impl Store {
 
 /// Call it when the store is opened, before the first write. It logs and stores the missing changes and blocks every
 /// bench, because a stop may be missing.
-pub(super) async fn look_back(database: &mut SqliteConnection, folder: &Path) -> Result<Option<Loss>, StoreError> {
+pub(super) async fn find_loss(database: &mut SqliteConnection, folder: &Path) -> Result<Option<Loss>, StoreError> {
     let mark = Mark::read(folder);
     let (store, ..) = state(database).await?;
     if let Some(other) = mark.as_ref().filter(|mark| mark.store != store) {

@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mark_comes_back_and_a_torn_one_says_nothing() {
+    fn a_mark_is_read_back_and_a_torn_one_is_ignored() {
         let folder = tempfile::tempdir().unwrap();
         assert_eq!(Mark::read(folder.path()), None);
         let mut file = MarkFile::open(folder.path()).unwrap();

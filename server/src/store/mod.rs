@@ -9,11 +9,11 @@ mod backup;
 mod calibrations;
 pub mod codec;
 mod commit;
+mod ends;
 mod error;
 mod faults;
 mod full_disk;
 mod keeper;
-mod kept;
 mod lock;
 mod mark;
 mod migrations;
@@ -21,9 +21,9 @@ mod models;
 mod notes;
 mod open;
 mod order;
-mod own_effects;
 pub mod pyramid;
 mod records;
+mod result_cache;
 mod runs;
 mod safety;
 mod samples;
@@ -32,19 +32,21 @@ mod search;
 #[cfg(test)]
 mod tests;
 mod tokens;
+mod user_effects;
+mod values;
 mod verify;
-mod view;
+mod window;
 
 pub use backup::{backup, restore};
 pub use commit::RunCommit;
 pub use error::StoreError;
 pub use keeper::Loss;
-pub use kept::{Subject, packed, unpacked};
 pub use order::Order;
 pub use records::{
     AutopilotRecord, CalibrationRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord,
-    OwnEffectRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord, VersionRecord, View, ViewColumn,
+    RunFilter, RunRecord, SafetyRecord, TokenRecord, UserEffectRecord, VersionRecord, Window, WindowColumn,
 };
+pub use result_cache::{Subject, packed, unpacked};
 pub use search::Search;
 pub use verify::{DamagedRecord, Readable, StoreHealth, VerifyReport, verify};
 

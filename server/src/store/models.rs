@@ -1,8 +1,9 @@
 //! Model versions, a tree that only grows, and the diagnoses of the versions.
 
-use super::runs::{exists, json, now};
-use super::seal::{DIAGNOSES, MODELS, whole};
-use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError, Subject, VersionRecord, kept};
+use super::runs::exists;
+use super::seal::{DIAGNOSES, MODELS, intact_records};
+use super::values::{json, now};
+use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError, Subject, VersionRecord, result_cache};
 use jointbench_procedure::RunId;
 use serde_json::Value;
 use sqlx::sqlite::SqliteRow;
@@ -50,7 +51,7 @@ impl Store {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         let id = insert_model(&mut writer, new, &before).await?;
         if let Some((what, packed)) = kept {
-            kept::keep(&mut writer, Subject::Model(id), what, packed).await?;
+            result_cache::insert(&mut writer, Subject::Model(id), what, packed).await?;
         }
         if let Some(diagnosis) = diagnosis {
             insert_diagnosis(&mut writer, id, diagnosis, &now()).await?;
@@ -102,7 +103,7 @@ impl Store {
             .bind(run)
             .fetch_all(&self.readers)
             .await?;
-        Ok(whole(&rows, record))
+        Ok(intact_records(&rows, record))
     }
 
     /// The changes in the versions of a run, oldest first, without their fits.
@@ -120,7 +121,7 @@ impl Store {
                 created_at: row.try_get("created_at")?,
             })
         };
-        Ok(whole(&rows, version))
+        Ok(intact_records(&rows, version))
     }
 
     pub async fn save_diagnosis(&self, model: i64, diagnosis: &Value) -> Result<DiagnosisRecord, StoreError> {
@@ -142,7 +143,7 @@ impl Store {
             .bind(model)
             .fetch_all(&self.readers)
             .await?;
-        Ok(whole(&rows, diagnosis_record))
+        Ok(intact_records(&rows, diagnosis_record))
     }
 }
 

@@ -1,7 +1,8 @@
 //! Notes and tags of runs.
 
-use super::runs::{exists, now};
+use super::runs::exists;
 use super::seal::NOTES;
+use super::values::now;
 use super::{NoteRecord, Store, StoreError};
 use jointbench_procedure::RunId;
 use sqlx::Row;

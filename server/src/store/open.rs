@@ -1,7 +1,7 @@
 //! Opening: one daemon for each data folder, one schema, durable commits.
 
-use super::full_disk::{give_back, limit};
-use super::keeper::{Keeper, Signal, Signals, look_back, losses};
+use super::full_disk::{limit, release_pages};
+use super::keeper::{Keeper, PATIENCE, Signal, Signals, find_loss, losses};
 use super::lock::FolderLock;
 use super::migrations::Migrations;
 use super::{Store, StoreError, StoreHealth};
@@ -21,9 +21,7 @@ pub(super) const FILE_NAME: &str = "jointbench.db";
 /// For each connection. Five connections and all other memory must fit into an address space of 1 GiB.
 const MAPPED_BYTES: &str = "33554432";
 const READERS: u32 = 4;
-/// Waiting time for a database that another program has locked, and for the one writer connection.
-pub(super) const PATIENCE: Duration = Duration::from_secs(5);
-/// The same for a reader in a separate process, which runs only when the daemon leaves processor time: longer than the
+/// Waiting time of a reader in a separate process, which runs only when the daemon leaves processor time: longer than the
 /// time limit of a computation, which ends the process.
 const READER_PATIENCE: Duration = Duration::from_secs(3600);
 
@@ -51,8 +49,8 @@ impl Store {
         let writer = writer(is_full.clone(), signals.clone());
         let writer = writer.connect_with(options.clone()).await.map_err(|fault| not_ours(fault, &file))?;
         migrate(&writer, &file).await?;
-        give_back(&mut *writer.acquire().await?).await?;
-        let missing = look_back(&mut *writer.acquire().await?, folder).await?;
+        release_pages(&mut *writer.acquire().await?).await?;
+        let missing = find_loss(&mut *writer.acquire().await?, folder).await?;
         let keeper = Keeper::start(&options, writer.clone(), folder.into(), signals).await?;
         let readers = pool(READERS).connect_with(options.read_only(true)).await?;
         let lost = losses(&mut *readers.acquire().await?).await?;

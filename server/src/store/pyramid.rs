@@ -2,12 +2,27 @@
 //! one sample remains visible.
 
 use super::codec::{self, Broken};
-use super::view::Extremes;
 
 /// Rows of a fine bin. Fine bins are packed like samples.
 pub const FINE_ROWS: usize = 64;
 /// Rows of a coarse bin. Coarse bins are plain doubles, because a plot of a long run reads hundreds of them.
 pub const COARSE_ROWS: usize = 1024;
+
+/// Smallest and largest values of consecutive bins.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Extremes {
+    pub min: Vec<f64>,
+    pub max: Vec<f64>,
+}
+
+impl Extremes {
+    /// A bin that is empty or contains only NaN arrives as (∞, −∞) and is stored as NaN.
+    pub fn push(&mut self, min: f64, max: f64) {
+        let empty = min > max;
+        self.min.push(if empty { f64::NAN } else { min });
+        self.max.push(if empty { f64::NAN } else { max });
+    }
+}
 
 /// Smallest and largest value of each bin of `width` rows.
 pub fn extremes(values: &[f64], width: usize) -> Extremes {

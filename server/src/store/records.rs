@@ -116,7 +116,7 @@ pub struct EventRecord {
 
 /// One version of an effect that a user wrote.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OwnEffectRecord {
+pub struct UserEffectRecord {
     pub kind: String,
     pub effect: String,
     /// Starts at 1.
@@ -242,10 +242,10 @@ pub struct TokenRecord {
 
 /// Samples of a window, reduced to a plot width.
 #[derive(Debug, Clone, PartialEq)]
-pub struct View {
+pub struct Window {
     /// Time of the first row of each point.
     pub time_s: Vec<f64>,
-    pub columns: Vec<ViewColumn>,
+    pub columns: Vec<WindowColumn>,
     /// Whether every row is one point.
     pub exact: bool,
     /// Rows in the window.
@@ -254,7 +254,7 @@ pub struct View {
 
 /// Smallest and largest value of each point. NaN only if all its rows are NaN.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ViewColumn {
+pub struct WindowColumn {
     pub channel: Channel,
     pub min: Vec<f64>,
     pub max: Vec<f64>,

@@ -1,19 +1,17 @@
 //! Runs and their journal.
 
-use super::commit::append;
 use super::seal::{CHANNELS, EVENTS, RUN_STATES, RUNS};
 use super::search::Search;
+use super::values::{json, now, word};
 use super::{EventRecord, NewRun, RunFilter, RunRecord, Store, StoreError};
-use jiff::Timestamp;
-use jointbench_instrument::{Channel, Trace};
-use jointbench_procedure::{Event, EventKind, RunId, RunState, Safe};
-use serde::de::DeserializeOwned;
+use jointbench_instrument::Channel;
+use jointbench_procedure::{Event, EventKind, RunId, RunState};
 use serde_json::{Map, Value};
 use sqlx::sqlite::SqliteRow;
 use sqlx::{QueryBuilder, Row, SqliteConnection};
 
 /// Runs with their tags, last note and verdict, and the last model version that is not idle and not only tried.
-const TOLD: &str = "SELECT runs_told.*, \
+pub(super) const LISTED: &str = "SELECT runs_told.*, \
     (SELECT json_group_array(tag) FROM (SELECT tag FROM tags WHERE run = runs_told.id ORDER BY tag)) AS tags, \
     (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict, \
     (SELECT text FROM notes WHERE run = runs_told.id ORDER BY id DESC LIMIT 1) AS note, \
@@ -22,16 +20,6 @@ const TOLD: &str = "SELECT runs_told.*, \
         'coulomb', (SELECT json(p.value) FROM json_each(models_told.fit, '$.parameters') AS p WHERE p.value ->> '$.effect' = 'coulomb')) \
         FROM models_told WHERE run = runs_told.id AND NOT idle AND NOT tried AND json_valid(fit) ORDER BY id DESC LIMIT 1) AS model \
     FROM runs_told";
-
-/// The current time in the format of the store.
-pub(super) fn now() -> String {
-    format!("{:.3}", Timestamp::now())
-}
-
-/// Parses a word of the store (`"safe_verified"`).
-fn word<T: DeserializeOwned>(text: &str) -> Result<T, StoreError> {
-    Ok(serde_json::from_value(Value::from(text))?)
-}
 
 fn record(row: &SqliteRow, channels: Vec<Channel>) -> Result<RunRecord, StoreError> {
     RUNS.check(row)?;
@@ -82,11 +70,6 @@ fn damaged(row: &SqliteRow, fault: StoreError) -> RunRecord {
     }
 }
 
-/// A column that holds JSON.
-pub(super) fn json<T: DeserializeOwned>(row: &SqliteRow, column: &str) -> Result<T, StoreError> {
-    serde_json::from_str(row.try_get(column)?).map_err(|fault| StoreError::Damaged(format!("column {column}: {fault}")))
-}
-
 impl Store {
     /// Creates a queued run.
     pub async fn create_run(&self, new: &NewRun) -> Result<RunId, StoreError> {
@@ -109,7 +92,7 @@ impl Store {
 
     pub async fn run(&self, run: RunId) -> Result<RunRecord, StoreError> {
         let mut reader = self.readers.begin().await?;
-        let mut query = QueryBuilder::new(TOLD);
+        let mut query = QueryBuilder::new(LISTED);
         query.push(" WHERE id = ").push_bind(run);
         let row = query.build().fetch_optional(&mut *reader).await?;
         let row = row.ok_or(StoreError::NoRun(run))?;
@@ -124,7 +107,7 @@ impl Store {
     pub async fn runs(&self, filter: &RunFilter) -> Result<(u64, Vec<RunRecord>), StoreError> {
         let search = Search::parse(filter.search.as_deref().unwrap_or_default())?;
         match self.page(&search, filter).await {
-            Err(StoreError::Damaged(_)) => self.one_by_one(&search, filter).await,
+            Err(StoreError::Damaged(_)) => self.list_individually(&search, filter).await,
             page => page,
         }
     }
@@ -134,7 +117,7 @@ impl Store {
         let mut count = QueryBuilder::new("SELECT COUNT(*) FROM runs_told");
         search.push(&mut count);
         let total: i64 = count.build_query_scalar().fetch_one(&mut *reader).await?;
-        let mut page = QueryBuilder::new(TOLD);
+        let mut page = QueryBuilder::new(LISTED);
         search.push(&mut page);
         filter.order.push(&mut page);
         page.push(" LIMIT ").push_bind(filter.limit).push(" OFFSET ").push_bind(filter.offset);
@@ -143,7 +126,7 @@ impl Store {
     }
 
     /// The same, newest first, if SQLite cannot scan the table: reads each run by its id.
-    pub(super) async fn one_by_one(
+    pub(super) async fn list_individually(
         &self,
         search: &Search,
         filter: &RunFilter,
@@ -153,7 +136,7 @@ impl Store {
             .await?;
         let mut runs = Vec::new();
         for run in (1..=last.unwrap_or_default()).rev() {
-            let mut query = QueryBuilder::new(TOLD);
+            let mut query = QueryBuilder::new(LISTED);
             search.push(&mut query);
             query.push(if search.is_empty() { " WHERE id = " } else { " AND id = " }).push_bind(run);
             match query.build().fetch_optional(&self.readers).await.map_err(StoreError::from) {
@@ -201,72 +184,6 @@ impl Store {
             .fetch_all(&mut *reader);
         let rows = rows.await.map_err(|fault| StoreError::from(fault).within(run, "events"))?;
         Ok(rows.iter().map(|row| event(row).unwrap_or_else(|fault| damaged_event(row, fault))).collect())
-    }
-
-    /// Stores end state, safe state and reason of a run whose last commit did not contain them.
-    pub async fn end_run(
-        &self,
-        run: RunId,
-        state: RunState,
-        safe: Safe,
-        reason: Option<&str>,
-    ) -> Result<(), StoreError> {
-        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
-        let told: Option<(String, Option<String>)> =
-            sqlx::query_as("SELECT state, safe FROM runs WHERE id = ?").bind(run).fetch_optional(&mut *writer).await?;
-        let (before, secured) = told.ok_or(StoreError::NoRun(run))?;
-        let at_s: f64 = sqlx::query_scalar("SELECT COALESCE(MAX(at_s), 0.0) FROM events WHERE run = ?")
-            .bind(run)
-            .fetch_one(&mut *writer)
-            .await?;
-        if secured.is_none() {
-            insert_events(&mut writer, run, &[Event { at_s, kind: EventKind::Safe { safe } }]).await?;
-        }
-        if !word::<RunState>(&before)?.is_final() {
-            let end = Event { at_s, kind: EventKind::State { state, reason: reason.map(str::to_owned) } };
-            append(&mut writer, run, state, &[end], Trace::default()).await?;
-        } else {
-            keep_reason(&mut writer, run, reason).await?;
-            seal_state(&mut writer, run).await?;
-        }
-        Ok(writer.commit().await?)
-    }
-
-    /// Interrupts the runs that an earlier daemon left open, and returns them. Their committed samples remain.
-    ///
-    /// This does not secure the bench: secure it, then call [`Store::end_run`].
-    pub async fn interrupt_open_runs(&self) -> Result<Vec<RunRecord>, StoreError> {
-        let open: Vec<RunId> = sqlx::query_scalar("SELECT id FROM runs WHERE finished_at IS NULL ORDER BY id")
-            .fetch_all(&self.writer)
-            .await?;
-        let mut interrupted = Vec::new();
-        for run in open {
-            let at_s: f64 = sqlx::query_scalar("SELECT COALESCE(MAX(at_s), 0.0) FROM events WHERE run = ?")
-                .bind(run)
-                .fetch_one(&self.writer)
-                .await?;
-            let event = Event { at_s, kind: EventKind::State { state: RunState::Interrupted, reason: None } };
-            match self.commit(run, RunState::Interrupted, &[event], Default::default()).await {
-                Err(fault @ StoreError::Damaged(_)) => {
-                    tracing::error!(run, %fault, "a run is ended with its last rows left as they are");
-                    self.end_damaged(run).await?;
-                }
-                done => done?,
-            }
-            let mut query = QueryBuilder::new(TOLD);
-            query.push(" WHERE id = ").push_bind(run);
-            interrupted.push(listed(&query.build().fetch_one(&self.readers).await?));
-        }
-        Ok(interrupted)
-    }
-
-    /// Interrupts a run without changing its events and its last rows.
-    async fn end_damaged(&self, run: RunId) -> Result<(), StoreError> {
-        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
-        let end = sqlx::query("UPDATE runs SET state = ?, finished_at = ? WHERE id = ?");
-        end.bind(RunState::Interrupted.name()).bind(now()).bind(run).execute(&mut *writer).await?;
-        seal_state(&mut writer, run).await?;
-        Ok(writer.commit().await?)
     }
 }
 
@@ -352,7 +269,11 @@ pub(super) async fn insert_events(
 }
 
 /// Keeps the first reason.
-async fn keep_reason(writer: &mut SqliteConnection, run: RunId, reason: Option<&str>) -> Result<(), StoreError> {
+pub(super) async fn keep_reason(
+    writer: &mut SqliteConnection,
+    run: RunId,
+    reason: Option<&str>,
+) -> Result<(), StoreError> {
     let update = sqlx::query("UPDATE runs SET reason = COALESCE(reason, ?) WHERE id = ?");
     update.bind(reason).bind(run).execute(writer).await?;
     Ok(())
@@ -367,7 +288,7 @@ pub(super) async fn channels(reader: &mut SqliteConnection, run: RunId) -> Resul
     rows.iter().map(channel).collect()
 }
 
-fn listed(row: &SqliteRow) -> RunRecord {
+pub(super) fn listed(row: &SqliteRow) -> RunRecord {
     record(row, Vec::new()).unwrap_or_else(|fault| damaged(row, fault))
 }
 

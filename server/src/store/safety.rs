@@ -1,7 +1,7 @@
 //! Benches that must not move until a person has checked them.
 
-use super::runs::now;
 use super::seal::BENCH_SAFETY;
+use super::values::now;
 use super::{SafetyRecord, Store, StoreError};
 use jointbench_procedure::{RunId, Safe};
 use sqlx::sqlite::SqliteRow;

@@ -138,10 +138,10 @@ fn unpack(pieces: &[Piece<'_>], rows: &Range<i64>, threads: usize) -> Result<Vec
             shares.push((share, here));
         }
         // This thread unpacks the last share itself; with one share no thread is started.
-        let own = shares.pop();
+        let last = shares.pop();
         let started: Vec<_> =
             shares.into_iter().map(|(share, values)| scope.spawn(move || unpack_share(share, rows, values))).collect();
-        if let Some((share, values)) = own {
+        if let Some((share, values)) = last {
             unpack_share(share, rows, values)?;
         }
         started.into_iter().try_for_each(|share| share.join().unwrap_or(Err(Broken)))

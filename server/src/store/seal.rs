@@ -178,9 +178,9 @@ impl Sealed {
 }
 
 /// The readable rows: a damaged row does not hide the others.
-pub fn whole<T>(rows: &[SqliteRow], record: impl Fn(&SqliteRow) -> Result<T, StoreError>) -> Vec<T> {
-    let told = |row| record(row).inspect_err(|fault| tracing::error!(%fault, "a record is left out of a list")).ok();
-    rows.iter().filter_map(told).collect()
+pub fn intact_records<T>(rows: &[SqliteRow], record: impl Fn(&SqliteRow) -> Result<T, StoreError>) -> Vec<T> {
+    let intact = |row| record(row).inspect_err(|fault| tracing::error!(%fault, "a record is left out of a list")).ok();
+    rows.iter().filter_map(intact).collect()
 }
 
 fn cell<'r>(row: &'r SqliteRow, column: &str) -> Result<Cell<'r>, sqlx::Error> {

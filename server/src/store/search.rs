@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_still_being_typed_is_left_out_and_told() {
+    fn an_incomplete_term_is_ignored_and_reported() {
         let (understood, refused) = Search::understood("oil rows> \"note:two words\" colour:r");
         assert_eq!(understood, "\"oil\" \"note:two words\"");
         assert!(refused.unwrap().to_string().contains("rows>"));
@@ -220,15 +220,15 @@ mod tests {
 
     #[test]
     fn a_word_that_may_become_a_key_can_be_left_out() {
-        let (before, told) = Search::before_key("\"note:two words\" -pro").unwrap();
+        let (before, message) = Search::before_key("\"note:two words\" -pro").unwrap();
         assert_eq!(before, "\"note:two words\"");
-        assert!(told.to_string().contains("procedure: may follow"), "{told}");
+        assert!(message.to_string().contains("procedure: may follow"), "{message}");
         assert!(Search::before_key("oil tag:x").is_none() && Search::before_key("").is_none());
     }
 
     #[test]
     fn a_wrong_term_is_named_with_what_there_is() {
-        for (text, said) in [
+        for (text, expected) in [
             ("colour:red", "there is no field colour; there are bench:"),
             ("temp<30", "temp cannot be compared; there are bench:"),
             ("rows>many", "\"many\" is no number"),
@@ -240,7 +240,7 @@ mod tests {
             ("simulated:perhaps", "simulated:yes or simulated:no"),
         ] {
             let refused = Search::parse(text).unwrap_err().to_string();
-            assert!(refused.contains(said), "{refused}");
+            assert!(refused.contains(expected), "{refused}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Tokens that were created while the daemon ran. The store receives only hashes of their secrets.
 
-use super::runs::now;
-use super::seal::whole;
+use super::seal::intact_records;
+use super::values::now;
 use super::{Store, StoreError, TokenRecord};
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
@@ -23,11 +23,11 @@ impl Store {
     pub async fn tokens(&self) -> Result<Vec<TokenRecord>, StoreError> {
         let rows =
             sqlx::query("SELECT * FROM tokens WHERE revoked_at IS NULL ORDER BY id").fetch_all(&self.readers).await?;
-        Ok(whole(&rows, record))
+        Ok(intact_records(&rows, record))
     }
 
     /// Created and revoked tokens: time, text and person.
-    pub async fn told_of_tokens(&self) -> Result<Vec<(String, String, String)>, StoreError> {
+    pub async fn token_events(&self) -> Result<Vec<(String, String, String)>, StoreError> {
         let query = "SELECT made_at, 'token ' || name || ' made', made_by FROM tokens \
             UNION ALL SELECT revoked_at, 'token ' || name || ' revoked', revoked_by FROM tokens WHERE revoked_at IS NOT NULL";
         Ok(sqlx::query_as(query).fetch_all(&self.readers).await?)

@@ -1,4 +1,4 @@
-//! What was applied to a bench.
+//! Calibrations of a bench.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! What is computed from the channels of a run.
+//! Channels and spectra that are computed from a run.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

@@ -1,4 +1,4 @@
-//! What a procedure makes of its run.
+//! Results of procedures.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -133,7 +133,8 @@ pub struct TrendRun {
 
 /// A run compared with the latest model of its kind from another run of the bench.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Beside {
+#[schema(as = Beside)]
+pub struct ModelOverlay {
     pub model: i64,
     /// The run that the model was fitted to first.
     pub model_run: i64,

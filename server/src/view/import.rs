@@ -1,4 +1,4 @@
-//! What a file holds, before it is taken in.
+//! Preview of a file before its import.
 
 use jointbench_files as files;
 use serde::{Deserialize, Serialize};

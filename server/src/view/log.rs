@@ -1,4 +1,4 @@
-//! What has happened.
+//! The event log.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

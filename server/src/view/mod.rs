@@ -1,48 +1,52 @@
-//! What leaves the daemon: the same serialisable types for REST, the live stream, the demo and `--json`.
+//! Output of the daemon: the same serialisable types for REST, the live stream, the demo and `--json`.
 //!
-//! SI units with the unit as suffix of the name. No number here is ever NaN or infinite: [`finite`] turns what is not
-//! known into `null`, and types that come from the model crate are re-read, which refuses a `null` for a number.
+//! SI units with the unit as suffix of the name. No number is NaN or infinite: [`finite`] converts an unknown value to
+//! `null`. Types of the model crate are converted with [`reread`], which refuses `null` for a number.
 
 mod autopilot;
 mod bench;
 mod calibration;
+mod convert;
 mod derived;
 mod diagnosis;
+mod effect;
 mod identification;
 mod import;
 mod live;
 mod log;
 mod memory;
 mod model;
-mod own;
 mod procedure;
 mod run;
 mod table;
 mod token;
+mod user_effect;
 
 pub use autopilot::*;
 pub use bench::*;
 pub use calibration::*;
+pub use convert::*;
 pub use derived::*;
 pub use diagnosis::*;
+pub use effect::*;
 pub use identification::*;
 pub use import::*;
 pub use live::*;
 pub use log::*;
 pub use memory::*;
 pub use model::*;
-pub use own::*;
 pub use procedure::*;
 pub use run::*;
 pub use table::*;
 pub use token::*;
+pub use user_effect::*;
 
 /// `None` for NaN and infinity, which JSON cannot carry.
 pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// A value of JSON as a person would type it: whole numbers without a point.
+/// A JSON value as text: whole numbers without a decimal point.
 pub fn typed(value: &serde_json::Value) -> String {
     match value.as_f64() {
         Some(number) if number.fract() == 0.0 && number.abs() < 1e15 => format!("{number:.0}"),
@@ -50,13 +54,13 @@ pub fn typed(value: &serde_json::Value) -> String {
     }
 }
 
-/// A run with these settings, as it is typed.
+/// The command that starts a run with these settings.
 pub fn command(procedure: &str, parameters: &serde_json::Map<String, serde_json::Value>) -> String {
     let set = parameters.iter().map(|(name, value)| format!(" --set {name}={}", typed(value)));
     format!("jointbench run {procedure}{}", set.collect::<String>())
 }
 
-/// A state in the word that the API has for it: `safe_verified`.
+/// The word of the API for a state: `safe_verified`.
 pub fn word(value: impl serde::Serialize) -> String {
     serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
 }

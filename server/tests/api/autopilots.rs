@@ -38,14 +38,14 @@ fn wait(daemon: &TestDaemon, id: i64) -> Value {
 fn listen(daemon: &TestDaemon) -> JoinHandle<usize> {
     let (mut socket, _) = tungstenite::connect(format!("ws://{}/api/v1/events", daemon.address())).unwrap();
     std::thread::spawn(move || {
-        let mut told = HashSet::new();
+        let mut sequences = HashSet::new();
         loop {
             let Message::Text(text) = socket.read().unwrap() else { continue };
             let message: Value = serde_json::from_str(&text).unwrap();
             match (&message["type"], message["step"]["sequence"].as_u64()) {
                 (kind, _) if kind != "autopilot" => continue,
-                (_, Some(sequence)) => told.insert(sequence),
-                _ => return told.len(),
+                (_, Some(sequence)) => sequences.insert(sequence),
+                _ => return sequences.len(),
             };
         }
     })
@@ -82,7 +82,7 @@ fn an_effect_that_one_run_cannot_show_is_found_by_the_next() {
     let (status, set) = daemon.get(&format!("/api/v1/models/{}/residuals", ended["model"]));
     assert_eq!(status, 200, "{set}");
 
-    assert_eq!(listener.join().unwrap(), steps.len(), "steps told as they were made");
+    assert_eq!(listener.join().unwrap(), steps.len(), "every step is published when it is made");
 }
 
 #[test]
@@ -119,8 +119,8 @@ fn the_run_that_a_diagnosis_asks_for_is_one_call() {
         let body = json!({"bench": BENCH, "procedure": "friction", "parameters": parameters});
         let (_, run) = daemon.post("/api/v1/runs", &body.to_string());
         daemon.wait_for_end(run["id"].as_i64().unwrap());
-        let (_, beside) = daemon.get(&format!("/api/v1/runs/{}/beside", run["id"]));
-        beside["outside"].as_f64().unwrap()
+        let (_, overlay) = daemon.get(&format!("/api/v1/runs/{}/beside", run["id"]));
+        overlay["outside"].as_f64().unwrap()
     };
     let unloaded = share_outside(no_load());
     assert!(unloaded < 0.12, "{unloaded}");
@@ -232,15 +232,15 @@ fn what_a_killed_daemon_left_open_is_interrupted_and_not_taken_up() {
         daemon.stop().await;
         autopilot
     });
-    let told = serde_json::to_value(&autopilot).unwrap();
-    assert_eq!((&told["state"], &told["runs"]), (&"interrupted".into(), &json!([])), "{told}");
-    assert!(told["reason"].as_str().unwrap().contains("the daemon terminated"), "{told}");
+    let view = serde_json::to_value(&autopilot).unwrap();
+    assert_eq!((&view["state"], &view["runs"]), (&"interrupted".into(), &json!([])), "{view}");
+    assert!(view["reason"].as_str().unwrap().contains("the daemon terminated"), "{view}");
 }
 
 #[test]
 fn what_cannot_be_asked_of_an_autopilot_is_refused_before_anything_moves() {
     let daemon = TestDaemon::start();
-    for (body, status, said) in [
+    for (body, status, expected) in [
         (json!({"bench": "attic"}), 404, "bench attic does not exist"),
         (json!({"bench": BENCH, "runs": 0}), 422, "runs = 0"),
         (json!({"bench": BENCH, "bench_time_s": 5.0}), 422, "the first run alone"),
@@ -249,7 +249,7 @@ fn what_cannot_be_asked_of_an_autopilot_is_refused_before_anything_moves() {
     ] {
         let (found, problem) = daemon.post("/api/v1/autopilots", &body.to_string());
         assert_eq!(found, status, "{problem}");
-        assert!(problem["detail"].as_str().unwrap().contains(said), "{problem}");
+        assert!(problem["detail"].as_str().unwrap().contains(expected), "{problem}");
     }
     assert_eq!(daemon.post("/api/v1/diagnoses/9/experiment", r#"{"bench": "joint-a-mock"}"#).0, 404);
     assert_eq!(daemon.get("/api/v1/autopilots/9").0, 404);

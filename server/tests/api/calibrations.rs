@@ -24,15 +24,15 @@ fn the_next_run_is_commanded_by_the_brake_that_was_applied_and_the_way_back_is_o
         daemon.get(&format!("/api/v1/runs/{run}")).1["meta"]["brake_model_of_run"].clone()
     };
     assert_eq!((daemon.get(&path).1, used()), (json!([]), second.into()), "the last one counts");
-    let (status, told) = apply(first.into());
-    assert_eq!((status, &told[0]["run"], &told[0]["by"]), (201, &first.into(), &"local".into()), "{told}");
+    let (status, applied) = apply(first.into());
+    assert_eq!((status, &applied[0]["run"], &applied[0]["by"]), (201, &first.into(), &"local".into()), "{applied}");
     assert_eq!(used(), first, "the one that was applied");
     let (_, earlier) = daemon.get(&format!("/api/v1/runs/{second}/earlier"));
     assert_eq!((&earlier[0]["run"], &earlier[0]["holds"]), (&first.into(), &true.into()), "{earlier}");
     assert_eq!(apply(second.into()).0, 201);
-    let (_, told) = apply(Value::Null);
-    let holds: Vec<_> = told.as_array().unwrap().iter().map(|one| (&one["run"], one["holds"] == true)).collect();
-    assert_eq!(holds, [(&Value::Null, true), (&second.into(), false), (&first.into(), false)], "{told}");
+    let (_, applied) = apply(Value::Null);
+    let holds: Vec<_> = applied.as_array().unwrap().iter().map(|one| (&one["run"], one["holds"] == true)).collect();
+    assert_eq!(holds, [(&Value::Null, true), (&second.into(), false), (&first.into(), false)], "{applied}");
     assert_eq!(used(), second);
 
     let friction = daemon.post("/api/v1/runs", SHORT_RUN).1["id"].as_i64().unwrap();
@@ -54,9 +54,9 @@ fn a_zero_is_taken_off_the_next_runs_and_compensation_is_planned_with_the_fricti
     let daemon = TestDaemon::start();
     let path = format!("/api/v1/bench/{BENCH}/calibrations");
     let apply = |procedure: &str, run: Value| {
-        let (status, told) = daemon.post(&path, &json!({"procedure": procedure, "run": run}).to_string());
-        assert_eq!((status, &told[0]["procedure"], &told[0]["run"]), (201, &procedure.into(), &run), "{told}");
-        told
+        let (status, applied) = daemon.post(&path, &json!({"procedure": procedure, "run": run}).to_string());
+        assert_eq!((status, &applied[0]["procedure"], &applied[0]["run"]), (201, &procedure.into(), &run), "{applied}");
+        applied
     };
     let run = |id: i64| daemon.get(&format!("/api/v1/runs/{id}")).1;
     let found = |id: i64| daemon.get(&format!("/api/v1/runs/{id}/identification")).1;
@@ -87,12 +87,12 @@ fn a_zero_is_taken_off_the_next_runs_and_compensation_is_planned_with_the_fricti
     let fed = run(made(&daemon, "compensation", json!({"periods": 2})));
     assert_eq!((&fed["parameters"]["tau_c_nm"], &fed["meta"]["friction_of_run"]), (&next.into(), &friction.into()));
 
-    let told = apply("friction", Value::Null);
+    let applied = apply("friction", Value::Null);
     let holds = |procedure: &str| {
-        let mut all = told.as_array().unwrap().iter();
+        let mut all = applied.as_array().unwrap().iter();
         all.find(|one| one["procedure"] == procedure && one["holds"] == true).unwrap()["run"].clone()
     };
-    assert_eq!((holds("friction"), holds("torque_sensor_zero")), (Value::Null, measured.into()), "{told}");
+    assert_eq!((holds("friction"), holds("torque_sensor_zero")), (Value::Null, measured.into()), "{applied}");
     let fed = run(made(&daemon, "compensation", json!({"periods": 2})));
     assert_eq!((&fed["parameters"]["tau_c_nm"], &fed["meta"]["friction_of_run"]), (&0.03.into(), &Value::Null));
 }

@@ -15,7 +15,7 @@ const FULL_S: f64 = 30.0;
 const HEALED_S: f64 = 42.0;
 
 #[test]
-fn a_full_disk_ends_a_run_which_is_told_at_once_and_kept_when_there_is_room() {
+fn a_full_disk_ends_a_run_and_the_end_is_stored_later() {
     let full = PlannedTrouble {
         instrument: MockInstrument::Disk,
         trouble: Trouble::DiskFull,

@@ -108,25 +108,25 @@ fn a_stretch_goes_out_and_is_summed_up_in_full_resolution() {
 }
 
 #[test]
-fn a_report_says_whose_data_it_tells_of() {
+fn a_report_names_the_source_of_its_data() {
     let daemon = TestDaemon::start();
-    let told = |meta: &str| {
+    let report_of = |meta: &str| {
         let (status, run) = upload(&daemon, GOOD, &[("meta", meta)]);
         assert_eq!(status, 201, "{run}");
         let path = format!("/api/v1/runs/{}/report", run["id"]);
         daemon.get_raw(&path).into_body().read_to_string().unwrap()
     };
-    let report = told(&META.replace('}', r#", "source": "line 3"}"#));
+    let report = report_of(&META.replace('}', r#", "source": "line 3"}"#));
     for part in ["IMPORTED</span>", "bench.csv", "source: line 3", "measured elsewhere"] {
         assert!(report.contains(part), "{part}: {report}");
     }
     assert!(!report.contains("HARDWARE"));
-    let report = told(&META.replace('}', r#", "simulated": true}"#));
+    let report = report_of(&META.replace('}', r#", "simulated": true}"#));
     assert!(report.contains("SIMULATED</span>") && report.contains("bench.csv"), "{report}");
 }
 
 #[test]
-fn a_preview_says_what_would_be_understood_and_keeps_nothing() {
+fn a_preview_shows_the_interpretation_and_stores_nothing() {
     let daemon = TestDaemon::start();
     let foreign = "Time [ms];pos_deg;Iq [A];remark\n0;90;0,1;cold\n4;91;0,2;\n8;92;0,1;\n";
     let (status, seen) = send(&daemon, "/api/v1/runs/import/preview", foreign, &[]);

@@ -57,17 +57,17 @@ fn computing(data: &Path) -> usize {
 }
 
 #[test]
-fn a_computation_that_needs_too_much_says_so() {
+fn a_computation_beyond_the_memory_limit_is_refused() {
     let daemon = TestDaemon::start_with(None, |settings| settings.analysis.memory_bytes = 32 << 20);
     let (status, problem) = upload(&daemon, &table(MANY), &[("meta", META)]);
     assert_eq!(status, 413, "{problem}");
-    let said = problem["detail"].as_str().unwrap();
-    assert!(said.contains("0.03125 GiB of memory") && said.contains("--analysis-memory"), "{said}");
+    let detail = problem["detail"].as_str().unwrap();
+    assert!(detail.contains("0.03125 GiB of memory") && detail.contains("--analysis-memory"), "{detail}");
     assert_eq!(daemon.get("/api/v1/runs").1["total"], 0, "nothing is kept");
 }
 
 #[test]
-fn a_computation_that_takes_too_long_says_so() {
+fn a_computation_beyond_the_time_limit_is_refused() {
     let daemon = TestDaemon::start_with(None, |settings| settings.analysis.time = Duration::from_millis(1));
     let (status, problem) = upload(&daemon, &table(MANY), &[("meta", META)]);
     assert_eq!(status, 413, "{problem}");

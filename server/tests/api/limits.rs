@@ -52,7 +52,7 @@ const HALF_BODY: &str =
     "POST /api/v1/runs HTTP/1.1\r\nhost: 127.0.0.1\r\ncontent-type: application/json\r\ncontent-length: 90\r\n\r\n{";
 
 #[test]
-fn clients_that_stall_keep_nobody_out() {
+fn stalled_clients_do_not_block_others() {
     let daemon = TestDaemon::start();
     let most = Limits::default().connections;
     // More connections than seats, of every kind: silent, in the head, in the body.
@@ -149,7 +149,7 @@ fn sizes_are_bounded_by_route() {
 
 #[test]
 fn who_is_not_let_in_is_refused_before_the_body_is_sent() {
-    let daemon = TestDaemon::start_with(None, |settings| settings.token = Some(crate::door::FULL.into()));
+    let daemon = TestDaemon::start_with(None, |settings| settings.token = Some(crate::auth::FULL.into()));
     let asking = "POST /api/v1/runs/import HTTP/1.1\r\nhost: 127.0.0.1\r\nexpect: 100-continue\r\ncontent-length: 900000000\r\n\r\n";
     let answer = rest(begin(&daemon, asking));
     assert!(answer.starts_with("HTTP/1.1 401"), "{answer}");

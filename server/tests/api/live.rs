@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 use tungstenite::Message;
 
 #[test]
-fn a_run_is_told_as_it_happens() {
+fn a_run_is_streamed_live() {
     let daemon = TestDaemon::start_with(Some(20.0), |_| {});
     let (mut socket, _) = tungstenite::connect(format!("ws://{}/api/v1/events", daemon.address())).unwrap();
     let (status, run) = daemon.post("/api/v1/runs", SHORT_RUN);
     assert_eq!(status, 201, "{run}");
-    let mut told: BTreeMap<String, usize> = BTreeMap::new();
+    let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
     let (mut channels, mut rows, mut next, mut newest_s) = (0, 0, 0, f64::NEG_INFINITY);
     loop {
         match socket.read().unwrap() {
@@ -25,7 +25,7 @@ fn a_run_is_told_as_it_happens() {
                     assert_eq!((&message["state"], &message["run"]), (&"completed".into(), &run["id"]));
                 }
                 let judged = kind == "verdict";
-                *told.entry(kind).or_default() += 1;
+                *kinds.entry(kind).or_default() += 1;
                 if judged {
                     assert_eq!(message["run"], run["id"]);
                     break;
@@ -49,7 +49,7 @@ fn a_run_is_told_as_it_happens() {
     assert_eq!(channels, 13);
     assert!(rows > 500 && next > 2, "{rows} rows in {next} frames");
     for kind in ["bench", "state", "progress", "event", "channels", "verdict"] {
-        assert!(told.contains_key(kind), "{kind} in {told:?}");
+        assert!(kinds.contains_key(kind), "{kind} in {kinds:?}");
     }
 }
 
@@ -62,12 +62,12 @@ fn a_request_that_opens_no_socket_is_a_problem() {
 }
 
 #[test]
-fn a_new_effect_is_told_to_everybody() {
+fn a_new_effect_is_published_to_all_clients() {
     let daemon = TestDaemon::start();
     let (mut socket, _) = tungstenite::connect(format!("ws://{}/api/v1/events", daemon.address())).unwrap();
     let effect = r#"{"id": "rub", "kind": "friction", "formula": "tau = a * velocity", "parameters": [{"name": "a"}]}"#;
     assert_eq!(daemon.post("/api/v1/effects", effect).0, 201);
-    let told = loop {
+    let message = loop {
         if let Message::Text(text) = socket.read().unwrap() {
             let message: Value = serde_json::from_str(&text).unwrap();
             if message["type"] == "effects" {
@@ -75,11 +75,11 @@ fn a_new_effect_is_told_to_everybody() {
             }
         }
     };
-    assert_eq!((&told["kind"], &told["effect"]), (&"friction".into(), &"rub".into()));
+    assert_eq!((&message["kind"], &message["effect"]), (&"friction".into(), &"rub".into()));
 }
 
 #[test]
-fn whoever_listens_with_a_token_is_cut_off_when_it_is_revoked() {
+fn a_stream_ends_when_its_token_is_revoked() {
     let daemon = TestDaemon::start();
     let (_, made) = daemon.post("/api/v1/tokens", r#"{"name": "wall screen", "access": "read"}"#);
     let address = format!("ws://{}/api/v1/events?token={}", daemon.address(), made["secret"].as_str().unwrap());

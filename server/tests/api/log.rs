@@ -3,13 +3,13 @@
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon};
 use serde_json::{Value, json};
 
-fn told(log: &Value, kind: &str) -> Vec<(String, Option<String>)> {
+fn entries(log: &Value, kind: &str) -> Vec<(String, Option<String>)> {
     let of_kind = log.as_array().unwrap().iter().filter(|entry| entry["kind"] == kind);
     of_kind.map(|one| (one["text"].as_str().unwrap().to_owned(), one["by"].as_str().map(str::to_owned))).collect()
 }
 
 #[test]
-fn the_log_tells_who_did_what() {
+fn the_log_contains_users_and_actions() {
     let daemon = TestDaemon::start_with(Some(20.0), |_| {});
     let (_, made) = daemon.post("/api/v1/tokens", r#"{"name": "Anna", "access": "full"}"#);
     let bearer = format!("Bearer {}", made["secret"].as_str().unwrap());
@@ -36,27 +36,27 @@ fn the_log_tells_who_did_what() {
     assert_eq!(daemon.post(&reset, r#"{"reason": "looked at it"}"#).0, 200);
 
     let (_, log) = daemon.get("/api/v1/log");
-    let said = |text: &str, by: &str| (text.to_owned(), Some(by.to_owned()));
-    assert_eq!(told(&log, "started"), [said("started", "Anna")], "{log}");
-    assert_eq!(told(&log, "stopped"), [said("stopped: software stop pressed", "Anna")]);
-    assert_eq!(told(&log, "reset"), [said("reset: looked at it", "local")]);
-    assert_eq!(told(&log, "token"), [said("token Anna made", "local")]);
-    let models = told(&log, "model");
+    let entry = |text: &str, by: &str| (text.to_owned(), Some(by.to_owned()));
+    assert_eq!(entries(&log, "started"), [entry("started", "Anna")], "{log}");
+    assert_eq!(entries(&log, "stopped"), [entry("stopped: software stop pressed", "Anna")]);
+    assert_eq!(entries(&log, "reset"), [entry("reset: looked at it", "local")]);
+    assert_eq!(entries(&log, "token"), [entry("token Anna made", "local")]);
+    let models = entries(&log, "model");
     assert!(models[0].0.ends_with(" removed") && models[0].1.as_deref() == Some("local"), "{models:?}");
     assert!(models[1].0.contains("fitted: Coulomb") && models[1].1.as_deref() == Some("Anna"), "{models:?}");
-    let asked: Vec<String> = told(&log, "control").into_iter().map(|(text, _)| text).collect();
+    let asked: Vec<String> = entries(&log, "control").into_iter().map(|(text, _)| text).collect();
     assert_eq!(asked, ["operator command: resume (Anna)", "operator command: pause (local)"]);
     let moments: Vec<&str> = log.as_array().unwrap().iter().map(|entry| entry["at"].as_str().unwrap()).collect();
     assert!(moments.is_sorted_by(|a, b| a >= b), "newest first: {moments:?}");
 
     let (_, of_run) = daemon.get(&format!("/api/v1/log?run={id}"));
-    let kinds = |kind: &str| told(&of_run, kind).len();
+    let kinds = |kind: &str| entries(&of_run, kind).len();
     assert_eq!((kinds("started"), kinds("model"), kinds("token"), kinds("reset")), (1, 2, 0, 0), "{of_run}");
     assert_eq!(daemon.get("/api/v1/log?run=77").0, 404);
 }
 
 #[test]
-fn what_was_earlier_is_told_from_any_run_on() {
+fn the_log_has_pages_from_any_run() {
     let daemon = TestDaemon::start();
     let short = format!(r#"{{"bench": "{BENCH}", "procedure": "friction", "parameters": {{"load_levels": 1}}}}"#);
     for _ in 0..13 {

@@ -1,11 +1,10 @@
 //! Tests of the daemon on a real loopback port, as its clients use it.
 
+mod auth;
 mod autopilots;
 mod calibrations;
 mod daemon;
-mod differences;
 mod disk;
-mod door;
 mod headers;
 mod import;
 mod jobs;
@@ -13,15 +12,16 @@ mod limits;
 mod live;
 mod log;
 mod names;
-mod own_effects;
 mod presses;
 mod problems;
 mod process_list;
 mod readers;
 mod revisions;
+mod run_comparison;
 mod runs;
 mod safety;
 mod servo_memory;
 mod spreadsheets;
 mod tables;
 mod tls;
+mod user_effects;

@@ -27,7 +27,7 @@ fn is_stopped(safety: &Value) -> bool {
 }
 
 #[test]
-fn a_press_of_the_stop_whose_client_hangs_up_at_once_is_kept() {
+fn a_stop_is_executed_if_its_client_disconnects() {
     let daemon = TestDaemon::start();
     let bench = format!("/api/v1/bench/{BENCH}");
     for press in 1..=PRESSES {

@@ -10,7 +10,7 @@ use std::time::Duration;
 fn every_refusal_is_a_problem_document() {
     let daemon = TestDaemon::start();
     let started = |body: &str| daemon.post("/api/v1/runs", body);
-    for (answer, status, kind, said) in [
+    for (answer, status, kind, expected) in [
         (daemon.get("/api/v1/runs/99"), 404, "not_found", "run 99 does not exist"),
         (daemon.get("/api/v1/models/99"), 404, "not_found", "model version 99 does not exist"),
         (daemon.get("/api/v1/bench/attic"), 404, "not_found", "bench attic does not exist"),
@@ -50,7 +50,7 @@ fn every_refusal_is_a_problem_document() {
         assert_eq!(problem["status"], status);
         assert!(problem["instance"].as_str().is_some_and(|path| path.starts_with("/api")), "{problem}");
         let detail = problem["detail"].as_str().unwrap();
-        assert!(detail.contains(said), "{said:?} in {detail:?}");
+        assert!(detail.contains(expected), "{expected:?} in {detail:?}");
     }
 }
 

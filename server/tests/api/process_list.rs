@@ -1,6 +1,6 @@
 //! Data of a daemon that other users of the computer can see.
 
-use crate::door::{FULL, READS};
+use crate::auth::{FULL, READS};
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use tempfile::TempDir;
@@ -29,10 +29,10 @@ fn a_token_among_the_arguments_is_in_no_list_of_processes_and_opens_the_door() {
     };
     let answered = [FULL, READS, "wrong horse battery"].map(with);
     daemon.kill().unwrap();
-    let said = String::from_utf8_lossy(&daemon.wait_with_output().unwrap().stderr).into_owned();
+    let stderr = String::from_utf8_lossy(&daemon.wait_with_output().unwrap().stderr).into_owned();
     assert!(arguments.contains("serve") && !arguments.contains("horse"), "{arguments}");
     assert_eq!(name.trim(), "jointbench");
     assert_eq!(answered, [200, 403, 401]);
-    assert!(said.contains("--token-file") && said.contains("127.0.0.1"), "the warning, and the source: {said}");
-    assert!(!said.contains("horse"), "{said}");
+    assert!(stderr.contains("--token-file") && stderr.contains("127.0.0.1"), "the warning, and the source: {stderr}");
+    assert!(!stderr.contains("horse"), "{stderr}");
 }

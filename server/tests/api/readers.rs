@@ -1,7 +1,7 @@
 //! Tests of a read-only token.
 
+use crate::auth::{FULL, READS};
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon};
-use crate::door::{FULL, READS};
 use serde_json::Value;
 
 /// Its permitted operations other than GET.
@@ -30,7 +30,7 @@ fn filled(path: &str) -> String {
 }
 
 #[test]
-fn it_changes_nothing_whatever_it_sends_where() {
+fn a_read_token_changes_nothing() {
     let daemon = daemon();
     let bearer = format!("Bearer {READS}");
     let headers = [("authorization", &*bearer), ("content-type", "application/json")];
@@ -58,7 +58,7 @@ fn it_changes_nothing_whatever_it_sends_where() {
 }
 
 #[test]
-fn it_is_told_of_no_token() {
+fn a_read_token_sees_no_tokens() {
     let daemon = daemon();
     let (reads, full) = (format!("Bearer {READS}"), format!("Bearer {FULL}"));
     let name = r#"{"name": "wall screen", "access": "read"}"#;

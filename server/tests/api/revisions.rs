@@ -1,7 +1,7 @@
 //! Model versions: comparison, evaluation on other runs, export and import.
 
 use crate::daemon::TestDaemon;
-use crate::own_effects::{RUB, rub, rubbing_run};
+use crate::user_effects::{RUB, rub, rubbing_run};
 use serde_json::{Value, json};
 
 struct Two {
@@ -49,7 +49,7 @@ fn a_run_has_one_first_version_however_many_pages_open_it() {
 }
 
 #[test]
-fn what_is_only_tried_is_nobodys_version_until_it_is_kept() {
+fn a_trial_is_no_version_until_it_is_kept() {
     let Two { daemon, run, bare, better } = two_versions();
     let listed = || daemon.get(&format!("/api/v1/runs?search=id:{run}")).1["runs"][0]["model"]["id"].clone();
     let asked = json!({"run": run, "effects": better["effects"], "parent": bare["id"], "tried": true});
@@ -89,7 +89,7 @@ fn two_versions_stand_side_by_side() {
 }
 
 #[test]
-fn each_effect_says_what_it_is_worth() {
+fn each_effect_has_its_contribution() {
     let Two { daemon, bare, better, .. } = two_versions();
     let (status, worth) = daemon.get(&format!("/api/v1/models/{}/worth", better["id"]));
     assert_eq!(status, 200, "{worth}");

@@ -86,14 +86,14 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     assert!(page.contains("+ Direction offset") && page.contains("noise floor"), "where the version came from");
     assert!(!page.contains("<script") && !page.contains("src="), "complete in itself");
     let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
-    assert!(!page.contains("+ Direction offset"), "an idle version is told of where it is asked for");
+    assert!(!page.contains("+ Direction offset"), "an idle version is only shown on request");
     let page = of(&model["id"]).body_mut().read_to_string().unwrap();
     assert!(!page.contains("Direction offset") && page.contains("noise floor"), "an earlier version and its diagnosis");
     assert_eq!(of(&json!(99_999)).status(), 404, "of no other run");
 }
 
 #[test]
-fn a_result_stands_beside_those_of_earlier_runs() {
+fn a_result_is_shown_with_earlier_results() {
     let daemon = TestDaemon::start();
     let earlier = |id: i64| daemon.get(&format!("/api/v1/runs/{id}/earlier"));
     let first = start(&daemon);
@@ -107,13 +107,13 @@ fn a_result_stands_beside_those_of_earlier_runs() {
         id
     });
     assert_eq!(earlier(first), (200, json!([])));
-    let (status, told) = earlier(third);
-    let runs: Vec<_> = told.as_array().unwrap().iter().map(|one| one["run"].as_i64().unwrap()).collect();
-    assert_eq!((status, runs), (200, vec![second, first]), "newest first, and none that was not finished: {told}");
+    let (status, results) = earlier(third);
+    let runs: Vec<_> = results.as_array().unwrap().iter().map(|one| one["run"].as_i64().unwrap()).collect();
+    assert_eq!((status, runs), (200, vec![second, first]), "newest first, and none that was not finished: {results}");
     let (_, found) = daemon.get(&format!("/api/v1/runs/{first}/identification"));
     assert!(found["quantities"].as_array().unwrap().len() > 4, "{found}");
-    assert_eq!(told[1]["quantities"], found["quantities"]);
-    assert_eq!(earlier(third).1, told, "read where it was worked out");
+    assert_eq!(results[1]["quantities"], found["quantities"]);
+    assert_eq!(earlier(third).1, results, "read where it was worked out");
     assert_eq!(earlier(second).1.as_array().unwrap().len(), 1);
     assert_eq!(earlier(77).0, 404);
     let (status, trends) = daemon.get("/api/v1/trends?search=procedure:friction");
@@ -127,10 +127,10 @@ fn a_joint_that_was_not_warmed_up_is_a_warning_of_its_result() {
     let daemon = TestDaemon::start();
     let id = made(&daemon, "friction", json!({ "warm_up_s": 60.0, "load_levels": 1 }));
     let (_, events) = daemon.get(&format!("/api/v1/runs/{id}/events"));
-    let told = events.as_array().unwrap().iter().find(|event| event["kind"] == "warning").expect("a warning");
-    assert!(told["text"].as_str().unwrap().starts_with("not warmed up: "), "{told}");
+    let warning = events.as_array().unwrap().iter().find(|event| event["kind"] == "warning").expect("a warning");
+    assert!(warning["text"].as_str().unwrap().starts_with("not warmed up: "), "{warning}");
     let (_, found) = daemon.get(&format!("/api/v1/runs/{id}/identification"));
-    assert_eq!(found["warnings"], json!([told["text"]]), "{found}");
+    assert_eq!(found["warnings"], json!([warning["text"]]), "{found}");
     assert!(["identified_with_warning", "inconclusive"].contains(&found["verdict"].as_str().unwrap()), "{found}");
     let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
     assert!(page.contains("not warmed up: "), "{page}");
@@ -138,7 +138,7 @@ fn a_joint_that_was_not_warmed_up_is_a_warning_of_its_result() {
 
 /// The end of a run is stored shortly before its bench is free.
 #[test]
-fn whoever_sees_a_run_over_may_start_the_next() {
+fn the_next_run_can_start_when_a_run_is_shown_as_ended() {
     let daemon = TestDaemon::start();
     for _ in 0..8 {
         let id = start(&daemon);
@@ -157,10 +157,10 @@ fn how_late_an_instrument_tells_is_in_the_journal_and_in_the_report() {
     let id = run["id"].as_i64().unwrap();
     assert_eq!(daemon.wait_for_end(id)["state"], "completed");
     let (_, events) = daemon.get(&format!("/api/v1/runs/{id}/events"));
-    let told = "Time stamps and signals agree";
-    assert!(events.as_array().unwrap().iter().any(|event| event["text"].as_str().unwrap().contains(told)), "{events}");
+    let note = "Time stamps and signals agree";
+    assert!(events.as_array().unwrap().iter().any(|event| event["text"].as_str().unwrap().contains(note)), "{events}");
     let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
-    assert!(page.contains(told) && page.contains("Skew of the encoder under test"), "{page}");
+    assert!(page.contains(note) && page.contains("Skew of the encoder under test"), "{page}");
 }
 
 #[test]
@@ -207,7 +207,7 @@ fn what_is_left_of_a_stopped_run_is_made_later_and_both_are_one_measurement() {
     let made: Vec<_> = events.as_array().unwrap().iter().filter(|event| event["kind"] == "step_started").collect();
     for event in &made {
         let step = event["data"]["step"].as_u64().unwrap() as usize;
-        assert_eq!(plan["steps"][step]["label"], event["data"]["label"], "the plan told is the one that is made");
+        assert_eq!(plan["steps"][step]["label"], event["data"]["label"], "the reported plan is the executed plan");
     }
     let last = made.last().unwrap()["data"]["step"].as_u64().unwrap() as usize;
     assert_eq!(last + 1, plan["steps"].as_array().unwrap().len(), "{plan}");

@@ -20,7 +20,7 @@ fn release(daemon: &TestDaemon) -> (u16, Value) {
 }
 
 #[test]
-fn the_software_stop_holds_until_somebody_resets_it_with_a_reason_through_a_restart_too() {
+fn the_software_stop_holds_until_its_reset_also_after_a_restart() {
     let data = tempfile::tempdir().unwrap();
     let daemon = || TestDaemon::start_with(Some(4.0), |settings| settings.data = data.path().to_owned());
     let mut first = daemon();
@@ -45,9 +45,14 @@ fn the_software_stop_holds_until_somebody_resets_it_with_a_reason_through_a_rest
     assert_eq!((status, &bench["state"], &bench["blocked"]), (200, &"idle".into(), &Value::Null), "{bench}");
     assert_eq!(release(&second).0, 409, "nothing is left to be reset");
     let (_, record) = second.get(&format!("{}/safety", path()));
-    let told: Vec<_> = record.as_array().unwrap().iter().map(|entry| (&entry["stopped"], &entry["reason"])).collect();
-    assert_eq!(told[0], (&false.into(), &"hand out of the way".into()), "{record}");
-    assert_eq!((told.len(), told[2].0, &record[2]["run"]), (3, &true.into(), &id.into()), "every press: {record}");
+    let entries: Vec<_> =
+        record.as_array().unwrap().iter().map(|entry| (&entry["stopped"], &entry["reason"])).collect();
+    assert_eq!(entries[0], (&false.into(), &"hand out of the way".into()), "{record}");
+    assert_eq!(
+        (entries.len(), entries[2].0, &record[2]["run"]),
+        (3, &true.into(), &id.into()),
+        "every press: {record}"
+    );
     assert_eq!(second.post("/api/v1/runs", SHORT_RUN).0, 201);
 }
 

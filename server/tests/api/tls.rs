@@ -1,7 +1,7 @@
 //! The daemon over HTTPS.
 
+use crate::auth::FULL;
 use crate::daemon::TestDaemon;
-use crate::door::FULL;
 use jointbench::listener::TlsFiles;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -70,12 +70,12 @@ fn the_command_line_reaches_it_with_the_certificate_and_a_token_from_a_file() {
     let url = format!("https://localhost:{}", port(&daemon));
     let (ca, token) = (files.certificate.to_str().unwrap(), token.to_str().unwrap());
     let done = jointbench(&["runs", "--daemon", &url, "--ca-file", ca, "--token-file", token]).output().unwrap();
-    let said = String::from_utf8_lossy(&done.stderr);
-    assert!(done.status.success(), "{said}");
+    let stderr = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{stderr}");
     let strange = jointbench(&["runs", "--daemon", &url, "--token-file", token]).output().unwrap();
     assert_eq!(strange.status.code(), Some(2), "{}", String::from_utf8_lossy(&strange.stderr));
     // A token among the arguments also works, with a warning.
     let seen = jointbench(&["runs", "--daemon", &url, "--ca-file", ca, "--token", FULL]).output().unwrap();
-    let said = String::from_utf8_lossy(&seen.stderr);
-    assert!(seen.status.success() && said.contains("--token-file") && !said.contains(FULL), "{said}");
+    let stderr = String::from_utf8_lossy(&seen.stderr);
+    assert!(seen.status.success() && stderr.contains("--token-file") && !stderr.contains(FULL), "{stderr}");
 }

@@ -106,36 +106,39 @@ pub struct Acknowledged {
 }
 
 impl Acknowledged {
-    pub fn read(said: &str) -> Self {
-        let mut told = Acknowledged::default();
-        for what in said.lines().filter_map(|line| line.strip_prefix("acknowledged ")) {
-            told.steps += 1;
+    pub fn read(output: &str) -> Self {
+        let mut acknowledged = Acknowledged::default();
+        for what in output.lines().filter_map(|line| line.strip_prefix("acknowledged ")) {
+            acknowledged.steps += 1;
             match what {
-                "run" => told.runs += 1,
-                "commit" => told.commits += 1,
-                "note" => told.notes += 1,
-                "token" => told.tokens += 1,
-                "block" => told.blocks += 1,
-                "calibration" => told.calibrations += 1,
-                "end" => told.ends += 1,
+                "run" => acknowledged.runs += 1,
+                "commit" => acknowledged.commits += 1,
+                "note" => acknowledged.notes += 1,
+                "token" => acknowledged.tokens += 1,
+                "block" => acknowledged.blocks += 1,
+                "calibration" => acknowledged.calibrations += 1,
+                "end" => acknowledged.ends += 1,
                 other => panic!("{other}"),
             }
         }
-        told
+        acknowledged
     }
 }
 
 /// Acknowledged data exists once, other data completely or not at all. No data is damaged, and no loss is reported.
-pub fn check(folder: &Path, told: &Acknowledged, how: &str) {
+pub fn check(folder: &Path, acknowledged: &Acknowledged, how: &str) {
     block_on(async {
         let store = Store::open(folder).await.unwrap_or_else(|fault| panic!("{how}: {fault}"));
-        assert_eq!(store.losses().await.unwrap(), [], "{how}: {told:?}");
+        assert_eq!(store.losses().await.unwrap(), [], "{how}: {acknowledged:?}");
         // One more step may be on the disk without its answer. Each attempt to create a run creates one.
-        let among = |found: usize, told: usize, more: usize| {
-            assert!((told..=told + more).contains(&found), "{how}: {found} found, {told} acknowledged");
+        let among = |found: usize, acknowledged: usize, more: usize| {
+            assert!(
+                (acknowledged..=acknowledged + more).contains(&found),
+                "{how}: {found} found, {acknowledged} acknowledged"
+            );
         };
         let (total, runs) = store.runs(&RunFilter { limit: 10, ..RunFilter::default() }).await.unwrap();
-        among(total as usize, told.runs, ATTEMPTS);
+        among(total as usize, acknowledged.runs, ATTEMPTS);
         for run in &runs {
             let commits = run.rows as usize / ROWS;
             assert_eq!(run.rows as usize, commits * ROWS, "{how}: a commit is whole or absent");
@@ -145,14 +148,14 @@ pub fn check(folder: &Path, told: &Acknowledged, how: &str) {
             assert_eq!(events.len(), commits, "{how}: the journal is that of the rows");
         }
         let commits: usize = runs.iter().map(|run| run.rows as usize / ROWS).sum();
-        among(commits, told.commits, 1);
+        among(commits, acknowledged.commits, 1);
         let ended = runs.iter().filter(|run| run.state == RunState::Completed).count();
-        among(ended, told.ends, 1);
+        among(ended, acknowledged.ends, 1);
         let notes = runs.iter().filter(|run| run.note.is_some()).count();
-        among(notes, told.notes, 1);
-        among(store.tokens().await.unwrap().len(), told.tokens, 1);
-        among(store.safety(BENCH, 99).await.unwrap().len(), told.blocks, ATTEMPTS);
-        among(store.calibrations(BENCH).await.unwrap().len(), told.calibrations, ATTEMPTS);
+        among(notes, acknowledged.notes, 1);
+        among(store.tokens().await.unwrap().len(), acknowledged.tokens, 1);
+        among(store.safety(BENCH, 99).await.unwrap().len(), acknowledged.blocks, ATTEMPTS);
+        among(store.calibrations(BENCH).await.unwrap().len(), acknowledged.calibrations, ATTEMPTS);
         let report = verify(folder).await.unwrap();
         assert!(report.is_whole(), "{how}: {report:?}");
         store.close().await;

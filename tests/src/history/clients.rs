@@ -133,11 +133,11 @@ impl Actor {
 
     /// Stores results that later operations need.
     fn learn(&mut self, kind: &Kind, outcome: &Outcome) {
-        let Some(told) = outcome.acknowledged() else { return };
+        let Some(answer) = outcome.acknowledged() else { return };
         match kind {
-            Kind::Start => self.started = told["id"].as_i64(),
+            Kind::Start => self.started = answer["id"].as_i64(),
             Kind::MakeToken { name } => {
-                let (id, secret) = (told["id"].as_i64(), told["secret"].as_str());
+                let (id, secret) = (answer["id"].as_i64(), answer["secret"].as_str());
                 self.tokens.extend(id.zip(secret).map(|(id, secret)| (id, name.clone(), secret.to_owned())));
             }
             _ => {}

@@ -76,7 +76,7 @@ fn bombs_do_not_end_a_daemon_of_1_gib() {
 }
 
 #[test]
-fn nor_do_many_who_want_much_of_a_long_run() {
+fn many_large_requests_do_not_stop_the_daemon() {
     let folder = tempfile::tempdir().expect("a folder");
     let data = folder.path().join("data");
     let daemon = limited(folder.path());

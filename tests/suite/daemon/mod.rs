@@ -84,8 +84,8 @@ fn runs_are_listed_and_ended_from_the_command_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let config = bench(folder.path(), "b", 20.0);
     let daemon = Daemon::serve(&folder.path().join("data"), &config);
-    let said = |arguments: &[&str]| run(&[arguments, &["--daemon", daemon.base.as_str()]].concat());
-    let idle = said(&["stop"]);
+    let command = |arguments: &[&str]| run(&[arguments, &["--daemon", daemon.base.as_str()]].concat());
+    let idle = command(&["stop"]);
     assert_eq!(idle.status.code(), Some(2));
     assert!(stderr(&idle).contains("no run is active"), "{}", stderr(&idle));
     for (option, value, why) in [
@@ -93,7 +93,7 @@ fn runs_are_listed_and_ended_from_the_command_line() {
         ("--require", "tau_c < 35 kg", "tau_c is in Nm"),
         ("--junit", "/nowhere/out.xml", "folder /nowhere does not exist"),
     ] {
-        let vain = said(&["run", "friction", option, value]);
+        let vain = command(&["run", "friction", option, value]);
         assert_eq!(vain.status.code(), Some(2));
         assert!(stderr(&vain).contains(why), "{}", stderr(&vain));
     }
@@ -102,24 +102,24 @@ fn runs_are_listed_and_ended_from_the_command_line() {
     let id = start(&daemon, "friction");
     daemon.wait_for(&format!("/runs/{id}"), Duration::from_secs(60), |run| rows(run) > 100);
     for (how, state) in [("pause", "paused"), ("resume", "running")] {
-        let steered = said(&[how]);
+        let steered = command(&[how]);
         assert!(steered.status.success(), "{how}: {}", stderr(&steered));
         assert_eq!(daemon.get(&format!("/runs/{id}"))["state"], state, "`{how}` returns when the run is {state}");
     }
-    let stopped = said(&["stop"]);
+    let stopped = command(&["stop"]);
     assert!(stopped.status.success(), "{}", stderr(&stopped));
     assert!(stdout(&stopped).contains(&format!("run {id} stopped")), "{}", stdout(&stopped));
     for (late, why) in
         [(&["stop", "1"][..], "run 1 has already ended (stopped)"), (&["stop", "9"], "run 9 does not exist")]
     {
-        let late = said(late);
+        let late = command(late);
         assert_eq!(late.status.code(), Some(2), "{}", stderr(&late));
         assert!(stderr(&late).contains(why), "{}", stderr(&late));
     }
-    let listed = stdout(&said(&["runs", "state:stopped"]));
+    let listed = stdout(&command(&["runs", "state:stopped"]));
     let [head, run] = listed.lines().collect::<Vec<_>>()[..] else { panic!("{listed}") };
     assert!(head.contains("Coulomb") && run.contains("friction"), "{listed}");
-    assert!(stdout(&said(&["runs", "state:failed"])).contains("no run matches"));
+    assert!(stdout(&command(&["runs", "state:failed"])).contains("no run matches"));
 }
 
 #[test]
@@ -131,20 +131,20 @@ fn a_run_that_takes_too_long_is_aborted_and_its_limits_are_skipped() {
     let report = junit.to_str().expect("a path");
     let limits = ["--require", "tau_c < 1 Nm", "--junit", report, "--timeout", "1", "--daemon", &daemon.base];
     let ended = run(&[&["run", "friction"], &limits[..]].concat());
-    let said = stdout(&ended) + &stderr(&ended);
-    assert_eq!(ended.status.code(), Some(1), "{said}");
-    assert!(said.contains("run 1 aborted") && said.contains("longer than --timeout 1 s"), "{said}");
+    let text = stdout(&ended) + &stderr(&ended);
+    assert_eq!(ended.status.code(), Some(1), "{text}");
+    assert!(text.contains("run 1 aborted") && text.contains("longer than --timeout 1 s"), "{text}");
     assert_eq!(daemon.get("/runs/1")["safe"], "safe_verified");
     let report = std::fs::read_to_string(&junit).expect("the report");
     assert!(report.contains("tests=\"2\" failures=\"1\" errors=\"0\" skipped=\"1\""), "{report}");
 }
 
 #[test]
-fn an_autopilot_that_a_person_ended_says_so_once() {
+fn a_stopped_autopilot_is_reported_once() {
     let folder = tempfile::tempdir().expect("a folder");
     let config = bench(folder.path(), "b", 20.0);
     let daemon = Daemon::serve(&folder.path().join("data"), &config);
-    let told = std::thread::scope(|scope| {
+    let output = std::thread::scope(|scope| {
         let waiting = scope.spawn(|| run(&["autopilot", "--wait", "--daemon", daemon.base.as_str()]));
         let started = |all: &Value| !all[0]["runs"].as_array().is_none_or(Vec::is_empty);
         daemon.wait_for("/autopilots", Duration::from_secs(60), started);
@@ -152,9 +152,9 @@ fn an_autopilot_that_a_person_ended_says_so_once() {
         assert_eq!(status, 200);
         waiting.join().expect("the command ends")
     });
-    let said = stdout(&told) + &stderr(&told);
-    assert_eq!(told.status.code(), Some(1), "{said}");
-    assert_eq!(said.matches("(local)").count(), 1, "{said}");
+    let text = stdout(&output) + &stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert_eq!(text.matches("(local)").count(), 1, "{text}");
 }
 
 #[test]
@@ -168,8 +168,8 @@ fn a_run_that_decides_nothing_is_no_success() {
         arguments.extend(["--set", choice]);
     }
     let ended = run(&arguments);
-    let said = stdout(&ended);
-    assert!(said.contains("run 1 completed") && said.contains("run 1: inconclusive"), "{said} {}", stderr(&ended));
+    let text = stdout(&ended);
+    assert!(text.contains("run 1 completed") && text.contains("run 1: inconclusive"), "{text} {}", stderr(&ended));
     assert_eq!(ended.status.code(), Some(3));
     let late = run(&["run", "--continue", "1", "--require", "tau_c < 35 kg", "--daemon", daemon.base.as_str()]);
     assert_eq!((late.status.code(), daemon.get("/runs")["total"].as_i64()), (Some(2), Some(1)));
@@ -194,9 +194,9 @@ fn a_second_daemon_on_the_same_folder_is_refused() {
         .arg(&config)
         .output()
         .expect("jointbench starts");
-    let said = crate::program::stderr(&second);
-    assert_eq!(second.status.code(), Some(2), "{said}");
-    assert!(said.contains(&data.display().to_string()), "the folder is named: {said}");
+    let text = crate::program::stderr(&second);
+    assert_eq!(second.status.code(), Some(2), "{text}");
+    assert!(text.contains(&data.display().to_string()), "the folder is named: {text}");
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn a_port_that_is_taken_is_named() {
     let address = taken.local_addr().expect("an address").to_string();
     let data = folder.path().join("data");
     let output = crate::program::run(&["serve", "--listen", &address, "--data", &data.display().to_string()]);
-    let said = crate::program::stderr(&output);
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("is in use") && said.contains("--listen"), "{said}");
+    let text = crate::program::stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(text.contains("is in use") && text.contains("--listen"), "{text}");
 }

@@ -31,9 +31,9 @@ fn random() -> ChaCha8Rng {
 }
 
 fn check(outcomes: &[Outcome]) {
-    let told = table(outcomes);
-    println!("{told}");
-    assert!(outcomes.iter().all(Outcome::holds), "{told}");
+    let report = table(outcomes);
+    println!("{report}");
+    assert!(outcomes.iter().all(Outcome::holds), "{report}");
 }
 
 fn check_stops(trouble: Trouble) {
@@ -71,7 +71,7 @@ fn the_stop_works_while_models_are_fitted() {
 }
 
 #[test]
-fn the_stop_works_beside_stalled_connections() {
+fn the_stop_works_with_stalled_connections() {
     check_stops(Trouble::StalledConnections);
 }
 
@@ -82,7 +82,7 @@ fn a_press_is_never_lost() {
 }
 
 #[test]
-fn whoever_dies_the_bench_is_secured_and_nothing_acknowledged_is_lost() {
+fn after_any_crash_the_bench_is_secured_and_no_acknowledged_data_is_lost() {
     let _alone = alone();
     check(&deaths::deaths(1, &say));
 }

@@ -1,9 +1,12 @@
-//! Dependencies inside the model crate: no cycle between the modules of a folder, and stages depend only on earlier
-//! ones.
+//! Dependencies inside the crates: no cycle between the modules of a folder. In the model crate, stages depend only on
+//! earlier ones.
 
 use super::root;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+
+/// The crates whose modules have no cycles, in any folder.
+const CRATES: [&str; 3] = ["procedures/model", "procedures/procedure", "server"];
 
 type ModulePath = Vec<String>;
 /// For each module of a folder, the modules of the same folder that it depends on, with an example of a user.
@@ -24,27 +27,29 @@ const PIPELINE: [&str; 9] = [
 ];
 
 #[test]
-fn no_modules_of_the_model_lean_on_each_other_in_a_circle() {
-    for (folder, arrows) in &arrows_of(&sources(&root().join("procedures/model/src"))) {
-        for module in arrows.keys() {
-            assert!(
-                !reach(arrows, module).contains(module),
-                "{} is in a circle: {:?}",
-                [folder.clone(), vec![module.clone()]].concat().join("::"),
-                arrows[module]
-            );
+fn no_modules_of_a_folder_depend_on_each_other_in_a_circle() {
+    for name in CRATES {
+        for (folder, arrows) in &arrows_of(&sources(&root().join(name).join("src"))) {
+            for module in arrows.keys() {
+                assert!(
+                    !reach(arrows, module).contains(module),
+                    "{name}: {} is in a circle: {:?}",
+                    [folder.clone(), vec![module.clone()]].concat().join("::"),
+                    arrows[module]
+                );
+            }
         }
     }
 }
 
 #[test]
-fn stages_of_the_model_lean_on_earlier_ones() {
+fn stages_of_the_model_depend_on_earlier_ones() {
     let all = arrows_of(&sources(&root().join("procedures/model/src")));
     let arrows = &all[&Vec::new()];
     for (at, stage) in PIPELINE.iter().enumerate() {
         for later in &PIPELINE[at + 1..] {
             let example = arrows.get(*stage).and_then(|to| to.get(*later));
-            assert!(example.is_none(), "{stage} must not lean on {later}: {example:?}");
+            assert!(example.is_none(), "{stage} must not depend on {later}: {example:?}");
         }
     }
 }
@@ -81,6 +86,8 @@ fn sources(folder: &Path) -> BTreeMap<ModulePath, String> {
 }
 
 fn code(source: &str) -> String {
+    // A declaration of a file with tests is followed by other code, a module of tests is not.
+    let source = source.replace("#[cfg(test)]\nmod tests;\n", "");
     let source = source.split("#[cfg(test)]\n").next().unwrap_or_default();
     source.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
 }
@@ -91,7 +98,7 @@ fn arrows_of(sources: &BTreeMap<ModulePath, String>) -> BTreeMap<ModulePath, Arr
     let exported: Vec<ModulePath> = statements(root, "pub use ").flat_map(|tree| leaves(&tree)).collect();
     let mut all: BTreeMap<ModulePath, Arrows> = BTreeMap::new();
     for (from, text) in sources.iter().filter(|(from, _)| !from.is_empty()) {
-        for path in references(text) {
+        for path in references(from, text) {
             let to = module_of(&path, sources, &exported);
             let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
             if let (Some(one), Some(other)) = (from.get(shared), to.get(shared)) {
@@ -104,14 +111,30 @@ fn arrows_of(sources: &BTreeMap<ModulePath, String>) -> BTreeMap<ModulePath, Arr
     all
 }
 
-/// Paths below `crate` in a source, in `use` statements and in expressions.
-fn references(text: &str) -> Vec<ModulePath> {
-    let used = statements(text, "use crate").flat_map(|tree| leaves(&format!("crate{tree}")));
-    let in_place = text.split("crate::").skip(1).map(|rest| {
+/// Paths of a module's source below the root of the crate, in `use` statements and in expressions.
+fn references(module: &[String], text: &str) -> Vec<ModulePath> {
+    let used = ["crate", "super"].into_iter().flat_map(|begin| {
+        let trees = statements(text, if begin == "crate" { "use crate" } else { "use super" });
+        trees.flat_map(move |tree| leaves(&format!("{begin}{tree}")))
+    });
+    // A path in an expression begins at `crate` or at the first `super`.
+    let begins = text.match_indices("crate::").chain(text.match_indices("super::"));
+    let in_place = begins.filter(|(at, _)| !text[..*at].ends_with("super::")).map(|(at, _)| {
+        let rest = &text[at..];
         let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':')).unwrap_or(rest.len());
         rest[..end].split("::").filter(|s| !s.is_empty()).map(String::from).collect()
     });
-    used.map(|path| path[1..].to_vec()).chain(in_place.filter(|path: &ModulePath| !path.is_empty())).collect()
+    used.chain(in_place).map(|path| from_root(module, &path)).filter(|path| !path.is_empty()).collect()
+}
+
+/// `crate::a` and, in the module `a::b`, `super::c` as `a` and `a::c`.
+fn from_root(module: &[String], path: &[String]) -> ModulePath {
+    let up = path.iter().take_while(|part| *part == "super").count();
+    match up {
+        0 => path[1..].to_vec(),
+        // Inline modules of a file can go up further.
+        _ => [&module[..module.len().saturating_sub(up)], &path[up..]].concat(),
+    }
 }
 
 fn statements<'t>(text: &'t str, begin: &'t str) -> impl Iterator<Item = String> + 't {
@@ -143,7 +166,8 @@ fn module_of(path: &[String], sources: &BTreeMap<ModulePath, String>, exported: 
     let longest = (1..=path.len()).rev().map(|n| path[..n].to_vec()).find(|module| sources.contains_key(module));
     longest.unwrap_or_else(|| {
         let from = exported.iter().find(|leaf| leaf.last() == path.first());
-        // `report::*` exports the rest.
-        from.map_or_else(|| vec!["report".into()], |leaf| leaf[..leaf.len() - 1].to_vec())
+        // A root exports the rest with `report::*`, or not at all.
+        let rest = || exported.iter().find(|leaf| leaf.last().is_some_and(|name| name == "*"));
+        from.or_else(rest).map_or_else(Vec::new, |leaf| leaf[..leaf.len() - 1].to_vec())
     })
 }

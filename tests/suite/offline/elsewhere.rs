@@ -1,6 +1,6 @@
 //! A stored model on other runs, and files that are given with it: differences are reported.
 
-use super::own::{done, run_in, write_run};
+use super::user_effects::{done, run_in, write_run};
 use crate::program::{stderr, stdout};
 use std::path::Path;
 
@@ -13,20 +13,20 @@ fn fitted(folder: &Path) {
 
 fn refused(folder: &Path, arguments: &[&str], words: &[&str]) {
     let output = run_in(folder, arguments);
-    let said = stderr(&output);
-    assert!(matches!(output.status.code(), Some(2 | 3)), "{arguments:?}: {said}");
-    assert!(!said.contains("os error"), "{said}");
-    words.iter().for_each(|words| assert!(said.contains(words), "{words}: {said}"));
+    let message = stderr(&output);
+    assert!(matches!(output.status.code(), Some(2 | 3)), "{arguments:?}: {message}");
+    assert!(!message.contains("os error"), "{message}");
+    words.iter().for_each(|words| assert!(message.contains(words), "{words}: {message}"));
 }
 
 #[test]
-fn what_another_run_lacks_is_said() {
+fn a_missing_column_of_another_run_is_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     fitted(folder);
-    let told = done(folder, &["model", "evaluate", "model.json", "run.csv"]);
-    assert!(told.starts_with("on run.csv: error ") && !told.contains("note"), "{told}");
-    assert!(told.contains("steady-state means, 80 %") && told.contains("(7200 samples)"), "{told}");
+    let text = done(folder, &["model", "evaluate", "model.json", "run.csv"]);
+    assert!(text.starts_with("on run.csv: error ") && !text.contains("note"), "{text}");
+    assert!(text.contains("steady-state means, 80 %") && text.contains("(7200 samples)"), "{text}");
 
     // The fifth column is the link torque.
     let table = std::fs::read_to_string(folder.join("run.csv")).expect("a table");
@@ -39,13 +39,13 @@ fn what_another_run_lacks_is_said() {
     std::fs::write(folder.join("bare/run.csv"), bare.join("\n")).expect("a table");
     let meta = std::fs::read_to_string(folder.join("meta.json")).expect("facts");
     std::fs::write(folder.join("bare/meta.json"), meta.replace("50", "100")).expect("facts");
-    let told = done(folder, &["model", "evaluate", "model.json", "bare"]);
-    assert!(told.contains("load_transmission is omitted, because the run has no column link_torque_nm"), "{told}");
-    assert!(told.contains("gear_ratio is 100 in the facts of this run and 50 in those of the fitted one"), "{told}");
+    let text = done(folder, &["model", "evaluate", "model.json", "bare"]);
+    assert!(text.contains("load_transmission is omitted, because the run has no column link_torque_nm"), "{text}");
+    assert!(text.contains("gear_ratio is 100 in the facts of this run and 50 in those of the fitted one"), "{text}");
 
     done(folder, &["fit", "bare", "--model", MODEL, "--out", "bare.json"]);
-    let told = done(folder, &["model", "evaluate", "bare.json", "run.csv"]);
-    assert!(told.contains("load_transmission counts here, but the run that was fitted had no column"), "{told}");
+    let text = done(folder, &["model", "evaluate", "bare.json", "run.csv"]);
+    assert!(text.contains("load_transmission counts here, but the run that was fitted had no column"), "{text}");
     done(folder, &["fit", "run.csv", "--model", "coulomb,load_linear", "--out", "loaded.json"]);
     refused(folder, &["model", "evaluate", "loaded.json", "bare"], &["bare: effect load_linear", "link_torque_nm"]);
 }
@@ -91,11 +91,11 @@ fn a_file_that_will_not_do_is_named() {
     let data = folder.join("data").display().to_string();
     refused(folder, &["import", "short/run.csv", "--data", &data], &["did you mean gear_ratio?"]);
     done(folder, &["import", "run.csv", "--data", &data]);
-    let told = done(folder, &["import", "run.csv", "--data", &data]);
-    assert!(told.contains("its samples are identical to those of run 1"), "{told}");
-    assert!(!told.contains("attention"), "{told}");
-    let told = done(folder, &["import", "run.csv", "--scale", "motor_current_a=1000", "--data", &data]);
-    assert!(told.contains("warning: motor_current_a with the torque constant and the gear ratio is "), "{told}");
+    let text = done(folder, &["import", "run.csv", "--data", &data]);
+    assert!(text.contains("its samples are identical to those of run 1"), "{text}");
+    assert!(!text.contains("attention"), "{text}");
+    let text = done(folder, &["import", "run.csv", "--scale", "motor_current_a=1000", "--data", &data]);
+    assert!(text.contains("warning: motor_current_a with the torque constant and the gear ratio is "), "{text}");
     refused(
         folder,
         &["export", "1", "-o", "x.foo", "--data", &data],
@@ -111,13 +111,13 @@ fn nothing_is_advised_before_contradicting_columns_are_mended() {
     let folder = tempfile::tempdir().expect("a folder");
     write_run(folder.path());
     for verb in ["diagnose", "discover"] {
-        let told = |more: &[&str]| {
+        let diagnose = |more: &[&str]| {
             let output = run_in(folder.path(), &[&[verb, "run.csv"], more].concat());
             (output.status.code(), stdout(&output))
         };
-        let (code, whole) = told(&[]);
+        let (code, whole) = diagnose(&[]);
         assert!(code == Some(0) && whole.contains("recommended next run"), "{whole}");
-        let (code, broken) = told(&["--scale", "motor_current_a=1000"]);
+        let (code, broken) = diagnose(&["--scale", "motor_current_a=1000"]);
         assert!(
             code == Some(3) && broken.contains("Data problem: motor_current_a with the torque constant"),
             "{broken}"
@@ -135,17 +135,17 @@ fn nothing_is_advised_before_contradicting_columns_are_mended() {
 fn the_library_is_listed() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    let told = done(folder, &["procedures"]);
-    assert!(told.lines().any(|line| line.starts_with("friction ")), "{told}");
+    let text = done(folder, &["procedures"]);
+    assert!(text.lines().any(|line| line.starts_with("friction ")), "{text}");
     assert!(done(folder, &["procedures", "friction"]).contains("--set load_levels=3"), "what can be set");
     refused(folder, &["procedures", "frction"], &["unknown procedure frction: did you mean friction?"]);
-    let told = done(folder, &["effects"]);
-    assert!(told.contains("  stribeck ") && told.contains("jointbench demo --effect"), "{told}");
+    let text = done(folder, &["effects"]);
+    assert!(text.contains("  stribeck ") && text.contains("jointbench demo --effect"), "{text}");
     assert!(done(folder, &["effects", "stribeck"]).contains("residual if missing: "), "what it means");
-    let told = done(folder, &["effects", "load_linear"]);
+    let text = done(folder, &["effects", "load_linear"]);
     let (plain, weighed) =
-        told.split_once("a gravity load that the torque sensor does not measure:").expect("both formulas");
-    assert!(plain.contains("\n  μ·|τ_link/N|·sign ω\n") && weighed.contains("|τ_link/N + g_c·cos θ_link"), "{told}");
+        text.split_once("a gravity load that the torque sensor does not measure:").expect("both formulas");
+    assert!(plain.contains("\n  μ·|τ_link/N|·sign ω\n") && weighed.contains("|τ_link/N + g_c·cos θ_link"), "{text}");
     refused(folder, &["effects", "stribek"], &["unknown effect stribek: did you mean stribeck?"]);
 }
 
@@ -166,10 +166,10 @@ fn advice_names_the_axis_of_the_summary_as_a_formula_does() {
     });
     let bumped: Vec<String> = bumped.collect();
     std::fs::write(folder.path().join("run.csv"), bumped.join("\n")).expect("a table");
-    let told = stdout(&run_in(folder.path(), &["discover", "run.csv", "--max-effects", "0"]));
-    assert!(told.contains("The requested number of effects is reached"), "{told}");
-    assert!(told.contains("it is largest over motor velocity and link torque, and a function"), "{told}");
-    assert!(told.contains("as a formula of velocity and load with --own"), "{told}");
-    let told = stdout(&run_in(folder.path(), &["diagnose", "run.csv"]));
-    assert!(told.contains("missing effects, most") && !told.contains("as a formula of"), "{told}");
+    let text = stdout(&run_in(folder.path(), &["discover", "run.csv", "--max-effects", "0"]));
+    assert!(text.contains("The requested number of effects is reached"), "{text}");
+    assert!(text.contains("it is largest over motor velocity and link torque, and a function"), "{text}");
+    assert!(text.contains("as a formula of velocity and load with --own"), "{text}");
+    let text = stdout(&run_in(folder.path(), &["diagnose", "run.csv"]));
+    assert!(text.contains("missing effects, most") && !text.contains("as a formula of"), "{text}");
 }

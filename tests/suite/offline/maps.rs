@@ -1,7 +1,7 @@
 //! `diagnose --maps`: the residual over each quantity that the verdict uses.
 
 use super::json;
-use super::own::{run_in, write_run};
+use super::user_effects::{run_in, write_run};
 use crate::program::{run, stdout};
 use crate::shared::shared;
 use std::path::Path;
@@ -14,9 +14,9 @@ fn the_error_is_drawn_over_each_quantity_and_only_where_it_is_asked_for() {
     let (_, maps) = drawn.split_once("residual maps: ").expect("maps");
     assert!(maps.contains("motor_velocity_rad_s [rad/s]: explains ") && maps.contains('●'), "{maps}");
     assert!(maps.contains("\nno structure over ") && maps.contains("temperature_c"), "{maps}");
-    let told = |more: &[&str]| json("diagnose", Path::new(case), more);
-    assert!(told(&["--maps"])["maps"]["pairs"].as_array().is_some_and(|pairs| !pairs.is_empty()));
-    assert!(told(&[]).get("maps").is_none());
+    let diagnosis = |more: &[&str]| json("diagnose", Path::new(case), more);
+    assert!(diagnosis(&["--maps"])["maps"]["pairs"].as_array().is_some_and(|pairs| !pairs.is_empty()));
+    assert!(diagnosis(&[]).get("maps").is_none());
 }
 
 /// Pressure of a step, independent of load and speed.
@@ -48,13 +48,13 @@ fn an_axis_that_the_verdict_names_by_direction_is_not_called_flat() {
     std::fs::write(folder.path().join("run.csv"), rubbing.join("\n")).expect("a table");
     let rub = "rub: tau = a * tanh(velocity / 12) * abs(load); a [1] 0..1";
     let model = "load_transmission,coulomb,viscous,rub";
-    let told = stdout(&run_in(folder.path(), &["diagnose", "run.csv", "--own", rub, "--model", model, "--maps"]));
-    assert!(told.contains("it is largest over oil pressure and direction, and a function"), "{told}");
-    let (_, maps) = told.split_once("mean residual (measured − model)").expect("maps");
+    let text = stdout(&run_in(folder.path(), &["diagnose", "run.csv", "--own", rub, "--model", model, "--maps"]));
+    assert!(text.contains("it is largest over oil pressure and direction, and a function"), "{text}");
+    let (_, maps) = text.split_once("mean residual (measured − model)").expect("maps");
     let (drawn, flat) = maps.split_once("\nno structure over ").unwrap_or((maps, ""));
-    assert!(!flat.contains("oil_pressure_pa"), "{told}");
+    assert!(!flat.contains("oil_pressure_pa"), "{text}");
     let (_, drawn) = drawn.split_once("oil_pressure_pa [Pa]: explains ").expect("the pressure");
-    assert!(drawn.contains(" % by direction"), "{told}");
+    assert!(drawn.contains(" % by direction"), "{text}");
     let (negative, positive) = drawn.split_once("in positive motion:").expect("both directions");
-    assert!(negative.contains("in negative motion:") && positive.contains('●'), "{told}");
+    assert!(negative.contains("in negative motion:") && positive.contains('●'), "{text}");
 }

@@ -3,10 +3,10 @@
 mod elsewhere;
 mod emps;
 mod maps;
-mod own;
 mod practice;
 mod refused;
 mod round_trip;
+mod user_effects;
 
 use crate::program::{jointbench, stderr};
 use serde_json::Value;

@@ -24,7 +24,7 @@ fn judge(folder: &Path) -> Result<(), String> {
     let baseline = effects(&meta["baseline"]);
     let added: Vec<&str> =
         effects(&discovery["model"]).into_iter().filter(|effect| !baseline.contains(effect)).collect();
-    let told = format!("suggested {suggested:?}, added {added:?}, verdict {}", discovery["verdict"]);
+    let failure = format!("suggested {suggested:?}, added {added:?}, verdict {}", discovery["verdict"]);
     let is_right = match answer["verdict"].as_str() {
         Some("adequate") => diagnosis["verdict"] == "adequate" && suggested.is_empty() && added.is_empty(),
         Some("unexplained_structure") => discovery["verdict"] == "unexplained_structure",
@@ -41,7 +41,7 @@ fn judge(folder: &Path) -> Result<(), String> {
                 && reached.is_some_and(|rms| rms <= 1.1 * floor)
         }
     };
-    if is_right { Ok(()) } else { Err(told) }
+    if is_right { Ok(()) } else { Err(failure) }
 }
 
 /// No effect is missing in either run; one of the runs has no repeats.
@@ -61,10 +61,15 @@ fn a_verdict_that_decides_nothing_says_so_and_ends_with_3() {
         std::fs::copy(case.join("meta.json"), folder.path().join("meta.json")).expect("facts");
         for verb in ["diagnose", "discover"] {
             let output = run(&[verb, &table.display().to_string(), "--json"]);
-            let said: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-            assert_eq!(said["verdict"], "adequate", "{verb} {name}: {}", said["summary"]);
-            let code = if said["undecided"].is_string() { 3 } else { 0 };
-            assert_eq!((output.status.code(), name == "once"), (Some(code), code == 3), "{verb}: {}", said["summary"]);
+            let diagnosis: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+            assert_eq!(diagnosis["verdict"], "adequate", "{verb} {name}: {}", diagnosis["summary"]);
+            let code = if diagnosis["undecided"].is_string() { 3 } else { 0 };
+            assert_eq!(
+                (output.status.code(), name == "once"),
+                (Some(code), code == 3),
+                "{verb}: {}",
+                diagnosis["summary"]
+            );
         }
     }
 }
@@ -81,9 +86,9 @@ fn the_practice_cases_are_right() {
     for entry in std::fs::read_dir(cases).expect("a folder") {
         let folder = entry.expect("an entry").path();
         if folder.is_dir()
-            && let Err(told) = judge(&folder)
+            && let Err(failure) = judge(&folder)
         {
-            wrong.push(format!("{}: {told}", folder.file_name().unwrap_or_default().display()));
+            wrong.push(format!("{}: {failure}", folder.file_name().unwrap_or_default().display()));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

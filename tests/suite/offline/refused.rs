@@ -38,9 +38,12 @@ fn the_place_of_the_fault_is_named() {
         std::fs::write(&path, format!("{HEADER}{rows}")).expect("a table");
         let output =
             jointbench().arg("import").arg(&path).arg("--data").arg(&data).output().expect("jointbench starts");
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{what}: {said}");
-        assert!(said.contains(&format!("{what}.csv")) && said.contains(line) && said.contains(words), "{what}: {said}");
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{what}: {message}");
+        assert!(
+            message.contains(&format!("{what}.csv")) && message.contains(line) && message.contains(words),
+            "{what}: {message}"
+        );
     }
     // The store contains no run.
     let output = run(&["export", "1", "--format", "csv", "--data", &data.display().to_string()]);

@@ -5,19 +5,17 @@
 //! `reports` sends data to store and show. `presses` keeps a software stop in a file until it is stored. Without a
 //! server, the worker ends the active run, secures the bench and writes unstored data to the data folder.
 
-mod desk;
 mod outbox;
 mod owner;
 mod press_file;
+mod process;
 mod recorder;
-mod seat;
+mod worker_state;
 
-pub(super) use seat::file_name;
-pub use seat::wait_until_gone;
+pub use process::wait_until_gone;
 
 use super::leftovers;
 use super::wire::{self, Order, Setup};
-use desk::Desk;
 use jointbench_procedure::{Control, Demand, Plan, RunId};
 use outbox::Outbox;
 use owner::Owner;
@@ -25,6 +23,7 @@ use press_file::PressFiles;
 use std::io::{self, Read};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
+use worker_state::WorkerState;
 
 /// Commands to the owner of the bench, executed in sequence.
 enum Command {
@@ -46,35 +45,35 @@ pub fn serve() -> io::Result<()> {
     };
     let Setup { description, data, block } = *setup;
     let name = description.name.clone();
-    seat::raise_priority(description.is_real_time());
+    process::raise_priority(description.is_real_time());
     let (outbox, reports) = Outbox::start(io::stdout())?;
-    let desk = Arc::new(Desk::new(outbox, block));
+    let worker = Arc::new(WorkerState::new(outbox, block));
     let (commands, to_do) = mpsc::channel();
-    seat::end_when_told(desk.clone(), commands.clone())?;
-    let (listening, presses) = (desk.clone(), PressFiles::start(&data, &name)?);
+    process::end_on_signal(worker.clone(), commands.clone())?;
+    let (listening, presses) = (worker.clone(), PressFiles::start(&data, &name)?);
     std::thread::Builder::new().name("orders".into()).spawn(move || listen(orders, &listening, &presses, &commands))?;
     // Held until the end: the next worker then finds the file of this one.
-    let seat = seat::take(&data, &name);
-    match &seat {
-        Ok(_) => Owner::new(description, desk.clone()).serve(&to_do),
-        Err(why) => owner::serve_nothing(&description, &desk, &to_do, why),
+    let lock = process::take(&data, &name);
+    match &lock {
+        Ok(_) => Owner::new(description, worker.clone()).serve(&to_do),
+        Err(why) => owner::serve_nothing(&description, &worker, &to_do, why),
     }
-    desk.outbox.say(wire::Report::Finished);
-    desk.outbox.close();
+    worker.outbox.send(wire::Report::Finished);
+    worker.outbox.close();
     if reports.join().is_err() {
         tracing::error!("the thread of the reports has panicked");
     }
     // The server closes its end after it has stored all that it can.
-    while !desk.is_alone() && to_do.recv().is_ok() {}
-    leftovers::leave(&data, &name, desk.unstored_block(), &desk.outbox.unstored());
-    drop(seat);
+    while !worker.is_alone() && to_do.recv().is_ok() {}
+    leftovers::leave(&data, &name, worker.unstored_block(), &worker.outbox.unstored());
+    drop(lock);
     Ok(())
 }
 
-fn listen(mut orders: impl Read, desk: &Desk, presses: &PressFiles, commands: &Sender<Command>) {
+fn listen(mut orders: impl Read, worker: &WorkerState, presses: &PressFiles, commands: &Sender<Command>) {
     loop {
         match wire::receive(&mut orders) {
-            Ok(Some(order)) => obey(order, desk, presses, commands),
+            Ok(Some(order)) => obey(order, worker, presses, commands),
             Ok(None) => break,
             Err(fault) => {
                 tracing::error!(%fault, "an order of the server cannot be read");
@@ -82,39 +81,39 @@ fn listen(mut orders: impl Read, desk: &Desk, presses: &PressFiles, commands: &S
             }
         }
     }
-    desk.server_is_gone();
+    worker.server_is_gone();
     // An error means that the owner has already ended.
     let _ = commands.send(Command::Quit);
 }
 
-fn obey(order: Order, desk: &Desk, presses: &PressFiles, commands: &Sender<Command>) {
+fn obey(order: Order, worker: &WorkerState, presses: &PressFiles, commands: &Sender<Command>) {
     let command = match order {
         Order::Stop { block, ticket } => {
-            let secures_itself = desk.stop(block.clone());
+            let secures_itself = worker.stop(block.clone());
             presses.pressed(block);
-            desk.outbox.say(wire::Report::Done { ticket });
+            worker.outbox.send(wire::Report::Done { ticket });
             if secures_itself {
                 return;
             }
             Command::Secure
         }
         Order::Control(demand) => {
-            desk.control(demand);
+            worker.control(demand);
             return;
         }
-        Order::Run { run, plan } => Command::Run { run, plan, controls: desk.expect(run) },
-        Order::Release { until } => return desk.release(&until),
+        Order::Run { run, plan } => Command::Run { run, plan, controls: worker.expect(run) },
+        Order::Release { until } => return worker.release(&until),
         Order::BlockStored { at } => {
             presses.stored(&at);
-            desk.block_is_stored(&at);
+            worker.block_is_stored(&at);
             return;
         }
-        Order::Stored { number } => return desk.outbox.stored(number),
-        Order::Storage { fault } => return desk.outbox.set_fault(fault),
+        Order::Stored { number } => return worker.outbox.stored(number),
+        Order::Storage { fault } => return worker.outbox.set_fault(fault),
         Order::Reopen { wanting, ticket } => Command::Reopen { wanting, ticket },
         Order::ReadMemory { ranges, ticket } => Command::ReadMemory { ranges, ticket },
         Order::Quit => {
-            desk.control(Control::Quit.into());
+            worker.control(Control::Quit.into());
             Command::Quit
         }
         Order::Open(_) => return tracing::error!("a bench is opened once"),

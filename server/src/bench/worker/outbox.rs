@@ -21,7 +21,7 @@ pub struct Outbox {
 #[derive(Default)]
 struct State {
     /// Unsent reports in order.
-    unsaid: VecDeque<Report>,
+    unsent: VecDeque<Report>,
     /// Entries that are not durable, sent or not.
     unstored: VecDeque<Arc<Entry>>,
     unstored_bytes: usize,
@@ -44,19 +44,19 @@ impl Outbox {
     /// Starts the thread that sends the reports.
     pub fn start(to: impl Write + Send + 'static) -> std::io::Result<(Arc<Self>, JoinHandle<()>)> {
         let outbox = Arc::new(Self { state: Mutex::default(), changed: Condvar::new() });
-        let said = outbox.clone();
-        let thread = std::thread::Builder::new().name("reports".into()).spawn(move || said.say_all(to))?;
+        let sender = outbox.clone();
+        let thread = std::thread::Builder::new().name("reports".into()).spawn(move || sender.send_all(to))?;
         Ok((outbox, thread))
     }
 
-    pub fn say(&self, report: Report) {
+    pub fn send(&self, report: Report) {
         let mut state = self.lock();
         if matches!(report, Report::Live { .. })
-            && state.unsaid.iter().filter(|waiting| matches!(waiting, Report::Live { .. })).count() >= MOST_LIVE
+            && state.unsent.iter().filter(|waiting| matches!(waiting, Report::Live { .. })).count() >= MOST_LIVE
         {
             return;
         }
-        state.unsaid.push_back(report);
+        state.unsent.push_back(report);
         self.changed.notify_all();
     }
 
@@ -67,7 +67,7 @@ impl Outbox {
         let entry = Arc::new(Entry { number: inner.last_number, commit });
         inner.unstored_bytes += bytes(&entry);
         inner.unstored.push_back(entry.clone());
-        inner.unsaid.push_back(Report::Entry(entry));
+        inner.unsent.push_back(Report::Entry(entry));
         self.changed.notify_all();
     }
 
@@ -119,11 +119,11 @@ impl Outbox {
         self.lock().unstored.iter().cloned().collect()
     }
 
-    fn say_all(&self, mut to: impl Write) {
+    fn send_all(&self, mut to: impl Write) {
         loop {
-            let idle = |state: &mut State| state.unsaid.is_empty() && !state.closed;
+            let idle = |state: &mut State| state.unsent.is_empty() && !state.closed;
             let mut state = self.changed.wait_while(self.lock(), idle).unwrap_or_else(PoisonError::into_inner);
-            let Some(report) = state.unsaid.pop_front() else { return };
+            let Some(report) = state.unsent.pop_front() else { return };
             drop(state);
             if let Err(fault) = wire::send(&mut to, &report) {
                 tracing::error!(%fault, "the server process of the daemon does not respond");
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_waits_for_the_store_once_the_run_is_to_end() {
+    fn an_ending_run_does_not_wait_for_the_store() {
         let (outbox, reports) = Outbox::start(std::io::sink()).unwrap();
         outbox.keep(commit(1, 100));
         let (done, waits) = mpsc::channel();

@@ -1,8 +1,8 @@
 //! The thread that owns a bench. It executes commands in sequence; a run is one command.
 
 use super::Command;
-use super::desk::Desk;
 use super::recorder::OutboxRecorder;
+use super::worker_state::WorkerState;
 use crate::bench::health::expected;
 use crate::bench::instruments::{Opened, open, unreached};
 use crate::bench::wire::{MemoryRead, Report};
@@ -20,18 +20,18 @@ const IDLE_EVERY: Duration = Duration::from_secs(1);
 
 pub(super) struct Owner {
     description: BenchDescription,
-    desk: Arc<Desk>,
+    worker: Arc<WorkerState>,
     opened: Opened,
 }
 
 impl Owner {
-    pub fn new(description: BenchDescription, desk: Arc<Desk>) -> Self {
+    pub fn new(description: BenchDescription, worker: Arc<WorkerState>) -> Self {
         let opened = open(&description);
-        Self { description, desk, opened }
+        Self { description, worker, opened }
     }
 
     pub fn serve(mut self, commands: &Receiver<Command>) {
-        self.tell_opened();
+        self.report_opened();
         // An earlier worker may have been killed: the state of the bench is unknown until it is secured.
         self.secure();
         loop {
@@ -41,14 +41,14 @@ impl Owner {
                 Ok(Command::Reopen { wanting, ticket }) => {
                     self.let_time_pass();
                     self.reopen(&wanting);
-                    self.desk.outbox.say(Report::Done { ticket });
+                    self.worker.outbox.send(Report::Done { ticket });
                 }
                 Ok(Command::ReadMemory { ranges, ticket }) => {
                     let read = self.read_memory(&ranges);
-                    self.desk.outbox.say(Report::Memory { ticket, read });
+                    self.worker.outbox.send(Report::Memory { ticket, read });
                 }
                 Ok(Command::Quit) | Err(RecvTimeoutError::Disconnected) => break,
-                Err(RecvTimeoutError::Timeout) if self.desk.outbox.fault().is_some() => self.let_time_pass(),
+                Err(RecvTimeoutError::Timeout) if self.worker.outbox.fault().is_some() => self.let_time_pass(),
                 Err(RecvTimeoutError::Timeout) => {}
             }
         }
@@ -60,10 +60,10 @@ impl Owner {
         let clock = mock.clock();
         let pace = self.description.pace().unwrap_or(1.0).max(1.0);
         clock.sleep_until_s(clock.now_s() + pace * IDLE_EVERY.as_secs_f64());
-        self.desk.tell_disk(Some(mock));
+        self.worker.report_disk(Some(mock));
     }
 
-    fn tell_opened(&self) {
+    fn report_opened(&self) {
         for instrument in &self.opened.instruments {
             let (bench, name, port) = (&self.description.name, &instrument.name, &instrument.port);
             match &instrument.fault {
@@ -71,7 +71,7 @@ impl Owner {
                 Some(fault) => tracing::warn!(bench, name, port, fault, "instrument not ready"),
             }
         }
-        self.desk.outbox.say(Report::Opened {
+        self.worker.outbox.send(Report::Opened {
             instruments: self.opened.instruments.clone(),
             channels: self.opened.bench.as_ref().map(expected).unwrap_or_default(),
             open: self.opened.bench.is_some(),
@@ -86,7 +86,7 @@ impl Owner {
             self.opened = Opened::default();
             self.opened = open(&self.description);
         }
-        self.tell_opened();
+        self.report_opened();
         self.secure();
     }
 
@@ -119,16 +119,16 @@ impl Owner {
         let Opened { bench: Some(bench), mock, .. } = &mut self.opened else {
             // The lab opens a bench before a run. A bench that has disconnected since has no instruments to command.
             tracing::error!(run.id = run, "run started on a bench that is not open");
-            return not_begun(&self.desk, run);
+            return not_begun(&self.worker, run);
         };
-        if self.desk.is_alone() {
-            return not_begun(&self.desk, run);
+        if self.worker.is_alone() {
+            return not_begun(&self.worker, run);
         }
         let stepped = self.description.pace().is_none();
-        let mut recorder = OutboxRecorder::new(&self.desk, mock.as_ref(), stepped, run);
+        let mut recorder = OutboxRecorder::new(&self.worker, mock.as_ref(), stepped, run);
         let end = jointbench_procedure::run(bench, plan, run, controls, &mut recorder);
-        self.desk.run_is_over();
-        self.desk.outbox.say(Report::Ended { run, end });
+        self.worker.run_is_over();
+        self.worker.outbox.send(Report::Ended { run, end });
     }
 
     fn secure(&mut self) {
@@ -143,21 +143,26 @@ impl Owner {
                 Report::Secured { safe: secured.safe, notes: secured.notes }
             }
         };
-        self.desk.outbox.say(report);
+        self.worker.outbox.send(report);
     }
 }
 
-fn not_begun(desk: &Desk, run: RunId) {
-    desk.run_is_over();
-    desk.outbox.say(Report::NotBegun { run });
+fn not_begun(worker: &WorkerState, run: RunId) {
+    worker.run_is_over();
+    worker.outbox.send(Report::NotBegun { run });
 }
 
 /// Answers for a bench that another worker owns.
-pub(super) fn serve_nothing(description: &BenchDescription, desk: &Desk, commands: &Receiver<Command>, why: &str) {
+pub(super) fn serve_nothing(
+    description: &BenchDescription,
+    worker: &WorkerState,
+    commands: &Receiver<Command>,
+    why: &str,
+) {
     let say = || {
         let instruments: Vec<view::Instrument> = vec![unreached(description, why.to_owned())];
-        desk.outbox.say(Report::Opened { instruments, channels: Vec::new(), open: false });
-        desk.outbox.say(Report::Secured { safe: Safe::UnsafeUnknown, notes: Vec::new() });
+        worker.outbox.send(Report::Opened { instruments, channels: Vec::new(), open: false });
+        worker.outbox.send(Report::Secured { safe: Safe::UnsafeUnknown, notes: Vec::new() });
     };
     say();
     while let Ok(command) = commands.recv() {
@@ -165,12 +170,12 @@ pub(super) fn serve_nothing(description: &BenchDescription, desk: &Desk, command
             Command::Quit => return,
             Command::Reopen { ticket, .. } => {
                 say();
-                desk.outbox.say(Report::Done { ticket });
+                worker.outbox.send(Report::Done { ticket });
             }
             Command::ReadMemory { ticket, .. } => {
-                desk.outbox.say(Report::Memory { ticket, read: MemoryRead::Failed(why.to_owned()) });
+                worker.outbox.send(Report::Memory { ticket, read: MemoryRead::Failed(why.to_owned()) });
             }
-            Command::Run { run, .. } => not_begun(desk, run),
+            Command::Run { run, .. } => not_begun(worker, run),
             Command::Secure => say(),
         }
     }

@@ -9,7 +9,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-enum News {
+enum Event {
     Pressed(SafetyRecord),
     /// Time of the stored stop.
     Stored(String),
@@ -18,41 +18,41 @@ enum News {
 /// Uses a separate thread, so that a blocked disk does not delay orders.
 #[derive(Clone)]
 pub(super) struct PressFiles {
-    news: Sender<News>,
+    events: Sender<Event>,
 }
 
 impl PressFiles {
     pub fn start(data: &Path, bench: &str) -> io::Result<Self> {
-        let (news, heard) = channel();
+        let (events, received) = channel();
         let (data, bench) = (data.to_owned(), bench.to_owned());
-        std::thread::Builder::new().name("presses".into()).spawn(move || keep(&heard, &data, &bench))?;
-        Ok(Self { news })
+        std::thread::Builder::new().name("presses".into()).spawn(move || keep(&received, &data, &bench))?;
+        Ok(Self { events })
     }
 
     pub fn pressed(&self, block: SafetyRecord) {
-        self.say(News::Pressed(block));
+        self.send(Event::Pressed(block));
     }
 
     pub fn stored(&self, at: &str) {
-        self.say(News::Stored(at.to_owned()));
+        self.send(Event::Stored(at.to_owned()));
     }
 
-    fn say(&self, news: News) {
-        if self.news.send(news).is_err() {
+    fn send(&self, event: Event) {
+        if self.events.send(event).is_err() {
             tracing::error!("the thread that keeps presses of the software stop has ended");
         }
     }
 }
 
-fn keep(heard: &Receiver<News>, data: &Path, bench: &str) {
+fn keep(received: &Receiver<Event>, data: &Path, bench: &str) {
     let mut files: HashMap<String, PathBuf> = HashMap::new();
-    for news in heard {
-        match news {
-            News::Pressed(block) => {
+    for event in received {
+        match event {
+            Event::Pressed(block) => {
                 let at = block.at.clone();
                 files.extend(leftovers::leave(data, bench, Some(block), &[]).map(|path| (at, path)));
             }
-            News::Stored(at) => {
+            Event::Stored(at) => {
                 // The next start stores a remaining file again, which has no effect.
                 if let Some(path) = files.remove(&at)
                     && let Err(fault) = fs::remove_file(&path)

@@ -1,14 +1,14 @@
 //! Passes the data of a run to the outbox. It waits only if the bench clock is stepped.
 
-use super::desk::Desk;
 use super::outbox::MOST_BYTES;
+use super::worker_state::WorkerState;
 use crate::bench::wire::Report;
 use crate::store::RunCommit;
 use jointbench_devices::MockBench;
 use jointbench_procedure::{Commit, Live, Recorder, RecorderFault, RunId};
 
 pub(super) struct OutboxRecorder<'a> {
-    desk: &'a Desk,
+    worker: &'a WorkerState,
     /// Its simulated full disk applies to the store.
     mock: Option<&'a MockBench>,
     /// The bench clock is stepped: its time does not advance during a wait.
@@ -20,20 +20,20 @@ pub(super) struct OutboxRecorder<'a> {
 }
 
 impl<'a> OutboxRecorder<'a> {
-    pub fn new(desk: &'a Desk, mock: Option<&'a MockBench>, stepped: bool, run: RunId) -> Self {
-        Self { desk, mock, stepped, run, commits: 0, dropped: 0 }
+    pub fn new(worker: &'a WorkerState, mock: Option<&'a MockBench>, stepped: bool, run: RunId) -> Self {
+        Self { worker, mock, stepped, run, commits: 0, dropped: 0 }
     }
 }
 
 impl Recorder for OutboxRecorder<'_> {
     fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
-        Ok(self.desk.block().map(|block| block.reason))
+        Ok(self.worker.block().map(|block| block.reason))
     }
 
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
         let Commit { state, events, mut rows, .. } = commit;
-        let outbox = &self.desk.outbox;
-        self.desk.tell_disk(self.mock);
+        let outbox = &self.worker.outbox;
+        self.worker.report_disk(self.mock);
         let backlog = outbox.backlog();
         let is_full = backlog.bytes >= MOST_BYTES;
         if is_full {
@@ -60,6 +60,6 @@ impl Recorder for OutboxRecorder<'_> {
 
     fn live(&mut self, live: Live<'_>) {
         let Live { run, state, rows, progress } = live;
-        self.desk.outbox.say(Report::Live { run, state, rows: rows.clone(), progress: progress.clone() });
+        self.worker.outbox.send(Report::Live { run, state, rows: rows.clone(), progress: progress.clone() });
     }
 }

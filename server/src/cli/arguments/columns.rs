@@ -1,4 +1,4 @@
-//! How a file of measurements is read.
+//! Options for reading a measurement file.
 
 use clap::Args;
 use jointbench_files::Choices;

@@ -1,21 +1,21 @@
-//! What can be written on the command line.
+//! The arguments of the command line.
 
 mod columns;
-mod kept;
+mod control;
 mod model;
 mod place;
-mod steer;
+mod runs;
 
 pub use columns::Columns;
-pub use kept::{Backup, Convert, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
+pub use control::{Control, Reset, ServoMemory, Stop};
 pub use model::{Model, ModelCommand};
 pub use place::{Place, Reach, ServedTokens};
-pub use steer::{Reset, ServoMemory, Steer, Stop};
+pub use runs::{Backup, Convert, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
 
 use super::log::LogForm;
-use super::own::OwnEffects;
 use super::ports::Ports;
 use super::require::Requirement;
+use super::user_effects::OwnEffects;
 use clap::{Args, Parser, Subcommand};
 use jointbench_instrument::Kind;
 use std::path::PathBuf;
@@ -67,18 +67,18 @@ pub enum Command {
     )]
     Run(Run),
     /// End the active run: the brake is unloaded while the shaft turns, and measured samples are kept
-    #[command(after_help = steer::STOP)]
+    #[command(after_help = control::STOP)]
     Stop(Stop),
     /// Pause the active run after the current step
-    #[command(after_help = steer::STEER)]
-    Pause(Steer),
+    #[command(after_help = control::STEER)]
+    Pause(Control),
     /// Resume a paused run
-    #[command(after_help = steer::STEER)]
-    Resume(Steer),
+    #[command(after_help = control::STEER)]
+    Resume(Control),
     /// Release a bench after a software stop or after a run whose safe state is not confirmed
     Reset(Reset),
     /// Read the memory of a Puma-type servo (DIAGREAD) between runs, without motion
-    #[command(after_help = steer::MEMORY)]
+    #[command(after_help = control::MEMORY)]
     ServoMemory(ServoMemory),
     /// List the runs of a daemon or of a folder
     Runs(Runs),
@@ -100,7 +100,7 @@ pub enum Command {
     /// Export a stored run to a file
     Export(Export),
     /// Convert a table of another program to a run table with its meta file; needs no kind and no required columns
-    #[command(after_help = kept::CONVERT)]
+    #[command(after_help = runs::CONVERT)]
     Convert(Convert),
     /// Print the result of a stored run: verdict, quantities and intervals
     Identify(Identify),

@@ -1,4 +1,4 @@
-//! Where a daemon lives, and how it is reached.
+//! Address and data folder of a daemon.
 
 use clap::Args;
 use std::net::SocketAddr;

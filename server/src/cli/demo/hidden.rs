@@ -1,4 +1,4 @@
-//! What the demo hides, and on which simulated bench it is measured.
+//! The effect that the demo hides, and its simulated bench.
 
 use crate::cli::arguments::Demo;
 use crate::cli::exit::Exit;
@@ -14,7 +14,7 @@ pub struct Setup {
     pub joint: Joint,
     pub procedure: &'static str,
     pub title: &'static str,
-    /// What every such bench shows, hidden or not.
+    /// Effects of every bench of this kind.
     pub ordinary: &'static str,
     /// Its effects that the baseline of the procedure lacks. The initial model contains them.
     pub known: &'static [&'static str],
@@ -65,7 +65,7 @@ impl Setup {
     }
 }
 
-/// What the bench hides. The measuring and modelling side does not get it.
+/// The hidden effect. Measurement and model do not know it.
 pub struct Hidden {
     pub setup: Setup,
     pub effect: &'static str,

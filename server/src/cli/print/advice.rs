@@ -10,7 +10,7 @@ pub fn is_any(undecided: Option<&String>, verdict: Verdict) -> bool {
 }
 
 /// Suggests an own formula over the axes of the summary, because the user may know an effect that the library lacks.
-pub fn own_formula(columns: &[String], fit: &Fit) {
+pub fn user_formula(columns: &[String], fit: &Fit) {
     let named: Vec<String> = columns.iter().filter_map(|column| formula::in_formula(fit.kind, column)).collect();
     if named.is_empty() {
         return;

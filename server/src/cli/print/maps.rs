@@ -12,10 +12,10 @@ const DRAWN_SHARE: f64 = 0.01;
 pub fn print(maps: &ResidualMaps, named: &[String], kind: Kind) {
     let mut axes: Vec<(&AxisMap, Option<&PairMap>)> =
         maps.axes.iter().map(|a| (a, maps.in_each_direction(a))).collect();
-    axes.sort_by(|a, b| telling(b).total_cmp(&telling(a)));
-    let is_drawn = |axis: &(&AxisMap, _)| telling(axis) >= DRAWN_SHARE || named.contains(&axis.0.axis);
+    axes.sort_by(|a, b| explained_share(b).total_cmp(&explained_share(a)));
+    let is_drawn = |axis: &(&AxisMap, _)| explained_share(axis) >= DRAWN_SHARE || named.contains(&axis.0.axis);
     let (axes, flat): (Vec<_>, Vec<_>) = axes.into_iter().partition(is_drawn);
-    let cells = axes.iter().flat_map(told_apart).flat_map(|pair| &pair.cells).map(|cell| cell.mean);
+    let cells = axes.iter().flat_map(by_direction).flat_map(|pair| &pair.cells).map(|cell| cell.mean);
     let means = axes.iter().flat_map(|(axis, _)| &axis.bins).map(|bin| bin.mean).chain(cells);
     let largest = means.fold(f64::MIN_POSITIVE, |most, mean| most.max(mean.abs()));
     println!();
@@ -26,7 +26,7 @@ pub fn print(maps: &ResidualMaps, named: &[String], kind: Kind) {
     for axis in &axes {
         println!();
         println!("{}", title(axis));
-        match told_apart(axis) {
+        match by_direction(axis) {
             None => axis.0.bins.iter().for_each(|bin| println!("{}", line(bin, &maps.unit, largest))),
             Some(pair) => {
                 for (y, [from, _]) in pair.y_bins.iter().enumerate() {
@@ -48,12 +48,12 @@ pub fn print(maps: &ResidualMaps, named: &[String], kind: Kind) {
 }
 
 /// Explained share with the criterion of the verdict: common to both directions, or by direction.
-fn telling((axis, sides): &(&AxisMap, Option<&PairMap>)) -> f64 {
+fn explained_share((axis, sides): &(&AxisMap, Option<&PairMap>)) -> f64 {
     sides.map_or(axis.removable_share, |pair| pair.removable_share.max(axis.removable_share))
 }
 
 /// The map by direction, if the directions mask each other's structure.
-fn told_apart<'m>((axis, sides): &(&AxisMap, Option<&'m PairMap>)) -> Option<&'m PairMap> {
+fn by_direction<'m>((axis, sides): &(&AxisMap, Option<&'m PairMap>)) -> Option<&'m PairMap> {
     sides.filter(|pair| pair.removable_share - axis.removable_share >= DRAWN_SHARE)
 }
 
@@ -61,7 +61,7 @@ fn title(of: &(&AxisMap, Option<&PairMap>)) -> String {
     let axis = of.0;
     let unit = if axis.unit == "1" { String::new() } else { format!(" [{}]", axis.unit) };
     let percent = |share: f64| 100.0 * share.max(0.0);
-    let apart = told_apart(of).map(|pair| format!(", {:.1} % by direction", percent(pair.removable_share)));
+    let apart = by_direction(of).map(|pair| format!(", {:.1} % by direction", percent(pair.removable_share)));
     format!(
         "{}{unit}: explains {:.1} % of the squared error{}",
         axis.axis,
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_says_where_how_much_and_whether_it_is_noise() {
+    fn a_line_shows_place_value_and_noise() {
         let bin = |mean, half_width| MapBin { from: 2.0, to: 4.0, centre: 3.0, mean, half_width, rows: 9 };
         let drawn = |mean, half_width| line(&bin(mean, half_width), "Nm", 4e-3);
         let below = drawn(-2e-3, Some(5e-4));

@@ -115,14 +115,14 @@ mod tests {
         fn counts_with_any_scale_come_back(
             counts in prop::collection::vec(-2_000_000i64..2_000_000, 1..300),
             step in 1e-12..1e6f64,
-            told in any::<bool>(),
+            declared in any::<bool>(),
             odd in prop::option::of((0usize..300, any_value())),
         ) {
             let mut values: Vec<f64> = counts.iter().map(|count| *count as f64 * step).collect();
             if let Some((row, value)) = odd && row < values.len() {
                 values[row] = value;
             }
-            check_lossless(&values, told.then_some(step));
+            check_lossless(&values, declared.then_some(step));
         }
 
         #[test]

@@ -61,7 +61,7 @@ impl Scale {
 
 /// Candidate scales, best first: those that match every probe, then those within a few last places.
 pub fn candidates(values: &[f64], resolution: Option<f64>) -> Vec<Scale> {
-    let told = resolution.into_iter().flat_map(|step| [Scale::Times(step), Scale::Over((1.0 / step).round())]);
+    let declared = resolution.into_iter().flat_map(|step| [Scale::Times(step), Scale::Over((1.0 / step).round())]);
     let decimals = (0..=DECIMALS).map(|digits| Scale::Over(10f64.powi(digits)));
     let stride = values.len().div_ceil(PROBES).max(1);
     // An odd stride avoids aliasing with a periodic column.
@@ -69,7 +69,7 @@ pub fn candidates(values: &[f64], resolution: Option<f64>) -> Vec<Scale> {
     let few = probes.len() / 16;
 
     let (mut hits, mut near) = (Vec::new(), Vec::new());
-    for scale in told.chain(decimals).filter(|scale| scale.is_sane()) {
+    for scale in declared.chain(decimals).filter(|scale| scale.is_sane()) {
         let inverse = scale.inverse();
         let misses = probes.iter().map(|value| scale.misses(*value, inverse));
         let (off, lost) = misses.fold((0, 0), |(off, lost), miss| match miss {

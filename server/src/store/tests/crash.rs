@@ -68,8 +68,11 @@ fn a_full_disk_keeps_all_before_it_and_the_end_of_a_run_when_it_is_healed() {
 
         store.fill_disk(false).await.unwrap();
         end().await.unwrap();
-        let told = store.run(run).await.unwrap();
-        assert_eq!((told.state, told.safe, told.reason.as_deref()), (RunState::Failed, Some(Safe::SafeVerified), why));
+        let record = store.run(run).await.unwrap();
+        assert_eq!(
+            (record.state, record.safe, record.reason.as_deref()),
+            (RunState::Failed, Some(Safe::SafeVerified), why)
+        );
         check_rows(&store, run, 20_000).await;
         let next = store.create_run(&new_run()).await.unwrap();
         commit(&store, next, RunState::Running, rows(0, 33_000)).await;

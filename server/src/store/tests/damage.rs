@@ -95,7 +95,7 @@ fn a_bit_in_the_pyramid_is_noticed_and_named() {
             let run = store.create_run(&new_run()).await.unwrap();
             commit(&store, run, RunState::Running, rows(0, 70_000)).await;
             damage(&store, sql).await;
-            let fault = store.view(run, None, Some(0.0), None, px).await.unwrap_err();
+            let fault = store.window(run, None, Some(0.0), None, px).await.unwrap_err();
             check_names(fault, &["table spans", "run 1", "first_row"]);
             assert_eq!(store.trace(run, None, 0..u64::MAX).await.unwrap(), rows(0, 70_000), "samples are whole");
         }
@@ -120,9 +120,9 @@ fn a_damaged_run_is_listed_and_hides_no_other() {
             damage(&store, sql).await;
             let filter = RunFilter { limit: 10, ..RunFilter::default() };
             let (total, runs) = store.runs(&filter).await.unwrap();
-            let told: Vec<_> = runs.iter().map(|run| (run.id, run.damaged.is_some(), run.bench.as_str())).collect();
+            let listed: Vec<_> = runs.iter().map(|run| (run.id, run.damaged.is_some(), run.bench.as_str())).collect();
             assert_eq!(
-                (total, told),
+                (total, listed),
                 (3, vec![(3, false, "joint-a"), (2, true, "joint-a"), (1, false, "joint-a")]),
                 "{sql}"
             );
@@ -132,8 +132,12 @@ fn a_damaged_run_is_listed_and_hides_no_other() {
 
             let search = RunFilter { search: Some("bench:joint-a".into()), limit: 2, ..RunFilter::default() };
             let parsed = Search::parse("bench:joint-a").unwrap();
-            let (total, one_by_one) = store.one_by_one(&parsed, &search).await.unwrap();
-            assert_eq!((total, &one_by_one[..]), (3, &runs[..2]), "as where SQLite cannot read through the table");
+            let (total, list_individually) = store.list_individually(&parsed, &search).await.unwrap();
+            assert_eq!(
+                (total, &list_individually[..]),
+                (3, &runs[..2]),
+                "as where SQLite cannot read through the table"
+            );
         }
     });
 }
@@ -178,7 +182,7 @@ fn a_damaged_safety_entry_blocks_the_bench_until_a_person_has_looked() {
         damage(&store, "UPDATE bench_safety SET blocked = 0").await;
         let block = store.bench_block("joint-a").await.unwrap().expect("nobody knows whether it was released");
         assert!(block.reason.contains("table bench_safety, bench joint-a"), "{}", block.reason);
-        assert_eq!(store.bench_block("joint-a").await.unwrap(), Some(block), "told once");
+        assert_eq!(store.bench_block("joint-a").await.unwrap(), Some(block), "reported once");
         assert_eq!(store.safety("joint-a", 9).await.unwrap().len(), 2);
         damage(&store, "UPDATE calibrations SET procedure = 'broke'").await;
         check_names(store.calibration("joint-a", "broke").await.unwrap_err(), &["table calibrations", "bench joint-a"]);

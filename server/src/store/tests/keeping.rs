@@ -293,9 +293,9 @@ fn a_run_shows_its_best_version_that_is_neither_idle_nor_only_tried() {
         store.save_model(&model(run, Some(root.id), &["coulomb", "viscous", "stribeck"])).await.unwrap();
         let right = NewModel { validation_rms: 0.012, ..model(run, Some(root.id), &["coulomb", "load_linear"]) };
         let right = store.save_model(&right).await.unwrap();
-        let told = store.run(run).await.unwrap().model.unwrap();
+        let listed = store.run(run).await.unwrap().model.unwrap();
         assert_eq!(
-            (&told["id"], &told["unit"], &told["coulomb"]["value"]),
+            (&listed["id"], &listed["unit"], &listed["coulomb"]["value"]),
             (&json!(right.id), &json!("Nm"), &json!(0.03))
         );
         let grown = |validation_rms| NewModel {
@@ -325,16 +325,16 @@ fn diagnoses_and_cached_answers_belong_to_one_version() {
         let run = store.create_run(&new_run()).await.unwrap();
         let left = store.save_model(&model(run, None, &["coulomb"])).await.unwrap();
         let right = store.save_model(&model(run, None, &["viscous"])).await.unwrap();
-        assert_eq!(store.kept(Subject::Model(left.id), "worth").await.unwrap(), None);
-        store.keep(Subject::Model(left.id), "worth", b"[1]").await.unwrap();
-        store.keep(Subject::Model(left.id), "worth", b"[2]").await.unwrap();
-        assert_eq!(store.kept(Subject::Model(left.id), "worth").await.unwrap().as_deref(), Some(&b"[2]"[..]));
-        assert_eq!(store.kept(Subject::Model(right.id), "worth").await.unwrap(), None);
-        assert_eq!(store.kept(Subject::Run(left.id), "worth").await.unwrap(), None);
+        assert_eq!(store.cached_result(Subject::Model(left.id), "worth").await.unwrap(), None);
+        store.cache_result(Subject::Model(left.id), "worth", b"[1]").await.unwrap();
+        store.cache_result(Subject::Model(left.id), "worth", b"[2]").await.unwrap();
+        assert_eq!(store.cached_result(Subject::Model(left.id), "worth").await.unwrap().as_deref(), Some(&b"[2]"[..]));
+        assert_eq!(store.cached_result(Subject::Model(right.id), "worth").await.unwrap(), None);
+        assert_eq!(store.cached_result(Subject::Run(left.id), "worth").await.unwrap(), None);
 
-        let told = store.save_diagnosis(left.id, &json!({"verdict": "adequate"})).await.unwrap();
-        assert_eq!(store.diagnosis(told.id).await.unwrap(), told);
-        assert_eq!(store.diagnoses(left.id).await.unwrap(), [told]);
+        let diagnosis = store.save_diagnosis(left.id, &json!({"verdict": "adequate"})).await.unwrap();
+        assert_eq!(store.diagnosis(diagnosis.id).await.unwrap(), diagnosis);
+        assert_eq!(store.diagnoses(left.id).await.unwrap(), [diagnosis]);
         assert_eq!(store.diagnoses(right.id).await.unwrap(), []);
         assert!(matches!(store.save_diagnosis(77, &Value::Null).await, Err(StoreError::NoModel(77))));
         for sql in ["UPDATE models SET rms = 0.0", "DELETE FROM diagnoses"] {
@@ -355,13 +355,13 @@ fn an_unsafe_end_blocks_the_bench_until_a_person_has_looked() {
         let block = store.bench_block("joint-a").await.unwrap().unwrap();
         assert_eq!(block.run, Some(run));
         assert_eq!(store.bench_block("joint-b").await.unwrap(), None);
-        let said = "brake is off, shaft turns freely";
+        let reason = "brake is off, shaft turns freely";
         let stop = SafetyRecord { stopped: true, at: format!("{}9", block.at), ..block.clone() };
         for _ in 0..2 {
             store.keep_block("joint-a", &stop).await.unwrap();
         }
-        assert!(!store.acknowledge_bench("joint-a", &block.at, said, "Anna").await.unwrap(), "it was pressed again");
-        assert!(store.acknowledge_bench("joint-a", &stop.at, said, "Anna").await.unwrap());
+        assert!(!store.acknowledge_bench("joint-a", &block.at, reason, "Anna").await.unwrap(), "it was pressed again");
+        assert!(store.acknowledge_bench("joint-a", &stop.at, reason, "Anna").await.unwrap());
         assert_eq!(store.safety("joint-a", 10).await.unwrap().len(), 3, "what comes twice is kept once");
         assert_eq!(store.bench_block("joint-a").await.unwrap(), None);
         store.block_bench("joint-a", None, "cover open").await.unwrap();

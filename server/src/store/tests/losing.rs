@@ -1,6 +1,6 @@
 //! A removed or truncated write-ahead log, and its detection by the mark.
 
-use super::super::runs::now;
+use super::super::values::now;
 use super::super::{Loss, StoreError, verify};
 use super::*;
 use std::fs;
@@ -51,7 +51,7 @@ fn a_removed_write_ahead_file_is_noticed_and_blocks_the_benches() {
         found.block_where_missing(["joint-a"]).await.unwrap();
         let block = found.bench_block("joint-a").await.unwrap().expect("a stop may be missing");
         found.block_where_missing(["joint-a"]).await.unwrap();
-        assert_eq!(found.bench_block("joint-a").await.unwrap(), Some(block), "told once");
+        assert_eq!(found.bench_block("joint-a").await.unwrap(), Some(block), "reported once");
         found.close().await;
         drop(found);
         let again = Store::open(copy.path()).await.unwrap();

@@ -1,6 +1,6 @@
 //! Tests of the complete check and of backups.
 
-use super::super::runs::now;
+use super::super::values::now;
 use super::super::{StoreError, VerifyReport, backup, restore, verify};
 use super::damage::damage;
 use super::*;
@@ -19,7 +19,7 @@ async fn furnished() -> (TempDir, Store) {
     store.block_bench("joint-a", Some(run), "cover open").await.unwrap();
     store.calibrate("joint-a", "brake", Some(1), "Anna").await.unwrap();
     store.keep_fault("joint-a", "drive", "2026-01-31T00:00:00Z", "unplugged").await.unwrap();
-    store.save_own_effect("friction", "rub", &json!({"formula": "tau = a"})).await.unwrap();
+    store.save_user_effect("friction", "rub", &json!({"formula": "tau = a"})).await.unwrap();
     let autopilot = store.create_autopilot("joint-a", &Default::default(), "running").await.unwrap();
     store.append_autopilot_step(autopilot, json!({"what": "measured"})).await.unwrap();
     (folder, store)

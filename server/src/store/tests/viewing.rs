@@ -1,4 +1,4 @@
-use super::super::View;
+use super::super::Window;
 use super::*;
 
 const TORQUE: &str = "link_torque_nm";
@@ -17,7 +17,7 @@ async fn with_spike(store: &Store, count: usize, spike: usize) -> (RunId, Trace)
     (run, part(0, count))
 }
 
-fn check_view(view: &View, trace: &Trace, rows: std::ops::Range<usize>, px: usize) {
+fn check_view(view: &Window, trace: &Trace, rows: std::ops::Range<usize>, px: usize) {
     assert_eq!(view.rows, rows.len() as u64);
     assert!(view.time_s.len() <= px, "{} points for {px} pixels", view.time_s.len());
     assert!(view.time_s.is_sorted());
@@ -41,7 +41,7 @@ fn a_spike_of_one_sample_is_seen_at_every_width() {
             let (run, trace) = with_spike(&store, COUNT, spike).await;
             // Covers all sources: coarse bins, fine bins, samples, and exact rows.
             for px in [1, 7, 60, 500, 2_000, 200_000] {
-                let view = store.view(run, Some(&[TORQUE.to_owned()]), None, None, px).await.unwrap();
+                let view = store.window(run, Some(&[TORQUE.to_owned()]), None, None, px).await.unwrap();
                 check_view(&view, &trace, 0..COUNT, px);
                 assert_eq!(view.exact, px >= COUNT);
                 let peak = view.columns[0].max.iter().position(|max| *max == 55.5).expect("the spike is drawn");
@@ -63,15 +63,15 @@ fn a_window_holds_its_rows_and_no_others() {
         {
             for px in [1, 33, 1_000] {
                 let window = (Some(time_s[from]), Some(time_s[to - 1]));
-                let view = store.view(run, None, window.0, window.1, px).await.unwrap();
+                let view = store.window(run, None, window.0, window.1, px).await.unwrap();
                 check_view(&view, &trace, from..to, px);
             }
         }
-        let nothing = store.view(run, None, Some(1e6), None, 100).await.unwrap();
+        let nothing = store.window(run, None, Some(1e6), None, 100).await.unwrap();
         assert_eq!((nothing.rows, nothing.time_s.len()), (0, 0));
-        let crossed = store.view(run, None, Some(10.0), Some(5.0), 100).await.unwrap();
+        let crossed = store.window(run, None, Some(10.0), Some(5.0), 100).await.unwrap();
         assert_eq!((crossed.rows, crossed.time_s.len()), (0, 0));
         let young = store.create_run(&new_run()).await.unwrap();
-        assert_eq!(store.view(young, None, None, None, 100).await.unwrap().columns, []);
+        assert_eq!(store.window(young, None, None, None, 100).await.unwrap().columns, []);
     });
 }

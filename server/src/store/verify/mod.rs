@@ -13,8 +13,8 @@ pub use report::{DamagedRecord, Readable, VerifyReport};
 use super::keeper::{losses, missing};
 use super::mark::Mark;
 use super::open::{file_to_read, to_read};
-use super::runs::now;
 use super::seal::{self, Sealed};
+use super::values::now;
 use super::{Store, StoreError};
 use jointbench_procedure::RunId;
 use records::check_rows;
@@ -46,7 +46,7 @@ pub async fn verify_file(file: &Path) -> Result<VerifyReport, StoreError> {
 async fn check_database(mut database: SqliteConnection, mark: Option<&Mark>) -> Result<VerifyReport, StoreError> {
     let mut report = VerifyReport { checked_at: now(), ..VerifyReport::default() };
     check_file(&mut database, &mut report).await;
-    look_for_losses(&mut database, mark, &mut report).await;
+    check_losses(&mut database, mark, &mut report).await;
     for sealed in OF_NO_RUN {
         check_rows(&mut database, sealed, None, &mut report).await;
     }
@@ -109,7 +109,7 @@ async fn run_ids(database: &mut SqliteConnection, report: &mut VerifyReport) -> 
 /// SQLite's own check, including foreign keys.
 async fn check_file(database: &mut SqliteConnection, report: &mut VerifyReport) {
     match sqlx::query_scalar::<_, String>(MOST_FAULTS).fetch_all(&mut *database).await {
-        Ok(said) => said.into_iter().filter(|said| said != "ok").for_each(|said| report.add(None, "file", said)),
+        Ok(lines) => lines.into_iter().filter(|line| line != "ok").for_each(|line| report.add(None, "file", line)),
         Err(fault) => report.add(None, "file", fault.to_string()),
     }
     match sqlx::query("PRAGMA foreign_key_check").fetch_all(database).await {
@@ -129,7 +129,7 @@ async fn check_file(database: &mut SqliteConnection, report: &mut VerifyReport) 
 }
 
 /// An older release stored neither losses nor a mark; missing tables are ignored.
-async fn look_for_losses(database: &mut SqliteConnection, mark: Option<&Mark>, report: &mut VerifyReport) {
+async fn check_losses(database: &mut SqliteConnection, mark: Option<&Mark>, report: &mut VerifyReport) {
     report.lost = losses(database).await.unwrap_or_default();
     if let Ok(Some(loss)) = missing(database, mark).await {
         report.add(None, "file", loss.to_string());

@@ -2,9 +2,9 @@
 
 use super::super::StoreError;
 use super::super::codec;
+use super::super::pyramid::Extremes;
 use super::super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
 use super::super::seal::{BLOCKS, COARSE, FINE, SPANS, Sealed, TAIL};
-use super::super::view::Extremes;
 use super::VerifyReport;
 use super::records::what;
 use jointbench_procedure::RunId;
@@ -55,10 +55,10 @@ async fn pieces(database: &mut SqliteConnection, run: RunId, report: &mut Verify
         report.count(Some(run), sealed, found.whole, found.damaged.len() as u64);
         found.damaged.into_iter().for_each(|(table, what)| report.add(Some(run), table, what));
     }
-    let told: i64 = scalar(database, "SELECT rows FROM runs WHERE id = ?", run).await?;
+    let recorded: i64 = scalar(database, "SELECT rows FROM runs WHERE id = ?", run).await?;
     // An unreadable piece is already reported.
-    if told != rows && report.damaged.iter().all(|finding| finding.run != Some(run)) {
-        report.add(Some(run), "runs", format!("the run has {told} rows, and blocks hold {rows}"));
+    if recorded != rows && report.damaged.iter().all(|finding| finding.run != Some(run)) {
+        report.add(Some(run), "runs", format!("the run has {recorded} rows, and blocks hold {rows}"));
     }
     Ok(rows)
 }

@@ -183,7 +183,7 @@ fn texts_are_read_as_the_page_shows_them() {
         "<script lang=\"ts\">\n\t// not 'this one'\n\tconst a = cond ? `two {words} ${b ? 'it is' : \"\"} more` : 'don\\'t';\n</script>\n\
          <p class=\"no text\" title=\"a title {x}\">Read <b>these words</b>{#if y}{'in braces'}{/if}</p>\n<style>\n\tp { a: b; }\n</style>",
     );
-    let said: Vec<&str> = texts.found.iter().map(|text| text.trim()).filter(|text| text.contains(' ')).collect();
-    assert_eq!(said[..5], ["it is", "two {words}  {}  more", "a title  {}", "these words", "in braces"]);
-    assert!(said[5..].iter().all(|text| !text.contains(char::is_alphabetic)), "{said:?}");
+    let sentences: Vec<&str> = texts.found.iter().map(|text| text.trim()).filter(|text| text.contains(' ')).collect();
+    assert_eq!(sentences[..5], ["it is", "two {words}  {}  more", "a title  {}", "these words", "in braces"]);
+    assert!(sentences[5..].iter().all(|text| !text.contains(char::is_alphabetic)), "{sentences:?}");
 }

@@ -18,6 +18,9 @@ pub fn under(root: &Path, folder: &Path) -> Vec<(String, String)> {
 }
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
+    if folder.is_file() {
+        return vec![folder.to_owned()];
+    }
     let entries = std::fs::read_dir(folder).unwrap_or_else(|fault| panic!("{}: {fault}", folder.display()));
     let mut files = Vec::new();
     for path in entries.map(|entry| entry.expect("an entry").path()) {

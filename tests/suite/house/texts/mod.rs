@@ -13,8 +13,8 @@ use jointbench_model::effects;
 use serde_json::Value;
 use std::path::Path;
 
-/// Folders whose strings are messages for people.
-const SPOKEN: [&str; 12] = [
+/// Folders and files whose strings are messages for users.
+const SPOKEN: [&str; 14] = [
     "procedures/procedure/src",
     "procedures/model/src",
     "drivers/files/src",
@@ -24,9 +24,11 @@ const SPOKEN: [&str; 12] = [
     "server/src/bench",
     "server/src/cli",
     "server/src/config",
+    "server/src/error.rs",
     "server/src/job",
     "server/src/lab",
     "server/src/report",
+    "server/src/view",
 ];
 
 /// A text and its source.
@@ -68,8 +70,8 @@ fn procedures() -> Vec<Text> {
     let listed = stdout(&run(&["procedures"]));
     let ids = listed.lines().map_while(|line| line.split_whitespace().next());
     let described = |id: &str| {
-        let said = stdout(&run(&["procedures", id]));
-        said.lines().map(|line| (format!("procedure {id}"), line.to_owned())).collect::<Vec<_>>()
+        let text = stdout(&run(&["procedures", id]));
+        text.lines().map(|line| (format!("procedure {id}"), line.to_owned())).collect::<Vec<_>>()
     };
     ids.flat_map(described).collect()
 }

@@ -1,0 +1,176 @@
+//! Converts records of the store and types of the lower crates to views.
+
+use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyRecord};
+use crate::view;
+use jointbench_instrument::Motion;
+use jointbench_procedure::{Control, EventKind, RunState, Safe};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+/// A value that is not valid in a view, such as NaN.
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("{0}")]
+pub struct ConversionError(String);
+
+/// Converts a type to another through JSON. NaN becomes `null`, which a number refuses, so non-finite values cause an
+/// error.
+pub fn reread<T: Serialize, U: DeserializeOwned>(value: &T) -> Result<U, ConversionError> {
+    let json = serde_json::to_value(value).map_err(|fault| ConversionError(fault.to_string()))?;
+    serde_json::from_value(json)
+        .map_err(|fault| ConversionError(format!("a result is not finite or not whole: {fault}")))
+}
+
+pub fn state_view(state: RunState) -> view::RunState {
+    match state {
+        RunState::Queued => view::RunState::Queued,
+        RunState::Arming => view::RunState::Arming,
+        RunState::Running => view::RunState::Running,
+        RunState::Paused => view::RunState::Paused,
+        RunState::Securing => view::RunState::Securing,
+        RunState::Completed => view::RunState::Completed,
+        RunState::Stopped => view::RunState::Stopped,
+        RunState::Aborted => view::RunState::Aborted,
+        RunState::Failed => view::RunState::Failed,
+        RunState::Interrupted => view::RunState::Interrupted,
+    }
+}
+
+pub fn safe_view(safe: Safe) -> view::Safe {
+    match safe {
+        Safe::SafeVerified => view::Safe::SafeVerified,
+        Safe::SafeCommanded => view::Safe::SafeCommanded,
+        Safe::UnsafeUnknown => view::Safe::UnsafeUnknown,
+    }
+}
+
+pub fn safety_entry(record: SafetyRecord) -> view::SafetyEntry {
+    let SafetyRecord { blocked, stopped, reason, run, by, at } = record;
+    view::SafetyEntry { blocked, stopped, reason, run, by, at }
+}
+
+pub fn run_summary(record: &RunRecord) -> view::RunSummary {
+    let is_modelled =
+        jointbench_procedure::procedure(&record.procedure).is_none_or(|procedure| procedure.is_modelled());
+    view::RunSummary {
+        id: record.id,
+        bench: record.bench.clone(),
+        procedure: record.procedure.clone(),
+        kind: record.kind.clone(),
+        state: state_view(record.state),
+        safe: record.safe.map(safe_view),
+        reason: record.reason.clone(),
+        created_at: record.created_at.clone(),
+        finished_at: record.finished_at.clone(),
+        rows: record.rows,
+        duration_s: record.duration_s.and_then(view::finite),
+        simulated: record.simulated,
+        by: record.provenance.get("by").and_then(Value::as_str).map(str::to_owned),
+        tags: record.tags.clone(),
+        note: record.note.clone(),
+        verdict: record.verdict.as_ref().and_then(|verdict| reread(verdict).ok()),
+        // An unreadable model is omitted.
+        is_modelled,
+        model: record.model.as_ref().filter(|_| is_modelled).and_then(|model| reread(model).ok()),
+        not_stored: None,
+        damaged: record.damaged.clone(),
+    }
+}
+
+pub fn run_view(record: RunRecord, progress: Option<view::Progress>) -> view::Run {
+    let motion: Motion = record.meta.get("motion").and_then(|motion| reread(motion).ok()).unwrap_or_default();
+    let channel = |channel| {
+        let info = view::ChannelInfo::from(channel);
+        view::ChannelInfo { unit: info.unit.map(|unit| motion.label(&unit)), ..info }
+    };
+    view::Run {
+        summary: run_summary(&record),
+        channels: record.channels.iter().map(channel).collect(),
+        parameters: record.parameters,
+        provenance: record.provenance,
+        meta: record.meta,
+        progress,
+    }
+}
+
+/// An event with its sentence.
+pub fn run_event(record: EventRecord) -> view::RunEvent {
+    let mut whole = record.data.clone();
+    whole.insert("kind".to_owned(), Value::from(record.kind.clone()));
+    let text = match serde_json::from_value::<EventKind>(Value::Object(whole)) {
+        Ok(kind) => sentence(&kind),
+        Err(_) if record.kind == "damaged" => {
+            record.data.get("text").and_then(Value::as_str).unwrap_or_default().to_owned()
+        }
+        // An event of another version.
+        Err(_) => record.kind.replace('_', " "),
+    };
+    view::RunEvent { sequence: record.sequence, at_s: record.at_s, kind: record.kind, text, data: record.data }
+}
+
+fn sentence(kind: &EventKind) -> String {
+    match kind {
+        EventKind::State { state: RunState::Securing, .. } => "moving to safe state".to_owned(),
+        EventKind::State { state, .. } if !state.is_final() => state.to_string(),
+        EventKind::State { state, .. } => format!("run {state}"),
+        EventKind::Identified { instrument, port, identity } => {
+            let firmware = match identity.firmware.as_str() {
+                "" => String::new(),
+                version => format!(", firmware {version}"),
+            };
+            format!("{instrument} on {port}: {} {}{firmware}", identity.maker, identity.model)
+        }
+        EventKind::StepStarted { label, repeat, .. } => format!("{label} (repeat {})", repeat + 1),
+        EventKind::StepFinished { step, rows, .. } => format!("step {} done, {rows} rows", step + 1),
+        EventKind::Control { control: Control::Quit, .. } => "daemon shutdown requested".to_owned(),
+        EventKind::Control { control: Control::StorageLost, .. } => {
+            "the storage process of the daemon terminated".to_owned()
+        }
+        EventKind::Control { control, by } => {
+            let asked = match control {
+                Control::EStop => "software stop pressed".to_owned(),
+                _ => format!("operator command: {}", view::word(control)),
+            };
+            by.iter().fold(asked, |asked, by| format!("{asked} ({by})"))
+        }
+        EventKind::Fault { fault, recovered: true } => format!("{fault}; recovered"),
+        EventKind::Fault { fault, recovered: false } => fault.to_string(),
+        EventKind::Breach { breach } => breach.to_string(),
+        EventKind::Note { text } | EventKind::Warning { text } => text.clone(),
+        EventKind::Safe { safe } => format!("bench {safe}"),
+    }
+}
+
+pub fn model_view(record: ModelRecord) -> Result<view::Model, ConversionError> {
+    Ok(view::Model {
+        id: record.id,
+        run: record.run,
+        more_runs: record.more_runs,
+        excluded: reread(&record.excluded)?,
+        kind: record.kind,
+        parent: record.parent,
+        added: record.added,
+        removed: record.removed,
+        effects: record.effects,
+        fit: reread(&record.fit)?,
+        residual: reread(&record.residual)?,
+        validation_rms: record.validation_rms,
+        rms: record.rms,
+        noise_floor_rms: record.noise_floor_rms,
+        idle: record.idle,
+        tried: record.tried,
+        by: record.by,
+        created_at: record.created_at,
+        options: record.options,
+    })
+}
+
+pub fn diagnosis_view(record: DiagnosisRecord, run: i64) -> Result<view::Diagnosis, ConversionError> {
+    Ok(view::Diagnosis {
+        id: record.id,
+        model_id: record.model,
+        run,
+        created_at: record.created_at,
+        finding: reread(&record.diagnosis)?,
+    })
+}

@@ -1,0 +1,184 @@
+//! Trials of user-defined effects, comparison of models, export and import of models.
+
+use super::effect::{Effect, EffectDefinition};
+use super::model::{FittedParameter, Model, ResidualKind};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use utoipa::ToSchema;
+
+/// A definition to check, and optionally the run to fit it on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EffectTrial {
+    pub effect: EffectDefinition,
+    /// The formula must be finite on this run; the effect is fitted together with `effects`.
+    #[serde(default)]
+    pub run: Option<i64>,
+    /// Effects of the model for the trial; the baseline of the run if omitted.
+    #[serde(default)]
+    pub effects: Option<Vec<String>>,
+    /// The run whose columns the formula may use, without a fit.
+    #[serde(default)]
+    pub columns_of: Option<i64>,
+    /// Further runs of the same joint, analysed together with the first.
+    #[serde(default)]
+    pub more_runs: Vec<i64>,
+    /// The formula is incomplete: errors are part of the response instead of a rejection.
+    #[serde(default)]
+    pub typing: bool,
+}
+
+/// An error in a formula.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Place {
+    /// `formula`, `parameters` or `id`.
+    pub field: String,
+    pub text: String,
+    /// Number of characters before the error.
+    pub position: u64,
+    /// Number of wrong characters; 0 if something is missing.
+    pub length: u64,
+    /// Short description of the error.
+    pub message: String,
+}
+
+impl From<jointbench_model::FormulaFault> for Place {
+    fn from(fault: jointbench_model::FormulaFault) -> Self {
+        Self {
+            field: fault.field.to_owned(),
+            text: fault.text,
+            position: fault.position as u64,
+            length: fault.length as u64,
+            message: fault.message,
+        }
+    }
+}
+
+/// A parsed formula.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct EffectCheck {
+    /// `null` if the formula is invalid.
+    pub effect: Option<Effect>,
+    /// Error in an incomplete formula.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mistake: Option<Place>,
+    /// Warnings: inconsistent units, or a formula that uses the modelled signal. They do not change results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<String>,
+    /// Linear parameters (coefficients).
+    pub linear: Vec<String>,
+    /// Nonlinear parameters.
+    pub shape: Vec<String>,
+    /// Signals used by the formula.
+    pub signals: Vec<String>,
+    /// Fitted parameters on the run; empty without a run.
+    pub parameters: Vec<FittedParameter>,
+    /// Effects that are confounded with it on this run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub like: Vec<String>,
+}
+
+/// A signal that a formula may use.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FormulaSignal {
+    pub name: String,
+    pub unit: String,
+    pub meaning: String,
+}
+
+/// Elements of the formulas of a kind.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FormulaLanguage {
+    pub kind: String,
+    /// Left-hand side of the formula.
+    pub left_hand_side: String,
+    pub signals: Vec<FormulaSignal>,
+    pub functions: Vec<String>,
+    pub operators: Vec<String>,
+}
+
+/// On which run to evaluate a model version.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewEvaluation {
+    pub run: i64,
+}
+
+/// A model on a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Evaluation {
+    pub rms: f64,
+    /// RMS error of the effects alone; absent for a fit without nuisance terms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effects_rms: Option<f64>,
+    pub unit: String,
+    pub residual: ResidualKind,
+    /// ‖residual‖ / ‖measured‖.
+    pub relative_error: f64,
+    pub rows: u64,
+    pub samples: u64,
+    /// Fraction of the samples in steady state, if only steady state is evaluated.
+    pub settled_share: Option<f64>,
+    /// Limitations of the evaluation: missing columns, metadata that differ from the fit, signals outside the range of
+    /// the fit.
+    pub notes: Vec<String>,
+}
+
+/// Comparison of two model versions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Comparison {
+    pub kind: String,
+    /// Effects of the second that are not in the first.
+    pub added: Vec<String>,
+    pub removed: Vec<String>,
+    pub parameters: Vec<ParameterPair>,
+    /// Both on the same run.
+    pub first: Evaluation,
+    pub second: Evaluation,
+    /// Each on the validation data of its own run.
+    pub first_validation_rms: f64,
+    pub second_validation_rms: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ParameterPair {
+    pub effect: String,
+    pub name: String,
+    pub unit: String,
+    pub first: Option<FittedParameter>,
+    pub second: Option<FittedParameter>,
+    /// The intervals of the values do not overlap; `null` if a value or an interval is missing.
+    pub differ: Option<bool>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wider: Option<Wider>,
+}
+
+/// Why the interval of a parameter is much wider in one of two versions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Wider {
+    /// In the second, or in the first.
+    pub second: bool,
+    pub times: f64,
+    pub why: String,
+}
+
+/// An imported version, with the limitations of its evaluation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImportedModel {
+    #[serde(flatten)]
+    pub model: Model,
+    /// Limitations, as in an evaluation: missing columns, metadata that differ from the fit, signals outside the range
+    /// of the fit.
+    pub notes: Vec<String>,
+}
+
+/// An exported model to import as a version of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModelImport {
+    /// The run to evaluate the model on; its errors become those of the version.
+    pub run: i64,
+    /// Response of `GET /models/{id}/export?format=json`.
+    #[schema(value_type = Object)]
+    pub model: Map<String, Value>,
+}
