@@ -28,6 +28,7 @@ mod run;
 mod runs;
 mod secrets;
 mod serve;
+mod simulate;
 mod transfer;
 mod user_effects;
 mod verify;
@@ -83,6 +84,7 @@ pub fn main() -> ExitCode {
         Command::Restore(arguments) => backup::restore(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
+        Command::Simulate(arguments) => simulate::simulate(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -114,6 +114,8 @@ pub enum Command {
     Verify(Verify),
     /// Repeat the campaigns of the source documents on the mock bench and compare the tables
     Reproduce(Reproduce),
+    /// Serve the instruments of a simulated bench to other programs, without a daemon
+    Simulate(Simulate),
 }
 
 #[derive(Debug, Args)]
@@ -156,6 +158,25 @@ pub struct Check {
     /// Print the description, as a template for your own
     #[arg(long)]
     pub print: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Simulate {
+    /// Simulated bench: a description, or a built-in one (joint-a-mock, joint-b-mock, encoder-bench-mock, puma-mock)
+    #[arg(value_name = "BENCH.TOML", default_value = "joint-a-mock")]
+    pub config: String,
+    /// Loopback TCP ports instead of pseudo-terminals
+    #[arg(long)]
+    pub tcp: bool,
+    /// Seconds of simulation per second
+    #[arg(long, default_value_t = 1.0)]
+    pub pace: f64,
+    /// Bytes take the time that they take on the real line
+    #[arg(long)]
+    pub paced_lines: bool,
+    /// One JSON object for each instrument instead of a table
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// An item of the library to describe.
