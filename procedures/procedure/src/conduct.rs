@@ -1,9 +1,10 @@
 //! Performs one run in memory: plan, run, identify. For campaigns and tests; the server stores its runs.
 
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::Procedure;
 use crate::identification::Identification;
 use crate::parameter::Values;
-use crate::plan::{BenchFacts, PlanFault};
+use crate::plan::PlanFault;
 use crate::recorder::{Commit, Live, Recorder, RecorderFault};
 use crate::state::RunState;
 use crate::{RunEnd, run};

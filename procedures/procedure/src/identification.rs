@@ -61,10 +61,10 @@ impl Identification {
     }
 
     /// The result for a run and its state: an incomplete run has not reached its purpose, independent of its partial
-    /// results. `goes_on`: the rest of the run may be measured later. `step`: where it ended, such as `step 3 of 41`.
-    pub fn of_run(mut self, run: RunId, state: RunState, goes_on: bool, step: Option<&str>) -> Self {
+    /// results. `can_resume`: the rest of the run may be measured later. `step`: where it ended, such as `step 3 of 41`.
+    pub fn of_run(mut self, run: RunId, state: RunState, can_resume: bool, step: Option<&str>) -> Self {
         if state != RunState::Completed {
-            let next = match (state.is_final(), goes_on) {
+            let next = match (state.is_final(), can_resume) {
                 (false, _) => "Let the run finish.",
                 (true, false) => "Repeat the run.",
                 (true, true) => {
@@ -238,9 +238,9 @@ mod tests {
 
     #[test]
     fn what_to_do_next_can_be_typed() {
-        let said = |state, goes_on| {
+        let said = |state, can_resume| {
             let made = Identification::failed("Too few steps.", "look closer (jointbench export RUN)");
-            made.of_run(12, state, goes_on, None).advice.unwrap()
+            made.of_run(12, state, can_resume, None).advice.unwrap()
         };
         assert_eq!(said(RunState::Completed, true), "look closer (jointbench export 12)");
         assert!(said(RunState::Stopped, true).contains("jointbench run --continue 12"));

@@ -1,73 +1,12 @@
 //! A plan of a procedure: a list of steps with their set-points over time. Pure data; the engine performs it.
 
-use crate::catalogue::{BrakeModel, procedure};
-use crate::continuing::Done;
+use crate::deferred_plan::DeferredPlan;
 use crate::place::Place;
 use crate::profile::Profile;
-use jointbench_instrument::bench::JointConstants;
-use jointbench_instrument::roles::PositionCounter;
-use jointbench_instrument::{Bench, Kind, Limits, Meta, RunTable};
-use serde::{Deserialize, Deserializer, Serialize};
+use crate::steady::Steady;
+use jointbench_instrument::{Kind, Meta};
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
-use std::f64::consts::TAU;
-use std::ops::Range;
-use std::sync::Arc;
-
-/// Facts about a bench that a procedure may use before anything moves.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct BenchFacts {
-    /// Name in the bench description.
-    pub name: String,
-    /// The bench is the mock bench.
-    pub simulated: bool,
-    /// Limits that the plan has to respect.
-    pub limits: Limits,
-    /// Constants of the joint and its brake.
-    pub constants: JointConstants,
-    /// A torque sensor is connected.
-    pub has_torque_sensor: bool,
-    /// The torque sensor reports every sample in two ranges.
-    pub has_two_ranges: bool,
-    /// A brake with its supply is connected.
-    pub has_brake: bool,
-    /// Reference and test encoder: counts in a turn. `None` if one of them is missing.
-    pub encoder_counts: Option<[f64; 2]>,
-    /// An alignment stage holds the sensor of the encoder under test.
-    pub has_stage: bool,
-    /// Motor current for each volt, if the joint's servo measures it as the voltage at a shunt.
-    pub amperes_per_volt: Option<f64>,
-    /// The brake model of an earlier run, if a procedure needs it ([`crate::Procedure::brake_model`]).
-    #[serde(skip)]
-    pub brake_model: Option<BrakeModel>,
-    /// Whether the joint's drive accepts a motor current in addition to a velocity.
-    pub feeds_forward: bool,
-}
-
-impl BenchFacts {
-    /// The facts of an open bench; without a brake model.
-    pub fn of(bench: &Bench) -> Self {
-        Self {
-            name: bench.name.clone(),
-            simulated: bench.simulated,
-            limits: bench.limits,
-            constants: bench.constants,
-            has_torque_sensor: bench.torque_sensor.is_some(),
-            has_two_ranges: bench.torque_sensor.as_ref().is_some_and(|sensor| sensor.has_two_ranges()),
-            has_brake: bench.brake.is_some(),
-            encoder_counts: counts(&bench.reference_encoder)
-                .zip(counts(&bench.test_encoder))
-                .map(|(reference, test)| [reference, test]),
-            has_stage: bench.stage.is_some(),
-            amperes_per_volt: bench.joint.amperes_per_volt(),
-            brake_model: None,
-            feeds_forward: bench.joint.feeds_forward(),
-        }
-    }
-}
-
-fn counts(encoder: &Option<Box<dyn PositionCounter>>) -> Option<f64> {
-    encoder.as_ref().map(|encoder| TAU / encoder.resolution().0)
-}
 
 /// The part of a plan that a step belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -185,38 +124,11 @@ impl Step {
     }
 }
 
-/// Criterion of a warm joint, evaluated over whole cycles of warm-up steps.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Steady {
-    /// Steps of one cycle; every cycle has the same speeds.
-    pub cycle_steps: usize,
-    /// Largest drift of the temperature.
-    pub temperature_c_per_min: f64,
-    /// Largest relative drift of the mean |motor current|.
-    pub current_share_per_min: f64,
-}
-
-/// Steps that depend on a result of the run itself ([`crate::Procedure::learn`]). Until then they are planned for an
-/// expected joint, so that duration and travel are known before any motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Lesson {
-    /// Segments that the planning uses.
-    pub from: Range<u32>,
-    /// Segments of the dependent steps.
-    pub to: Range<u32>,
-    /// The earlier measurement of the same plan, and its finished part.
-    pub earlier: Option<Arc<(RunTable, Done)>>,
-}
-
-/// As in the catalogue.
-pub type ProcedureId = &'static str;
-
 /// A validated procedure, ready to run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// Id of the procedure.
-    #[serde(deserialize_with = "known_procedure")]
-    pub procedure: ProcedureId,
+    pub procedure: String,
     /// The parameters, including defaults.
     pub parameters: Map<String, Value>,
     /// Kind of its run table.
@@ -236,17 +148,11 @@ pub struct Plan {
     /// Streaming period of the torque sensor. `None`, or a sensor without streaming: one reading for each row.
     pub torque_period_s: Option<f64>,
     /// `None`: every step is known before the first one.
-    pub lesson: Option<Lesson>,
+    #[serde(rename = "lesson")]
+    pub deferred: Option<DeferredPlan>,
     /// Start position relative to that of the whole plan (motor) (rad): a continuation begins where the previous run
     /// ended.
     pub begins_rad: f64,
-}
-
-/// A plan from another process must name a procedure of this one.
-fn known_procedure<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ProcedureId, D::Error> {
-    let id = String::deserialize(deserializer)?;
-    let known = procedure(&id).map(|known| known.id());
-    known.ok_or_else(|| serde::de::Error::custom(format!("procedure {id} does not exist")))
 }
 
 impl Plan {
@@ -334,7 +240,7 @@ pub(crate) mod testing {
             drive: Drive::Velocity,
         };
         Plan {
-            procedure: "test",
+            procedure: "test".into(),
             parameters: Map::new(),
             kind: Kind::Friction,
             meta: Meta::default(),
@@ -344,7 +250,7 @@ pub(crate) mod testing {
             steady: None,
             both_ranges: false,
             torque_period_s: None,
-            lesson: None,
+            deferred: None,
             begins_rad: 0.0,
         }
     }

@@ -2,10 +2,10 @@
 //!
 //! The caller provides the true values of the bench if they are known; they are only compared at the end.
 
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::{Procedure, brake_model, procedure};
 use crate::conduct::{ConductFault, Conducted, conduct_knowing};
 use crate::identification::{Identification, Quantity};
-use crate::plan::BenchFacts;
 use jointbench_instrument::Bench;
 use serde_json::{Map, Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};

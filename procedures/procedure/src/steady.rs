@@ -1,12 +1,23 @@
 //! Criterion of a warm joint: temperature and current no longer drift between the cycles of the warm-up.
 
 use crate::findings::legs;
-use crate::plan::Steady;
 use jointbench_instrument::RunTable;
+use serde::{Deserialize, Serialize};
 
 /// Longest rest that does not restart the criterion, because gears cool in minutes. After a longer one the earlier
 /// cycles do not count.
 pub(crate) const COOLS_S: f64 = 60.0;
+
+/// Criterion of a warm joint, evaluated over whole cycles of warm-up steps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Steady {
+    /// Steps of one cycle; every cycle has the same speeds.
+    pub cycle_steps: usize,
+    /// Largest drift of the temperature.
+    pub temperature_c_per_min: f64,
+    /// Largest relative drift of the mean |motor current|.
+    pub current_share_per_min: f64,
+}
 
 /// Evaluates the warm-up of one run. Only the steady-state part of each step counts.
 #[derive(Debug, Clone)]

@@ -7,10 +7,11 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate, stroke};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{Mean, Unusable, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Drive, Plan, PlanFault, Until};
+use crate::plan::{Drive, Plan, PlanFault, Until};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::words;

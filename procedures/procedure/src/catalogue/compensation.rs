@@ -8,10 +8,11 @@ mod identify;
 
 use super::legs::{Legs, sample_rate};
 use super::{Findable, Procedure};
+use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Drive, Feed, Plan, PlanFault};
+use crate::plan::{Drive, Feed, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
 use serde_json::{Map, Value};

@@ -6,12 +6,13 @@
 use super::friction::Friction;
 use super::legs::sample_rate;
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{
     Unusable, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter, settled, verdict,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::words;
 use jointbench_model::{Fit, ModelError, ModelSpec, Options, fit};
@@ -58,7 +59,7 @@ impl Procedure for FrictionLoad {
             given.insert("fast_speeds".into(), speeds);
         }
         let plan = Friction.plan(&given, bench)?;
-        Ok(Plan { procedure: self.id(), parameters: values.to_json(), ..plan })
+        Ok(Plan { procedure: self.id().to_owned(), parameters: values.to_json(), ..plan })
     }
 
     fn finds(&self) -> Vec<Findable> {

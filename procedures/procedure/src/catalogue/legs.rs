@@ -1,9 +1,10 @@
 //! Shared functions of the joint procedures: numbered steps, legs of constant speed, the facts of a friction run.
 
 use super::Procedure;
+use crate::bench_facts::BenchFacts;
 use crate::parameter::{Parameter, Values};
 use crate::place::Place;
-use crate::plan::{Before, BenchFacts, Drive, Phase, Plan, Step};
+use crate::plan::{Before, Drive, Phase, Plan, Step};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, Meta};
 use std::f64::consts::TAU;
@@ -120,7 +121,7 @@ impl Legs {
     pub fn plan(self, procedure: &dyn Procedure, values: &Values, meta: Meta, rate_hz: f64) -> Plan {
         let measures_torque = matches!(procedure.kind(), Kind::Stiffness | Kind::Brake);
         Plan {
-            procedure: procedure.id(),
+            procedure: procedure.id().to_owned(),
             parameters: values.to_json(),
             kind: procedure.kind(),
             meta,
@@ -130,7 +131,7 @@ impl Legs {
             steady: None,
             both_ranges: false,
             torque_period_s: (measures_torque && rate_hz * TORQUE_PERIOD_S <= 0.5).then_some(TORQUE_PERIOD_S),
-            lesson: None,
+            deferred: None,
             begins_rad: 0.0,
         }
     }
@@ -203,7 +204,7 @@ pub(super) fn friction_meta(bench: &BenchFacts, rate_hz: f64) -> Meta {
 
 #[cfg(test)]
 pub(super) mod testing {
-    use crate::plan::BenchFacts;
+    use crate::bench_facts::BenchFacts;
     use jointbench_instrument::Limits;
     use jointbench_instrument::bench::JointConstants;
     use std::f64::consts::TAU;

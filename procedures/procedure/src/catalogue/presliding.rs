@@ -6,10 +6,11 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Drive, Plan, PlanFault, Until};
+use crate::plan::{Drive, Plan, PlanFault, Until};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
 

@@ -13,11 +13,13 @@
 
 use super::legs::{ACCELERATION, Legs, friction_meta, stroke};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Drive, Phase, Plan, PlanFault, Steady, Until};
+use crate::plan::{Drive, Phase, Plan, PlanFault, Until};
 use crate::profile::Profile;
+use crate::steady::Steady;
 use jointbench_instrument::{Kind, RunTable};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -72,7 +74,7 @@ impl Procedure for PumaFriction {
         Kind::Friction
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("its arc is centred on the initial pose: set the link upright and repeat the run")
     }
 

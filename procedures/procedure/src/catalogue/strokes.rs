@@ -5,12 +5,13 @@
 
 use super::legs::{Legs, sample_rate};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{
     Line, Plateau, Unusable, curve, keep, legs, plateaus, quantity, scatter, settled, solve, t95, verdict,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::preprocess::Prepared;
 use jointbench_model::signal::Signal;

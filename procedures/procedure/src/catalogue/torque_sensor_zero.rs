@@ -7,11 +7,12 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
-use crate::columns::OTHER_RANGE;
+use crate::bench_facts::BenchFacts;
+use crate::column_names::OTHER_RANGE;
 use crate::findings::{Hold, Line, Mean, Unusable, curve, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 
 pub(super) struct TorqueSensorZero;
@@ -59,7 +60,7 @@ impl Procedure for TorqueSensorZero {
         SCHEMA
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the drift of the sensor is one history")
     }
 

@@ -2,10 +2,12 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{Plateau, Unusable, curve, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Steady};
+use crate::plan::{Phase, Plan, PlanFault};
+use crate::steady::Steady;
 use crate::steady::{Drift, SteadyWatch};
 use jointbench_instrument::{Kind, RunTable};
 
@@ -58,7 +60,7 @@ impl Procedure for WarmUp {
         SCHEMA
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("a warm-up is one history")
     }
 

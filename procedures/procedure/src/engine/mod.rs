@@ -2,14 +2,17 @@
 
 mod arm;
 mod ask;
+mod deferred_steps;
 mod drive;
 mod encoders;
 mod ending;
 mod journal;
-mod learning;
 mod pace;
 mod pause;
+mod plan_deferred;
+mod pose_deviation;
 mod power;
+mod rewarm;
 mod safe_state;
 mod securing;
 mod session;
@@ -18,15 +21,14 @@ mod skew;
 mod steps;
 mod tick;
 mod torque;
-mod warmth;
 
 use crate::event::{Demand, EventKind, Safe};
 use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
 use crate::state::{RunState, Transition};
-use encoders::PoseDeviation;
 use ending::Ending;
 use jointbench_instrument::Bench;
+use pose_deviation::PoseDeviation;
 pub use safe_state::{Secured, secure};
 use serde::{Deserialize, Serialize};
 use session::Session;
@@ -91,7 +93,7 @@ impl Session<'_> {
         let safe = self.make_safe(&ending);
         std::mem::take(&mut self.shaft).notes().into_iter().for_each(|note| self.note(note));
         let _stopped = self.caught(Session::stop_torque_stream);
-        self.look_behind(&mut ending);
+        self.check_for_exchange(&mut ending);
         self.identify_again(&mut ending);
         let now_s = self.bench.clock.now_s();
         self.journal.log(now_s, Some(EventKind::Safe { safe }));

@@ -1,6 +1,7 @@
 //! Steady-state stretches of a plan for the model.
 
-use crate::plan::{Before, BenchFacts, Phase, Plan, Step};
+use crate::bench_facts::BenchFacts;
+use crate::plan::{Before, Phase, Plan, Step};
 use jointbench_instrument::Kind;
 use jointbench_model::{Choice, Stretch};
 use serde_json::{Map, Value};
@@ -44,7 +45,7 @@ pub fn choice(
         at_rad += way.last().unwrap_or(&0.0);
     }
     Choice {
-        procedure: plan.procedure.into(),
+        procedure: plan.procedure.clone(),
         parameters: parameters.clone(),
         duration_s: plan.duration_s(),
         stretches,

@@ -105,7 +105,7 @@ pub fn loaded_plan() -> Plan {
         drive: Drive::Velocity,
     };
     Plan {
-        procedure: "test",
+        procedure: "test".into(),
         parameters: serde_json::Map::new(),
         kind: Kind::Friction,
         meta: Meta::default(),
@@ -121,7 +121,7 @@ pub fn loaded_plan() -> Plan {
         steady: None,
         both_ranges: false,
         torque_period_s: None,
-        lesson: None,
+        deferred: None,
         begins_rad: 0.0,
     }
 }

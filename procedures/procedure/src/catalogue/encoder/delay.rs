@@ -4,13 +4,14 @@
 use super::say::{quantity, too_little};
 use super::sweeps::sweeps;
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::place::Place;
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 
 pub struct EncoderDelay;
@@ -47,7 +48,7 @@ impl Procedure for EncoderDelay {
         }
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the zero of the encoders is lost when an instrument is switched off")
     }
 

@@ -6,13 +6,14 @@ use super::spectrum::PolePairs;
 use super::sweeps::{Sweep, sweeps};
 use super::table::{Class, Table, Terms, means};
 use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
 use crate::identification::{Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::place::Place;
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use std::f64::consts::TAU;
 
@@ -54,7 +55,7 @@ impl Procedure for EncoderLinearity {
         }
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the zero of the encoders is lost when an instrument is switched off")
     }
 

@@ -20,8 +20,9 @@ pub(super) use offset::EncoderOffset;
 pub(super) use startup::EncoderStartup;
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
+use crate::bench_facts::BenchFacts;
 use crate::place::Place;
-use crate::plan::{BenchFacts, PlanFault};
+use crate::plan::PlanFault;
 use crate::profile::Profile;
 use jointbench_instrument::roles::Pose;
 use jointbench_instrument::{Kind, Meta};

@@ -3,13 +3,14 @@
 use super::say::{histogram, quantity, scatter, too_little};
 use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::t95;
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::place::Place;
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use std::f64::consts::TAU;
 
@@ -45,7 +46,7 @@ impl Procedure for EncoderOffset {
         }
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the zero of the encoders is lost when an instrument is switched off")
     }
 

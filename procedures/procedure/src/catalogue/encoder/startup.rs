@@ -4,13 +4,14 @@ use super::offset::step_rad;
 use super::say::{histogram, quantity, too_little};
 use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::{Mean, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::place::Place;
-use crate::plan::{Before, BenchFacts, Plan, PlanFault};
+use crate::plan::{Before, Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -51,7 +52,7 @@ impl Procedure for EncoderStartup {
         }
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the zero of the reference is lost when an instrument is switched off")
     }
 
