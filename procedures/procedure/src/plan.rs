@@ -1,9 +1,9 @@
 //! A plan of a procedure: a list of steps with their set-points over time. Pure data; the engine performs it.
 
 use crate::deferred_plan::DeferredPlan;
-use crate::place::Place;
 use crate::profile::Profile;
-use crate::steady::Steady;
+use crate::stage_pose::StagePose;
+use crate::steady::SteadyCriterion;
 use jointbench_instrument::{Kind, Meta};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -19,7 +19,7 @@ pub enum Phase {
 
 /// The history that a step requires. A pause destroys it, and resuming restores it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Before {
+pub enum InitialState {
     /// The brake in the state after the previous step: a pause keeps its current, and a larger one is approached from
     /// below.
     #[default]
@@ -37,7 +37,7 @@ pub enum Drive {
     #[default]
     Velocity,
     /// The velocity, with a feedforward of motor current.
-    Fed(Feed),
+    Fed(Feedforward),
     /// The velocity up to `from_s`, then motor current alone until its profile ends or `until` is reached.
     Current {
         /// End of the velocity section, from the start of the step.
@@ -45,13 +45,13 @@ pub enum Drive {
         /// Motor current (A) over the time of the step.
         current_a: Profile,
         /// Condition that ends the section early.
-        until: Until,
+        until: EndCondition,
     },
 }
 
 /// Source of a feedforward current.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Feed {
+pub enum Feedforward {
     /// Over the time of the step (A).
     Planned(Profile),
     /// A share of the measured friction: motor torque less link torque, low-pass filtered. It has the sign of the
@@ -68,7 +68,7 @@ pub enum Feed {
 
 /// End of a section with current alone: the velocity loop takes over after a breakaway.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Until {
+pub struct EndCondition {
     /// Consecutive samples in which the motor moved in the direction of the current.
     pub increases: u32,
     /// Motor-side speed that ends the section in any case.
@@ -87,13 +87,13 @@ pub struct Step {
     /// Number of the repetition of the whole profile.
     pub repeat: u32,
     /// State of brake and encoder that it requires.
-    pub before: Before,
+    pub before: InitialState,
     /// Motor-side velocity [rad/s] over the time of the step. Starts and ends at rest.
     pub velocity: Profile,
     /// Brake current (A) over the time of the step.
     pub brake: Profile,
     /// Pose of the stage during the step.
-    pub place: Place,
+    pub place: StagePose,
     /// Command of the drive.
     pub drive: Drive,
 }
@@ -103,8 +103,8 @@ impl Step {
     pub fn duration_s(&self) -> f64 {
         let drive_s = match &self.drive {
             Drive::Velocity => 0.0,
-            Drive::Fed(Feed::Planned(current_a)) => current_a.duration_s(),
-            Drive::Fed(Feed::Observed { .. }) => 0.0,
+            Drive::Fed(Feedforward::Planned(current_a)) => current_a.duration_s(),
+            Drive::Fed(Feedforward::Observed { .. }) => 0.0,
             Drive::Current { from_s, current_a, .. } => from_s + current_a.duration_s(),
         };
         self.velocity.duration_s().max(self.brake.duration_s()).max(drive_s)
@@ -112,14 +112,14 @@ impl Step {
 
     /// Whether its duration is an upper bound: it ends with the breakaway of the joint, or when the edge is found.
     pub(crate) fn may_end_early(&self) -> bool {
-        matches!(self.drive, Drive::Current { .. }) || matches!(self.place, Place::Edge(_))
+        matches!(self.drive, Drive::Current { .. }) || matches!(self.place, StagePose::Edge(_))
     }
 
     /// The largest commanded motor current (A).
     pub fn top_motor_current_a(&self) -> f64 {
         match &self.drive {
-            Drive::Fed(Feed::Planned(current_a)) | Drive::Current { current_a, .. } => current_a.largest(),
-            Drive::Velocity | Drive::Fed(Feed::Observed { .. }) => 0.0,
+            Drive::Fed(Feedforward::Planned(current_a)) | Drive::Current { current_a, .. } => current_a.largest(),
+            Drive::Velocity | Drive::Fed(Feedforward::Observed { .. }) => 0.0,
         }
     }
 }
@@ -142,7 +142,7 @@ pub struct Plan {
     /// The steps in their order.
     pub steps: Vec<Step>,
     /// Ends the warm-up early. `None`: every step is run.
-    pub steady: Option<Steady>,
+    pub steady: Option<SteadyCriterion>,
     /// Also records the torque sensor's other range.
     pub both_ranges: bool,
     /// Streaming period of the torque sensor. `None`, or a sensor without streaming: one reading for each row.
@@ -233,10 +233,10 @@ pub(crate) mod testing {
             phase: Phase::Measure,
             segment: index as u32,
             repeat: 0,
-            before: Before::AsLeft,
+            before: InitialState::AsLeft,
             velocity: Profile::plateau(if index % 2 == 0 { 20.0 } else { -20.0 }, 200.0, duration_s - 0.2),
             brake: Profile::constant(0.0),
-            place: Place::AsLeft,
+            place: StagePose::AsLeft,
             drive: Drive::Velocity,
         };
         Plan {

@@ -1,7 +1,7 @@
 //! Continuation of an incomplete run: the finished steps, and both runs as one measurement.
 
 use crate::column_names::MOTOR_CURRENT_SETPOINT;
-use crate::findings::keep_rows;
+use crate::findings::select_rows;
 use crate::recorder::RunId;
 use jointbench_instrument::{Meta, RunTable, TableFault, Trace};
 use serde::{Deserialize, Serialize};
@@ -116,7 +116,7 @@ pub(crate) fn rows_of_segments(table: &RunTable, wanted: impl Fn(u32) -> bool) -
         }
         start += chunk.len();
     }
-    keep_rows(table, &rows)
+    select_rows(table, &rows)
 }
 
 #[cfg(test)]

@@ -130,7 +130,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         relative.push(scatter(&format!("{current_a:.2} A"), points.iter().map(|p| (p.0, p.1 / mean_nm))));
     }
     if absolute.is_empty() {
-        return Err(Unusable::TooLittle("No current was measured at three speeds.", "Repeat the run."));
+        return Err(Unusable::InsufficientData("No current was measured at three speeds.", "Repeat the run."));
     }
     let title = "Maximum relative change over speed, all currents";
     quantities.push(quantity(["change_max", "ΔT/T", title, ""], worst, None));

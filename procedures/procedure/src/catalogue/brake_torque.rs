@@ -141,7 +141,7 @@ struct Point {
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     const FOREIGN: Unusable =
-        Unusable::TooLittle("The commanded torques are not stored with the run.", "Repeat the run.");
+        Unusable::InsufficientData("The commanded torques are not stored with the run.", "Repeat the run.");
     let commanded = run.meta().other.get(COMMANDED).cloned().ok_or(FOREIGN)?;
     let commanded: Vec<Vec<(f64, f64)>> = serde_json::from_value(commanded).map_err(|_| FOREIGN)?;
     let rated_nm = rated_nm(run).ok_or(FOREIGN)?;
@@ -158,7 +158,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         }
     }
     if points.len() < 2 {
-        return Err(Unusable::TooLittle("No random history was completed.", "Repeat the run."));
+        return Err(Unusable::InsufficientData("No random history was completed.", "Repeat the run."));
     }
     let errors: Vec<f64> = points.iter().map(|point| (point.felt_nm - point.asked_nm) / rated_nm).collect();
     let worst = errors.iter().map(|error| error.abs()).fold(0.0, f64::max);

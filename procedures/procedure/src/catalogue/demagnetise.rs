@@ -112,7 +112,7 @@ impl Turn {
 }
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
-    const LITTLE: Unusable = Unusable::TooLittle("The run ended before the last turn.", "Repeat the run.");
+    const LITTLE: Unusable = Unusable::InsufficientData("The run ended before the last turn.", "Repeat the run.");
     let (Some(torque), Some(angle), Some(rated_nm)) =
         (run.column("brake_torque_nm"), run.column("position_rad"), rated_nm(run))
     else {

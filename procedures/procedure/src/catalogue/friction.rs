@@ -19,7 +19,7 @@ use crate::findings::verdict;
 use crate::identification::{FollowUp, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
-use crate::steady::Steady;
+use crate::steady::SteadyCriterion;
 use jointbench_instrument::{Kind, RunTable};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -106,7 +106,7 @@ impl Procedure for Friction {
             meta.other.insert("brake_history".into(), history.into());
         }
         Ok(Plan {
-            steady: Some(Steady {
+            steady: Some(SteadyCriterion {
                 cycle_steps: warm_up::CYCLE_STEPS,
                 temperature_c_per_min: 0.3,
                 current_share_per_min: 0.01,

@@ -101,7 +101,10 @@ impl Procedure for FrictionTemperature {
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     if run.column("temperature_c").is_none() {
-        return Err(Unusable::TooLittle("The joint reports no temperature.", "Connect a thermistor or a thermometer."));
+        return Err(Unusable::InsufficientData(
+            "The joint reports no temperature.",
+            "Connect a thermistor or a thermometer.",
+        ));
     }
     let prepared = settled(run)?;
     let points = plateaus(&prepared);

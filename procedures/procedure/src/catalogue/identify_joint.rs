@@ -209,7 +209,7 @@ fn waits(procedure: &dyn Procedure) -> bool {
 }
 
 const FOREIGN: Unusable =
-    Unusable::TooLittle("The parts of the campaign are not stored with the run.", "Run identify_joint.");
+    Unusable::InsufficientData("The parts of the campaign are not stored with the run.", "Run identify_joint.");
 
 fn parts_of(run: &RunTable) -> Result<&[Value], Unusable> {
     Ok(run.meta().other.get(PARTS).and_then(Value::as_array).ok_or(FOREIGN)?)
@@ -239,12 +239,12 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         if found.verdict != Verdict::Identified && whole.verdict != Verdict::Failed {
             whole.verdict = found.verdict;
         }
-        let said = match found.verdict {
+        let conclusion = match found.verdict {
             Verdict::Identified => words(&found.summary),
             Verdict::Inconclusive => format!("{} (inconclusive): {}", procedure.title(), found.summary),
             Verdict::Failed => format!("{} (failed): {}", procedure.title(), found.summary),
         };
-        whole.summary = below(&whole.summary, said);
+        whole.summary = below(&whole.summary, conclusion);
         whole.parts.push(Part {
             id: id.to_owned(),
             title: procedure.title().to_owned(),

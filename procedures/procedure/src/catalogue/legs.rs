@@ -3,9 +3,9 @@
 use super::Procedure;
 use crate::bench_facts::BenchFacts;
 use crate::parameter::{Parameter, Values};
-use crate::place::Place;
-use crate::plan::{Before, Drive, Phase, Plan, Step};
+use crate::plan::{Drive, InitialState, Phase, Plan, Step};
 use crate::profile::Profile;
+use crate::stage_pose::StagePose;
 use jointbench_instrument::{Kind, Meta};
 use std::f64::consts::TAU;
 
@@ -79,7 +79,7 @@ impl Legs {
         let velocity = Profile::plateau(speed_rad_s, self.acceleration_rad_s2, brake.duration_s() - turning_s + LAG_S);
         self.push(label, velocity, brake);
         let last = self.steps.len() - 1;
-        self.steps[last].before = Before::Demagnetised;
+        self.steps[last].before = InitialState::Demagnetised;
     }
 
     /// The rated current, then zero over `turns` of the link, so that no pole keeps its history.
@@ -149,7 +149,7 @@ impl Legs {
 
     pub fn push(&mut self, label: String, velocity: Profile, brake: Profile) {
         let segment = self.steps.len() as u32;
-        let (phase, repeat, before) = (self.phase, self.repeat, Before::AsLeft);
+        let (phase, repeat, before) = (self.phase, self.repeat, InitialState::AsLeft);
         self.steps.push(Step {
             label,
             phase,
@@ -159,7 +159,7 @@ impl Legs {
             velocity,
             brake,
             drive: Drive::Velocity,
-            place: Place::AsLeft,
+            place: StagePose::AsLeft,
         });
     }
 }

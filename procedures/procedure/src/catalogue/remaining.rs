@@ -2,11 +2,11 @@
 
 use super::legs::Legs;
 use crate::bench_facts::BenchFacts;
-use crate::place::Place;
 use crate::plan::{Phase, Plan, Step};
 use crate::profile::Profile;
 use crate::recorder::RunId;
 use crate::resume::{Continuation, FinishedSteps};
+use crate::stage_pose::StagePose;
 use jointbench_instrument::RunTable;
 use std::sync::Arc;
 
@@ -54,11 +54,11 @@ impl Plan {
         let mut left = left.to_vec();
         // The last commanded pose of the stage.
         let place = done.iter().rev().find_map(|step| match step.place {
-            Place::At(pose) => Some(pose),
-            Place::AsLeft | Place::Edge(_) => None,
+            StagePose::At(pose) => Some(pose),
+            StagePose::AsLeft | StagePose::Edge(_) => None,
         });
-        if let (Place::AsLeft, Some(pose)) = (&left[0].place, place) {
-            left[0].place = Place::At(pose);
+        if let (StagePose::AsLeft, Some(pose)) = (&left[0].place, place) {
+            left[0].place = StagePose::At(pose);
         }
         self.begins_rad = begins_rad;
         self.steps = legs.steps;

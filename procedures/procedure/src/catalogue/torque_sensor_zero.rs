@@ -131,7 +131,7 @@ impl Zero {
         let end = &points[points.len() - (points.len() as f64 * END).ceil() as usize..];
         let at_end: Vec<f64> = end.iter().map(|p| p.1).collect();
         let (Some(value), Some(drift), Some(drag)) = (Mean::of(&at_end), Line::through(end), Mean::of(&drags)) else {
-            return Err(Unusable::TooLittle("Too few strokes.", "Increase duration_s."));
+            return Err(Unusable::InsufficientData("Too few strokes.", "Increase duration_s."));
         };
         Ok(Self { points, value, drift, drag })
     }
@@ -199,7 +199,8 @@ fn overlap(
 ) -> Result<(), Unusable> {
     let pairs: Vec<(f64, f64)> =
         held.iter().map(|hold| (hold.mean(used, SETTLED), hold.mean(other, SETTLED))).collect();
-    let line = Line::through(&pairs).ok_or(Unusable::TooLittle("All torques are equal.", "Increase top_torque_nm."))?;
+    let line =
+        Line::through(&pairs).ok_or(Unusable::InsufficientData("All torques are equal.", "Increase top_torque_nm."))?;
     let apart: Vec<(f64, f64)> = pairs.iter().map(|(used, other)| (*used, other - used)).collect();
     let widest = apart.iter().map(|(_, apart)| apart.abs()).fold(0.0, f64::max);
     let (low, high) =

@@ -1,7 +1,7 @@
 //! The command to the drive in a tick: a velocity with feedforward, or a motor current alone.
 
 use super::session::{DriveCommand, Session};
-use crate::plan::{Drive, Feed, Step, Until};
+use crate::plan::{Drive, EndCondition, Feedforward, Step};
 use jointbench_instrument::roles::JointReading;
 use std::f64::consts::TAU;
 
@@ -20,7 +20,7 @@ pub(super) struct BreakawayDetector {
 
 impl BreakawayDetector {
     /// Whether the joint has broken away in the direction of the current.
-    pub fn is_detected(&mut self, until: Until, current_a: f64, joint: Option<JointReading>) -> bool {
+    pub fn is_detected(&mut self, until: EndCondition, current_a: f64, joint: Option<JointReading>) -> bool {
         let Some(joint) = joint else { return false };
         let position_rad = joint.motor_position.0;
         let before_rad = self.at_rad.replace(position_rad).unwrap_or(position_rad);
@@ -37,8 +37,10 @@ impl Session<'_> {
                 DriveCommand::Current { a: current_a.at(t_s - from_s) }
             }
             Drive::Velocity | Drive::Current { .. } => DriveCommand::Velocity { rad_s, feedforward_a: 0.0 },
-            Drive::Fed(Feed::Planned(current_a)) => DriveCommand::Velocity { rad_s, feedforward_a: current_a.at(t_s) },
-            Drive::Fed(Feed::Observed { share, corner_hz, ramp_rad_s }) => {
+            Drive::Fed(Feedforward::Planned(current_a)) => {
+                DriveCommand::Velocity { rad_s, feedforward_a: current_a.at(t_s) }
+            }
+            Drive::Fed(Feedforward::Observed { share, corner_hz, ramp_rad_s }) => {
                 let gain = 1.0 - (-TAU * corner_hz * self.period.duration_s).exp();
                 friction.current_a += gain * (self.friction_a() - friction.current_a);
                 let side = (rad_s / ramp_rad_s).clamp(-1.0, 1.0);

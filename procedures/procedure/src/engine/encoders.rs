@@ -7,9 +7,9 @@ use super::session::{DriveCommand, PendingRequest, Session, log, reported};
 use super::steps::StepEnd;
 use crate::encoder_columns::Encoders;
 use crate::event::EventKind;
-use crate::place::{Edge, EdgeSearch, Place};
 use crate::plan::Step;
 use crate::profile::Profile;
+use crate::stage_pose::{Edge, EdgeSearch, StagePose};
 use jointbench_instrument::clock::timed;
 use jointbench_instrument::roles::{AlignmentStage, Pose, PositionCounter};
 use jointbench_instrument::{Fault, FaultKind, Kind};
@@ -76,7 +76,7 @@ impl Session<'_> {
                 }
             }
         }
-        if self.plan.steps.iter().all(|step| step.place == Place::AsLeft) {
+        if self.plan.steps.iter().all(|step| step.place == StagePose::AsLeft) {
             return Ok(());
         }
         self.ask_stage(|stage| stage.identify())?;

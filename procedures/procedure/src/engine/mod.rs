@@ -7,11 +7,11 @@ mod drive;
 mod encoders;
 mod ending;
 mod journal;
-mod pace;
 mod pause;
 mod plan_deferred;
 mod pose_deviation;
 mod power;
+mod remaining_time;
 mod rewarm;
 mod safe_state;
 mod securing;
@@ -32,7 +32,7 @@ use pose_deviation::PoseDeviation;
 pub use safe_state::{Secured, secure};
 use serde::{Deserialize, Serialize};
 use session::Session;
-use skew::Skews;
+use skew::SkewRange;
 use std::sync::mpsc::Receiver;
 pub use tick::SLOW_EVERY_S;
 
@@ -88,7 +88,7 @@ impl Session<'_> {
         {
             ending = unkept;
         }
-        let notes = [self.skews.and_then(Skews::note), self.pose_deviation.map(PoseDeviation::note)];
+        let notes = [self.skews.and_then(SkewRange::note), self.pose_deviation.map(PoseDeviation::note)];
         notes.into_iter().flatten().for_each(|note| self.note(note));
         let safe = self.make_safe(&ending);
         std::mem::take(&mut self.shaft).notes().into_iter().for_each(|note| self.note(note));

@@ -2,7 +2,7 @@
 
 use super::ending::Ending;
 use super::session::{PendingRequest, Session};
-use crate::plan::{Before, Step};
+use crate::plan::{InitialState, Step};
 use crate::profile::Profile;
 use crate::state::Transition;
 
@@ -31,7 +31,7 @@ impl Session<'_> {
             rested_s += self.bench.clock.now_s() - since_s;
             if self.rewarm_after(rested_s, step)? {
                 brake_a = self.commanded.brake_a;
-            } else if step.before == Before::Demagnetised {
+            } else if step.before == InitialState::Demagnetised {
                 self.unload()?;
                 brake_a = self.commanded.brake_a;
             }

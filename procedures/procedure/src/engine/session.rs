@@ -4,17 +4,17 @@ use super::ask::{RequestFault, ask};
 use super::deferred_steps::DeferredSteps;
 use super::ending::Ending;
 use super::journal::Journal;
-use super::pace::Pace;
 use super::pose_deviation::PoseDeviation;
+use super::remaining_time::RemainingTime;
 use super::shaft::Shaft;
-use super::skew::Skews;
+use super::skew::SkewRange;
 use crate::columns::Columns;
 use crate::event::{Demand, EventKind};
 use crate::guard::Guard;
 use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
 use crate::state::Transition;
-use crate::steady::SteadyWatch;
+use crate::steady::SteadyDetector;
 use jointbench_instrument::roles::{
     CurrentSource, Instrument, JointController, JointReading, Pose, Thermometer, TorqueSensor,
 };
@@ -32,8 +32,8 @@ pub(super) struct Session<'a> {
     pub journal: Journal<'a>,
     pub controls: &'a Receiver<Demand>,
     pub guard: Guard,
-    pub pace: Pace,
-    pub warm: Option<SteadyWatch>,
+    pub remaining_time: RemainingTime,
+    pub warm: Option<SteadyDetector>,
     /// Set at arming, when the measurable quantities of the bench are known.
     pub columns: Option<Columns>,
     pub commanded: Commanded,
@@ -52,7 +52,7 @@ pub(super) struct Session<'a> {
     pub warm_from_rad: Option<f64>,
     /// Latest reading of the torque sensor.
     pub link_torque_nm: Option<f64>,
-    pub skews: Option<Skews>,
+    pub skews: Option<SkewRange>,
     /// Positions of one shaft from several instruments.
     pub shaft: Shaft,
     /// Set while the torque sensor streams.
@@ -154,8 +154,8 @@ impl<'a> Session<'a> {
             journal: Journal::new(run, now_s, recorder),
             controls,
             guard: Guard::new(bench.limits, bench.constants),
-            pace: Pace::new(plan),
-            warm: plan.steady.map(SteadyWatch::new),
+            remaining_time: RemainingTime::new(plan),
+            warm: plan.steady.map(SteadyDetector::new),
             columns: None,
             commanded: Commanded::default(),
             held: HeldReadings::default(),

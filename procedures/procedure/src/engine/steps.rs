@@ -4,8 +4,8 @@ use super::drive::{BreakawayDetector, MeasuredFriction};
 use super::ending::Ending;
 use super::session::{DriveCommand, PendingRequest, Session};
 use crate::event::EventKind;
-use crate::place::Place;
-use crate::plan::{Before, Drive, Phase, Step};
+use crate::plan::{Drive, InitialState, Phase, Step};
+use crate::stage_pose::StagePose;
 
 /// How a step ended.
 pub(super) enum StepEnd {
@@ -18,11 +18,11 @@ impl Session<'_> {
         let plan = self.plan;
         for (index, step) in plan.steps.iter().enumerate() {
             if step.phase == Phase::WarmUp && self.warm.as_ref().is_some_and(|watch| watch.is_steady()) {
-                self.pace.step_skipped();
+                self.remaining_time.step_skipped();
                 continue;
             }
             let Some(step) = self.planned_step(index, step)? else {
-                self.pace.step_skipped();
+                self.remaining_time.step_skipped();
                 continue;
             };
             self.run_step(index, &step)?;
@@ -53,19 +53,19 @@ impl Session<'_> {
     }
 
     fn attempt(&mut self, index: usize, step: &Step, segment: u32, mut least_brake_a: f64) -> Result<StepEnd, Ending> {
-        if step.before == Before::PoweredAnew {
+        if step.before == InitialState::PoweredAnew {
             self.power_cycle()?;
         }
-        if let Place::At(pose) = step.place {
+        if let StagePose::At(pose) = step.place {
             self.move_stage(pose)?;
         }
         let start_s = self.period.next_s.max(self.bench.clock.now_s());
         (self.period.late_ticks, self.recoveries) = (0, 0);
         let rows_before = self.journal.rows();
-        self.pace.step_started(index, &step.label, start_s);
+        self.remaining_time.step_started(index, &step.label, start_s);
         let label = step.label.clone();
         self.journal.log(start_s, EventKind::StepStarted { step: index, segment, repeat: step.repeat, label });
-        if let Place::Edge(edge) = &step.place {
+        if let StagePose::Edge(edge) = &step.place {
             return match self.search_edge(step, segment, edge)? {
                 StepEnd::Done => self.checkpoint(index, segment, rows_before),
                 paused => Ok(paused),
@@ -106,7 +106,7 @@ impl Session<'_> {
 
     fn checkpoint(&mut self, index: usize, segment: u32, rows_before: u64) -> Result<StepEnd, Ending> {
         let now_s = self.bench.clock.now_s();
-        self.pace.step_done(now_s);
+        self.remaining_time.step_done(now_s);
         let (rows, late_ticks) = (self.journal.rows() - rows_before, self.period.late_ticks);
         self.journal.log(now_s, EventKind::StepFinished { step: index, segment, rows, late_ticks });
         self.journal.commit(now_s)?;

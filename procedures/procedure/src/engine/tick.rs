@@ -278,7 +278,7 @@ impl Session<'_> {
                 self.shaft.add(segment, &values.joint, encoders);
             }
         }
-        let (pace, started_s) = (&self.pace, self.journal.started_s);
+        let (pace, started_s) = (&self.remaining_time, self.journal.started_s);
         self.journal.show(now_s, row, || pace.progress(started_s, now_s, keep.is_some()));
     }
 }

@@ -3,7 +3,7 @@
 use super::ask::RequestFault;
 use super::ending::Ending;
 use super::session::{RECOVERIES_PER_STEP, Session, TorqueStream, log};
-use super::skew::{self, Skews};
+use super::skew::{self, SkewRange};
 use crate::columns::TickTorque;
 use jointbench_instrument::clock::{Timed, timed};
 use jointbench_instrument::roles::{JointReading, TorqueSample, TorqueSensor};
@@ -61,7 +61,7 @@ impl Session<'_> {
         let reading = if self.torque_stream.is_some() { self.average_torque()? } else { self.read_single_torque()? };
         let Some(reading) = reading else { return Ok(None) };
         let skew = skew::of(joint, &reading);
-        self.skews = Some(Skews::add(self.skews, skew));
+        self.skews = Some(SkewRange::add(self.skews, skew));
         let TorqueReading { nm, peak_nm, other_nm } = reading.value;
         Ok(Some(TickTorque { nm, peak_nm, other_nm, skew_s: skew.s }))
     }

@@ -3,11 +3,11 @@
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
 use jointbench_procedure::catalogue::brake_model;
-use jointbench_procedure::conduct::{conduct, conduct_knowing};
+use jointbench_procedure::in_memory_run::{run_in_memory, run_in_memory_with_facts};
 use jointbench_procedure::parameter::Values;
-use jointbench_procedure::place::Place;
 use jointbench_procedure::plan::{Drive, Phase, Step};
 use jointbench_procedure::resume::{Continuation, FinishedSteps, joined};
+use jointbench_procedure::stage_pose::StagePose;
 use jointbench_procedure::*;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -39,14 +39,14 @@ struct Steer {
 
 impl Steer {
     fn new(plan: &Plan, due: Due) -> (Self, Receiver<Demand>, Receiver<Acknowledged>) {
-        let ((controls, heard), (killed, left)) = (channel(), channel());
+        let ((controls, receiver), (killed, left)) = (channel(), channel());
         let continuation = Continuation::of(&plan.meta);
         let finished = FinishedSteps {
             steps: continuation.map_or(0, |continuation| continuation.from_step),
             ..FinishedSteps::default()
         };
         let step = (usize::MAX, 0.0);
-        (Self { controls, due, step, waited: 0, rows: None, finished, continuation, killed }, heard, left)
+        (Self { controls, due, step, waited: 0, rows: None, finished, continuation, killed }, receiver, left)
     }
 }
 
@@ -105,17 +105,17 @@ impl Recorder for Steer {
 
 /// Runs a plan under these controls.
 fn steered(bench: &mut Bench, plan: &Plan, due: Due) -> (RunEnd, RunTable, FinishedSteps) {
-    let (mut steer, heard, _left) = Steer::new(plan, due);
-    let end = run(bench, plan, 1, &heard, &mut steer);
+    let (mut steer, receiver, _left) = Steer::new(plan, due);
+    let end = run(bench, plan, 1, &receiver, &mut steer);
     assert!(steer.due.is_empty(), "{}: not reached: {:?}", plan.procedure, steer.due);
     (end, RunTable::new(plan.meta.clone(), steer.rows.unwrap()).unwrap(), steer.finished)
 }
 
 /// Runs a plan until its process is killed; the instruments keep their state.
 fn killed(mut bench: Bench, plan: &Plan, due: Due) -> (RunTable, FinishedSteps) {
-    let (mut steer, heard, left) = Steer::new(plan, due);
+    let (mut steer, receiver, left) = Steer::new(plan, due);
     let whole = plan.clone();
-    spawn(move || run(&mut bench, &whole, 1, &heard, &mut steer));
+    spawn(move || run(&mut bench, &whole, 1, &receiver, &mut steer));
     let (rows, finished) = left.recv().unwrap();
     (RunTable::new(plan.meta.clone(), rows.unwrap()).unwrap(), finished)
 }
@@ -131,7 +131,7 @@ fn one_of_each_kind(plan: &Plan) -> Due {
         // A current ramp ends with the breakaway, an edge search when the edge is found, so that both are left early.
         let within_s = match (&step.drive, step.place) {
             (Drive::Current { from_s, .. }, _) => from_s + 0.8,
-            (_, Place::Edge(_)) => 1.0,
+            (_, StagePose::Edge(_)) => 1.0,
             _ => 0.5 * step.duration_s(),
         };
         kinds.entry(kind).or_insert((index, (within_s, Some(Control::Pause))));
@@ -165,7 +165,7 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
     if procedure.brake_model(&values).is_some() {
         facts.brake_model = Some(measured_brake(&mut open().1));
     }
-    let unbroken = conduct_knowing(&mut bench, &facts, procedure, given).unwrap().identification.unwrap();
+    let unbroken = run_in_memory_with_facts(&mut bench, &facts, procedure, given).unwrap().identification.unwrap();
     let finds = procedure.finds();
     for quantity in &unbroken.quantities {
         let is_declared = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
@@ -242,7 +242,7 @@ fn nulls(place: &str, json: &Value, places: &mut Vec<String>) {
 fn measured_brake(bench: &mut Bench) -> BrakeModel {
     let given = json!({"levels": 6, "loops": 1, "random_turns": 4, "dwell_s": 0.8, "speed_rad_s": 3.0});
     let hysteresis = procedure("brake_hysteresis").unwrap();
-    brake_model(&conduct(bench, hysteresis, given.as_object().unwrap()).unwrap().table).unwrap()
+    brake_model(&run_in_memory(bench, hysteresis, given.as_object().unwrap()).unwrap().table).unwrap()
 }
 
 #[test]

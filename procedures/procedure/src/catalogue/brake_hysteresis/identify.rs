@@ -18,7 +18,7 @@ struct Sweep {
     points: Vec<(f64, f64)>,
 }
 
-const LITTLE: Unusable = Unusable::TooLittle("The run ended before the last reversal curve.", "Repeat the run.");
+const LITTLE: Unusable = Unusable::InsufficientData("The run ended before the last reversal curve.", "Repeat the run.");
 
 pub(super) fn model(run: &RunTable) -> Result<BrakeModel, Unusable> {
     model_of(&sweeps(run))

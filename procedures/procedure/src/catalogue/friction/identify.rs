@@ -4,7 +4,7 @@
 use super::free_friction::{Figured, FreeFriction, fit_with, friction_nm};
 use super::inconclusive::{Side, hidden_rise_nm, is_small, rest};
 use crate::findings::{
-    Leg, Line, Plateau, Unusable, combined, curve, keep, legs, parameter, plateaus, quantity, scatter, settled,
+    Leg, Line, Plateau, Unusable, combined, curve, legs, parameter, plateaus, quantity, scatter, select_legs, settled,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
 use jointbench_instrument::RunTable;
@@ -45,11 +45,11 @@ struct Fits {
 impl Fits {
     /// A run of hours takes seconds, so that the directions are fitted in parallel.
     fn of(run: &RunTable, free: &[Leg]) -> Result<Self, Unusable> {
-        let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
+        let part = |sign: f64| select_legs(run, free.iter().filter(|leg| leg.direction == sign));
         let (both, sides) = thread::scope(|scope| {
             let sides = scope.spawn(|| [1.0, -1.0].map(|sign| FreeFriction::of(&settled(&part(sign)?)?)));
             let both = || -> Result<_, Unusable> {
-                let both = settled(&keep(run, free)?)?;
+                let both = settled(&select_legs(run, free)?)?;
                 let whole = FreeFriction::of(&both)?;
                 let with_drag_nm = coulomb_with_quadratic_drag(&both, &whole);
                 Ok((whole, with_drag_nm, plateaus(&both)))
@@ -137,7 +137,7 @@ fn advice(is_drag_possible: bool, is_explained: bool, is_decided: bool) -> Optio
 pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
     let free = free(run);
     if ![1.0, -1.0].iter().all(|sign| free.iter().any(|leg| leg.direction == *sign)) {
-        return Err(Unusable::TooLittle("One unloaded step in each direction is required.", "Repeat the run."));
+        return Err(Unusable::InsufficientData("One unloaded step in each direction is required.", "Repeat the run."));
     }
     let fits = Fits::of(run, &free)?;
     let (whole, points) = (&fits.whole, &fits.points);
