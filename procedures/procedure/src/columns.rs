@@ -5,7 +5,7 @@ use crate::encoder_columns::{self, Encoders};
 use crate::plan::Plan;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{DriveHealth, JointReading, Pose};
-use jointbench_instrument::skew::{BRAKE_SKEW, TORQUE_SKEW, WARMTH_SKEW};
+use jointbench_instrument::skew::{BRAKE_SKEW, THERMOMETER_SKEW, TORQUE_SKEW};
 use jointbench_instrument::{Bench, Channel, Kind, Trace};
 
 /// Resolution of time in the table: finer than any serial instrument, and exact to store.
@@ -205,7 +205,7 @@ fn temperature_channels(bench: &Bench, health: &DriveHealth, thermometers: usize
     }
     channels
         .extend((replacing..thermometers).map(|at| channel(&format!("thermometer_{}_c", at + 1), thermometer_step_c)));
-    channels.extend((thermometers > 0).then(|| channel(WARMTH_SKEW, Some(TIME_STEP_S))));
+    channels.extend((thermometers > 0).then(|| channel(THERMOMETER_SKEW, Some(TIME_STEP_S))));
     channels
 }
 

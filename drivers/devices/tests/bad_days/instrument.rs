@@ -21,10 +21,10 @@ fn name(bench: &mut Bench, instrument: MockInstrument) -> String {
     named.name().to_owned()
 }
 
-fn check_reported(result: Result<(), Fault>, said: &str) {
-    let fault = result.expect_err(said);
+fn check_reported(result: Result<(), Fault>, text: &str) {
+    let fault = result.expect_err(text);
     assert!(matches!(fault.kind, FaultKind::Reported { .. }) && !fault.is_retryable(), "{fault}");
-    assert!(fault.to_string().contains(said), "{fault}");
+    assert!(fault.to_string().contains(text), "{fault}");
 }
 
 #[test]
@@ -204,9 +204,9 @@ fn a_planned_trouble_comes_and_goes_by_itself() {
     };
     let mock = MockBench::start(MockSettings { troubles: vec![planned], ..settings(Transport::Terminal) }).unwrap();
     let mut bench = mock.open_bench("mock").unwrap();
-    let heard = [0.4, 0.55, 0.7].map(|at_s| {
+    let answers = [0.4, 0.55, 0.7].map(|at_s| {
         bench.clock.sleep_until_s(at_s);
         ask(&mut bench, MockInstrument::TorqueSensor).is_ok()
     });
-    assert_eq!(heard, [true, false, true]);
+    assert_eq!(answers, [true, false, true]);
 }

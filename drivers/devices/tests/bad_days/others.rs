@@ -164,8 +164,8 @@ fn a_counter_that_lost_its_power_says_that_positions_do_not_fit() {
     mock.trouble(MockInstrument::CounterS2, Trouble::PowerCycled);
     mock.trouble(MockInstrument::CounterS2, Trouble::None);
     let fault = (0..3).find_map(|_| counter.read().err()).expect("the greeting gives it away");
-    let told = if fault.is_retryable() { counter.read().unwrap_err() } else { fault };
-    assert!(told.to_string().contains("power was interrupted"), "{told}");
+    let fault = if fault.is_retryable() { counter.read().unwrap_err() } else { fault };
+    assert!(fault.to_string().contains("power was interrupted"), "{fault}");
     assert!(counter.read().is_ok(), "usable again");
 }
 
