@@ -84,7 +84,7 @@ fn sent_bytes(seed: u64) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn the_same_seed_says_the_same_bytes_and_another_one_does_not() {
+fn the_same_seed_sends_the_same_bytes_and_another_one_does_not() {
     let (once, again, other) = (sent_bytes(11), sent_bytes(11), sent_bytes(12));
     assert_eq!(
         once.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),

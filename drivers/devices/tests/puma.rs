@@ -63,7 +63,7 @@ fn upright_the_current_is_the_friction_of_its_direction() {
 }
 
 #[test]
-fn it_goes_as_far_as_it_is_told_and_stays_there() {
+fn it_moves_to_the_commanded_position_and_stays_there() {
     let (_mock, mut bench) = start(Transport::Tcp, &["stribeck"]);
     hold(&mut bench, 25.0, 1.0);
     let [velocity, _, at_rad] = hold(&mut bench, 0.0, 1.0);

@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_velocity_that_stays_at_0_is_told() {
+    fn a_velocity_that_stays_at_0_is_reported() {
         let columns = |speed: f64, way: f64| {
             let values = |by: f64| (0..10).map(|row| by * f64::from(row)).collect();
             vec![Column::new("motor_position_rad", values(way)), Column::new("motor_velocity_rad_s", values(speed))]
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrapped_angle_is_told_and_made_continuous() {
+    fn a_wrapped_angle_is_reported_and_made_continuous() {
         let wrapped = run(1.0, |x| x.rem_euclid(TAU));
         let message = proposals(&wrapped)[0].to_string();
         assert!(message.contains("leaps by 6.") && message.ends_with("(--unwrap motor_position_rad)"), "{message}");

@@ -112,7 +112,7 @@ fn an_arrow_file_has_bounds() {
 
 /// The stated unpacked length of a buffer may have any value.
 #[test]
-fn an_arrow_file_that_says_it_is_huge_is_not_believed() {
+fn an_arrow_file_with_a_false_size_is_rejected() {
     let file = run(90, Some(CompressionType::ZSTD));
     let length = (90_u64 * 8).to_le_bytes();
     let at = file.windows(8).position(|bytes| bytes == length).unwrap();

@@ -76,7 +76,7 @@ fn text_is_refused_where_it_is_wrong() {
 }
 
 #[test]
-fn wrong_rows_are_counted_and_the_first_of_them_told() {
+fn wrong_rows_are_counted_and_the_first_of_them_shown() {
     let rows: Vec<String> = (0..9).map(|i| format!("{i},x,2")).collect();
     let refused = take("run.csv", format!("{NAMES}\n0,1\n{}\n9,1,2\n", rows.join("\n")).as_bytes()).unwrap_err();
     assert_eq!((refused.place.line, refused.place.column.as_deref()), (Some(2), None));

@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_that_was_felt_later_is_moved_to_its_rows_within_its_segment() {
+    fn a_delayed_column_is_moved_to_its_rows_within_its_segment() {
         let channels = ["time_s", "link_torque_nm", "torque_skew_s", "motor_current_a", "segment"].map(Channel::new);
         let rows: Vec<[f64; 5]> = (0..8)
             .map(|i| {

@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_near_is_told_all() {
+    fn an_unknown_value_gets_the_whole_list() {
         assert_eq!(instead("silnet", &["silent", "late"]), "did you mean silent?");
         assert_eq!(instead("nosuch", &["silent", "late"]), "there are silent, late");
     }

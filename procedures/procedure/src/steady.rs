@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn two_cycles_say_nothing() {
+    fn two_cycles_give_no_drift() {
         let rule = SteadyCriterion { cycle_steps: 1, temperature_c_per_min: 1.0, current_share_per_min: 1.0 };
         let mut watch = SteadyDetector::new(rule);
         for cycle in 0..2 {

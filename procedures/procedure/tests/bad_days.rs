@@ -123,13 +123,13 @@ fn without_its_torque_sensor_a_run_fails_and_the_bench_is_read_back_safe() {
 
 /// A joint that does not answer was commanded to disarm, and confirms it when it is reachable again.
 #[test]
-fn without_its_joint_a_run_fails_and_says_what_could_not_be_read_back() {
+fn without_its_joint_a_run_fails_and_reports_what_could_not_be_read_back() {
     let joint = |trouble| (MockInstrument::Joint, trouble, "joint");
     check_all(CABLE.into_iter().chain([Trouble::Refusing]).map(joint), &[Safe::SafeCommanded, Safe::UnsafeUnknown]);
 }
 
 #[test]
-fn without_its_supply_a_run_fails_and_says_what_could_not_be_read_back() {
+fn without_its_supply_a_run_fails_and_reports_what_could_not_be_read_back() {
     let brake = |trouble| (MockInstrument::Brake, trouble, "brake_a");
     check_all(CABLE.into_iter().chain([Trouble::Refusing]).map(brake), &[Safe::SafeCommanded, Safe::UnsafeUnknown]);
 }

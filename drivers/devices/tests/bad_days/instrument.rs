@@ -28,7 +28,7 @@ fn check_reported(result: Result<(), Fault>, text: &str) {
 }
 
 #[test]
-fn a_drive_that_lost_its_state_gives_no_reading_before_that_is_told() {
+fn a_drive_that_lost_its_state_gives_no_reading_before_that_is_reported() {
     let (mock, mut bench) = start(Transport::Terminal);
     bench.joint.set_velocity(RadPerSec(30.0)).unwrap();
     wait(&bench, 0.2);
@@ -49,7 +49,7 @@ fn a_drive_that_lost_its_state_gives_no_reading_before_that_is_told() {
 }
 
 #[test]
-fn a_supply_that_lost_its_state_is_told() {
+fn a_supply_that_lost_its_state_is_reported() {
     let (mock, mut bench) = start(Transport::Tcp);
     let brake = bench.brake.as_mut().unwrap();
     brake.set_current(Amperes(0.3)).unwrap();
@@ -146,7 +146,7 @@ fn an_instrument_that_refuses_everything_gives_no_reading() {
 }
 
 #[test]
-fn a_supply_out_of_voltage_says_that_it_does_not_hold_the_current() {
+fn a_supply_out_of_voltage_reports_that_it_does_not_hold_the_current() {
     let (mock, mut bench) = start(Transport::Terminal);
     bench.brake.as_mut().unwrap().set_current(Amperes(0.4)).unwrap();
     let mut settled = |trouble| {

@@ -130,7 +130,7 @@ fn it_is_identified_armed_turned_and_stood_down() {
 }
 
 #[test]
-fn a_drive_that_nobody_feeds_stands_down_and_says_why_and_is_armed_again() {
+fn a_drive_without_watchdog_feed_disarms_reports_why_and_is_armed_again() {
     let Some(drive) = Drive::start() else { return };
     let (mut joint, clock) = drive.open();
     joint.arm(RadPerSec(200.0), Amperes(5.0)).unwrap();
@@ -278,7 +278,7 @@ fn reply_to(port: &mut dyn serialport::SerialPort, line: &str) -> String {
 }
 
 #[test]
-fn the_mock_says_what_the_firmware_says() {
+fn the_mock_replies_as_the_firmware_does() {
     let Some(drive) = Drive::start() else { return };
     let settings = MockSettings { transport: Transport::Terminal, ..MockSettings::new(Joint::JointA, 1) };
     let mock = MockBench::start(settings).unwrap();

@@ -87,7 +87,7 @@ fn the_thermometer_on_a_server_of_pymodbus() {
 }
 
 #[test]
-fn a_module_that_is_another_and_one_without_a_name_are_told() {
+fn another_module_and_one_without_a_name_are_reported() {
     let Some(other) = Simulator::start(&["pymodbus", "4017"], 9600) else { return };
     let Err(fault) = thermometer(&other, &[0]) else { panic!("it was taken for an ADAM-4015") };
     assert!(matches!(fault.kind, FaultKind::WrongInstrument { .. }), "{fault}");

@@ -61,7 +61,7 @@ fn wrong(run: &RunTable) -> Option<String> {
 }
 
 #[test]
-fn usual_shapes_are_read_right_or_say_the_option() {
+fn usual_shapes_are_read_right_or_name_the_option() {
     let options = options();
     let (mut right, mut problems) = (0, Vec::new());
     for path in files() {
@@ -93,7 +93,7 @@ fn usual_shapes_are_read_right_or_say_the_option() {
 }
 
 #[test]
-fn what_was_skipped_or_assumed_is_said() {
+fn skipped_and_assumed_parts_are_noted() {
     let message = |name: &str| {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/shapes/written");
         jointbench_files::paragraph(&take(&folder.join(name), &Choices::default()).unwrap().1)

@@ -61,7 +61,7 @@ fn rows(times: impl IntoIterator<Item = f64>) -> String {
 }
 
 #[test]
-fn a_clock_that_ticks_more_slowly_than_rows_come_is_told_and_spread() {
+fn a_clock_that_ticks_more_slowly_than_rows_come_is_reported_and_spread() {
     let ticking = rows((0..300).map(|row| f64::from(row * 5 / 16) * 0.016));
     refused(
         &ticking,
@@ -88,7 +88,7 @@ fn a_time_without_a_unit_states_its_step_without_trailing_zeros() {
 }
 
 #[test]
-fn several_recordings_in_a_file_are_told_and_split() {
+fn several_recordings_in_a_file_are_reported_and_split() {
     let twice = rows((0..40).map(|row| 0.01 * f64::from(row % 20)));
     refused(&twice, &["line 22, column time_s: the time begins again: the file holds 2 recordings. Use --split-runs"]);
     let (run, notes) = take(&twice, &Choices { split_runs: true, ..Choices::default() }).unwrap();
@@ -200,7 +200,7 @@ fn codes_for_an_empty_cell_are_asked_about() {
 }
 
 #[test]
-fn lines_below_the_last_row_are_skipped_and_told() {
+fn lines_below_the_last_row_are_skipped_and_reported() {
     let whole = rows((0..30).map(|row| 0.01 * f64::from(row)));
     let footed = format!("{whole}Mean,,0.1\nEnd of file\n");
     let (run, notes) = take(&footed, &Choices::default()).unwrap();

@@ -52,7 +52,7 @@ fn abort_comes_to_rest_within_its_ramp() {
 }
 
 #[test]
-fn a_daemon_that_is_terminated_aborts_and_says_so() {
+fn a_daemon_that_is_terminated_aborts_and_reports_it() {
     let at_s = middles_s(&loaded_plan())[2];
     let [reported, asked] = [Control::Quit, Control::Abort].map(|control| play_controlled(&[(at_s, control)]));
     reported.check_safe(RunState::Aborted).check_no_cogging();

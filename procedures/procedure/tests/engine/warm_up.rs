@@ -36,7 +36,7 @@ fn a_warm_up_ends_when_the_joint_is_steady() {
 }
 
 #[test]
-fn a_warm_up_that_was_too_short_says_so() {
+fn a_warm_up_that_was_too_short_is_reported() {
     let (_, done) = carried_out("warm_up", json!({"longest_s": 100.0}), warming);
     done.check_safe(RunState::Completed);
     assert!(done.ledger.notes().iter().any(|note| note.starts_with("not warmed up: ")), "{:?}", done.ledger.notes());

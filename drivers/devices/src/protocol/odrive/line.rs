@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_line_is_said() {
+    fn the_fault_of_a_line_is_reported() {
         for (line, why) in [
             (&b"24.087744\r\n"[..], "checksum"),
             (b"24.087745*32\r\n", "*33"),
