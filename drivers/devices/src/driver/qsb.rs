@@ -124,9 +124,9 @@ impl Recovers for QsbCounter {
     }
 
     fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
-        let mut quieten = Vec::new();
-        StopStreams.encode(&mut quieten);
-        self.link.drain(&quieten, true)?;
+        let mut request = Vec::new();
+        StopStreams.encode(&mut request);
+        self.link.drain(&request, true)?;
         self.read_identity()
     }
 }
