@@ -148,7 +148,7 @@ impl InstrumentSettings {
             self.reference_encoder.as_mut().map(|counter| (&counter.name, &mut counter.port)),
             self.test_encoder.as_mut().map(|counter| (&counter.name, &mut counter.port)),
             self.stage.as_mut().map(|stage| (&stage.name, &mut stage.port)),
-            self.thermometer.as_mut().map(|felt| (&felt.name, &mut felt.port)),
+            self.thermometer.as_mut().map(|thermometer| (&thermometer.name, &mut thermometer.port)),
         ];
         for (name, port) in all.into_iter().flatten() {
             port.record = Some(folder.join(format!("{name}.traffic")));

@@ -11,8 +11,8 @@ fn every_slot_that_an_encoder_bench_has_is_filled() {
     let mut bench = mock.open_bench("mock").unwrap();
     assert!(bench.torque_sensor.is_none() && bench.brake.is_none());
     assert_eq!(bench.limits.brake_power_w, 0.0);
-    let felt = bench.thermometer.as_mut().unwrap().read().unwrap();
-    assert!(felt.iter().all(|t| (t.0 - 24.0).abs() < 1.0), "{felt:?}");
+    let temperatures = bench.thermometer.as_mut().unwrap().read().unwrap();
+    assert!(temperatures.iter().all(|t| (t.0 - 24.0).abs() < 1.0), "{temperatures:?}");
     assert!(!bench.stage.as_mut().unwrap().is_referenced().unwrap());
     assert!(bench.reference_encoder.as_mut().unwrap().status().is_none());
     let encoder = bench.test_encoder.as_mut().unwrap();
@@ -48,7 +48,7 @@ fn half_an_encoder_bench_is_none() {
 }
 
 /// The bytes that every instrument sent in the same conversation.
-fn said(seed: u64) -> Vec<(String, Vec<u8>)> {
+fn sent_bytes(seed: u64) -> Vec<(String, Vec<u8>)> {
     let folder = tempfile::tempdir().unwrap();
     let mock = MockBench::start(MockSettings::new(Joint::EncoderShaft, seed)).unwrap();
     let mut settings = mock.instruments();
@@ -72,11 +72,11 @@ fn said(seed: u64) -> Vec<(String, Vec<u8>)> {
     drop(bench);
     let bytes = |file: &std::path::Path| -> Vec<u8> {
         let traffic = Traffic::parse(&std::fs::read_to_string(file).unwrap()).unwrap();
-        let said = traffic.events.into_iter().filter_map(|(_, event)| match event {
+        let received = traffic.events.into_iter().filter_map(|(_, event)| match event {
             Event::Received(bytes) => Some(bytes),
             _ => None,
         });
-        said.flatten().collect()
+        received.flatten().collect()
     };
     let mut files: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().path()).collect();
     files.sort();
@@ -84,8 +84,8 @@ fn said(seed: u64) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn the_same_seed_says_the_same_bytes_and_another_one_does_not() {
-    let (once, again, other) = (said(11), said(11), said(12));
+fn the_same_seed_sends_the_same_bytes_and_another_one_does_not() {
+    let (once, again, other) = (sent_bytes(11), sent_bytes(11), sent_bytes(12));
     assert_eq!(
         once.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
         ["joint", "s1", "s2", "stage", "thermometer"]

@@ -6,7 +6,7 @@ use jointbench_devices::{Joint, MockBench, MockSettings, PortSettings, ScpiSetti
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_port_that_is_in_use_or_gone_says_so() {
+fn a_port_that_is_in_use_or_gone_is_reported() {
     let settings = MockSettings { transport: Transport::Terminal, ..MockSettings::new(Joint::JointA, 1) };
     let mock = MockBench::start(settings).unwrap();
     let Address::Serial(path) = mock.address(MockInstrument::Brake).unwrap() else { panic!("a terminal") };

@@ -53,17 +53,17 @@ fn upright_the_current_is_the_friction_of_its_direction() {
             let [velocity, current, at_rad] = hold(&mut bench, sign * speed_rad_s, 40.0 / speed_rad_s);
             assert!((velocity / speed_rad_s - sign).abs() < 0.02, "{velocity} at {speed_rad_s}");
             let weight_nm = hidden("gravity", "link_nm") * (at_rad / truth.gear_ratio).sin() / truth.gear_ratio;
-            let felt = current * truth.torque_constant_nm_per_a + weight_nm;
+            let measured_nm = current * truth.torque_constant_nm_per_a + weight_nm;
             let viscous_nm = truth.viscous_nm_s * (1.0 + sign * share) * speed_rad_s;
             let expected = sign * (truth.coulomb_nm + sign * offset + viscous_nm);
-            assert!((felt - expected).abs() < 3e-3, "{felt} Nm at {velocity} rad/s: expected {expected}");
+            assert!((measured_nm - expected).abs() < 3e-3, "{measured_nm} Nm at {velocity} rad/s: expected {expected}");
             hold(&mut bench, -sign * speed_rad_s, 15.0 / speed_rad_s);
         }
     }
 }
 
 #[test]
-fn it_goes_as_far_as_it_is_told_and_stays_there() {
+fn it_moves_to_the_commanded_position_and_stays_there() {
     let (_mock, mut bench) = start(Transport::Tcp, &["stribeck"]);
     hold(&mut bench, 25.0, 1.0);
     let [velocity, _, at_rad] = hold(&mut bench, 0.0, 1.0);
@@ -158,7 +158,7 @@ fn a_pulled_cable_is_named_and_another_unit_is_not_ours() {
 
 #[test]
 fn positions_from_before_a_power_cycle_are_never_mixed_with_those_after() {
-    let told = |fault: Fault| {
+    let check_power_fault = |fault: Fault| {
         assert!(matches!(fault.kind, FaultKind::Reported { .. }) && !fault.is_retryable(), "{fault}");
         assert!(fault.to_string().contains("its power was interrupted"), "{fault}");
     };
@@ -168,7 +168,7 @@ fn positions_from_before_a_power_cycle_are_never_mixed_with_those_after() {
     mock.trouble(MockInstrument::Joint, Trouble::PowerCycled);
     mock.trouble(MockInstrument::Joint, Trouble::None);
     wait(&bench, 1.0);
-    told(bench.joint.read().unwrap_err());
+    check_power_fault(bench.joint.read().unwrap_err());
     assert!(!bench.joint.health().unwrap().armed);
     assert!(bench.joint.read().unwrap().motor_position.0.abs() < 0.1, "counts from where it stands");
 
@@ -178,7 +178,7 @@ fn positions_from_before_a_power_cycle_are_never_mixed_with_those_after() {
     assert!(matches!(bench.joint.read().unwrap_err().kind, FaultKind::Silent { .. }));
     mock.trouble(MockInstrument::Joint, Trouble::None);
     wait(&bench, 1.0);
-    told(bench.joint.read().unwrap_err());
+    check_power_fault(bench.joint.read().unwrap_err());
     bench.joint.arm(RadPerSec(120.0), Amperes(5.0)).unwrap();
     assert!(bench.joint.health().unwrap().armed, "usable again");
 }

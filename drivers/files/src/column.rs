@@ -54,11 +54,11 @@ pub struct Found {
 }
 
 /// Cells that a note shows as examples.
-const TOLD: usize = 6;
+const EXAMPLES: usize = 6;
 
 impl Found {
     pub fn wrong(&mut self, row: usize, cell: &[u8]) {
-        if self.wrong.len() < TOLD {
+        if self.wrong.len() < EXAMPLES {
             self.wrong.push(Cell { row, text: text_of(cell) });
         }
         self.wrong_rows.push(row);
@@ -85,7 +85,7 @@ impl Found {
     fn append(&mut self, later: Found, rows: usize) {
         let moved = |cell: Cell| Cell { row: cell.row + rows, ..cell };
         self.wrong.extend(later.wrong.into_iter().map(moved));
-        self.wrong.truncate(TOLD);
+        self.wrong.truncate(EXAMPLES);
         self.wrong_rows.extend(later.wrong_rows.into_iter().map(|row| row + rows));
         self.missing += later.missing;
         self.first_missing = self.first_missing.take().or(later.first_missing.map(moved));

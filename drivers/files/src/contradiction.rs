@@ -58,10 +58,10 @@ pub fn idle_velocity(columns: &[Column], kind: Kind) -> Option<(usize, Note)> {
     let is_idle = columns[place].values.iter().all(|value| *value == 0.0);
     (is_idle && high - low > MOVES).then(|| {
         let moved = high - low;
-        let said = format!(
+        let message = format!(
             "{speed} stays at 0 in every row, while {angle} moves by {moved:.3} rad: the column is omitted, and the velocity is the slope of the position"
         );
-        (place, Note::with(said, format!("--leave {speed}")))
+        (place, Note::with(message, format!("--leave {speed}")))
     })
 }
 
@@ -89,13 +89,14 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
         return None;
     }
     if (mean / DEGREES - 1.0).abs() < SAME_LEAP {
-        let said = format!("{name} leaps by {mean:.1} {} times: perhaps it is in degrees within a turn", leaps.len());
-        return Some(Note::with(said, format!("--unit {name}=deg --unwrap {name}")));
+        let message =
+            format!("{name} leaps by {mean:.1} {} times: perhaps it is in degrees within a turn", leaps.len());
+        return Some(Note::with(message, format!("--unit {name}=deg --unwrap {name}")));
     }
     let period = if is_turn { String::new() } else { format!("={mean:.4}") };
-    let said =
+    let message =
         format!("{name} leaps by {mean:.3} rad {} times, as an angle that begins anew after a turn", leaps.len());
-    Some(Note::with(said, format!("--unwrap {name}{period}")))
+    Some(Note::with(message, format!("--unwrap {name}{period}")))
 }
 
 /// Degrees in a turn, and the tolerance at its ends.
@@ -109,8 +110,8 @@ fn in_degrees(run: &RunTable, name: &str) -> Option<Note> {
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let is_turn = |from: f64| (low - from).abs() < END_TOLERANCE && (high - from - DEGREES).abs() < END_TOLERANCE;
     [0.0, -DEGREES / 2.0].into_iter().any(is_turn).then(|| {
-        let said = format!("{name} ranges from {low:.1} to {high:.1} rad: perhaps it is in degrees");
-        Note::with(said, format!("--unit {name}=deg"))
+        let message = format!("{name} ranges from {low:.1} to {high:.1} rad: perhaps it is in degrees");
+        Note::with(message, format!("--unit {name}=deg"))
     })
 }
 
@@ -127,9 +128,9 @@ fn taken_power(run: &RunTable) -> Option<Note> {
     let work = |row: usize| 0.5 * (currents[row] + currents[row - 1]) * (angles[row] - angles[row - 1]);
     let (sum, both) = (1..angles.len()).map(work).fold((0.0, 0.0), |(sum, both), work| (sum + work, both + work.abs()));
     (sum < -TAKES * both).then(|| {
-        let said =
+        let message =
             "motor_current_a opposes nearly all motion, and a motor drives its joint: perhaps it has the other sign";
-        Note::with(said, "--scale motor_current_a=-1")
+        Note::with(message, "--scale motor_current_a=-1")
     })
 }
 
@@ -194,13 +195,13 @@ mod tests {
 
     #[test]
     fn a_unit_or_a_sign_is_proposed_from_the_slope() {
-        let told = |speed, angle: f64| proposals(&run(speed, |x| x * angle)).first().map(Note::to_string);
-        assert_eq!(told(1.0, 1.0), None);
-        assert!(told(9.5493, 1.0).unwrap().ends_with("perhaps it is in rpm (--unit motor_velocity_rad_s=rpm)"));
-        assert!(told(-1.0, 1.0).unwrap().ends_with("(--scale motor_velocity_rad_s=-1)"));
-        assert!(told(1.0, 57.29578).unwrap().ends_with("(--unit motor_position_rad=deg)"));
-        assert!(told(0.02, 1.0).unwrap().contains("other side of the gear"));
-        assert_eq!(told(1.5, 1.0), None, "no unit is like that");
+        let proposal = |speed, angle: f64| proposals(&run(speed, |x| x * angle)).first().map(Note::to_string);
+        assert_eq!(proposal(1.0, 1.0), None);
+        assert!(proposal(9.5493, 1.0).unwrap().ends_with("perhaps it is in rpm (--unit motor_velocity_rad_s=rpm)"));
+        assert!(proposal(-1.0, 1.0).unwrap().ends_with("(--scale motor_velocity_rad_s=-1)"));
+        assert!(proposal(1.0, 57.29578).unwrap().ends_with("(--unit motor_position_rad=deg)"));
+        assert!(proposal(0.02, 1.0).unwrap().contains("other side of the gear"));
+        assert_eq!(proposal(1.5, 1.0), None, "no unit is like that");
     }
 
     #[test]
@@ -219,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_velocity_that_stays_at_0_is_told() {
+    fn a_velocity_that_stays_at_0_is_reported() {
         let columns = |speed: f64, way: f64| {
             let values = |by: f64| (0..10).map(|row| by * f64::from(row)).collect();
             vec![Column::new("motor_position_rad", values(way)), Column::new("motor_velocity_rad_s", values(speed))]
@@ -228,7 +229,7 @@ mod tests {
         assert!(
             place == 1
                 && note
-                    .said
+                    .message
                     .contains("motor_velocity_rad_s stays at 0 in every row, while motor_position_rad moves by 9.000")
         );
         assert!(idle_velocity(&columns(1.0, 1.0), Kind::Friction).is_none());
@@ -246,15 +247,15 @@ mod tests {
             "{one}"
         );
         for angle in [&|x| 17.0 * x, &|x| 28.0 + 9.0 * x] as [&dyn Fn(f64) -> f64; 2] {
-            assert_eq!(proposal(angle).filter(|said| said.contains("degrees")), None);
+            assert_eq!(proposal(angle).filter(|message| message.contains("degrees")), None);
         }
     }
 
     #[test]
-    fn a_wrapped_angle_is_told_and_made_continuous() {
+    fn a_wrapped_angle_is_reported_and_made_continuous() {
         let wrapped = run(1.0, |x| x.rem_euclid(TAU));
-        let said = proposals(&wrapped)[0].to_string();
-        assert!(said.contains("leaps by 6.") && said.ends_with("(--unwrap motor_position_rad)"), "{said}");
+        let message = proposals(&wrapped)[0].to_string();
+        assert!(message.contains("leaps by 6.") && message.ends_with("(--unwrap motor_position_rad)"), "{message}");
         let mut values = wrapped.column("motor_position_rad").unwrap().to_vec();
         unwrap(&mut values, TAU);
         let whole = run(1.0, |x| x);

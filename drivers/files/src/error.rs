@@ -6,7 +6,7 @@ use jointbench_instrument::{Kind, TableFault};
 use std::{fmt, io};
 
 /// Number of wrong rows in a message, in addition to their total number.
-pub(crate) const TOLD_ROWS: usize = 5;
+pub(crate) const SHOWN_ROWS: usize = 5;
 
 /// Largest number of letters of a word for an empty cell.
 const CODE: usize = 12;
@@ -73,14 +73,14 @@ pub enum FileFault {
     #[error("numbers stand where the line of column names is expected; a {kind} run needs {}", kind.required_columns().join(", "))]
     NoNames { kind: Kind, options: Vec<String> },
     /// A question that the file does not answer, and the options that answer it.
-    #[error("{said}")]
-    Choice { said: String, options: Vec<String> },
+    #[error("{message}")]
+    Choice { message: String, options: Vec<String> },
     /// A time that does not rise, the probable cause, and the options that correct it.
-    #[error("{fault}; {said}")]
-    Time { fault: TableFault, said: String, options: Vec<String> },
+    #[error("{fault}; {message}")]
+    Time { fault: TableFault, message: String, options: Vec<String> },
     /// Columns that the file seems to contain under other names.
-    #[error("{fault}; {said}")]
-    Proposed { fault: TableFault, said: &'static str, options: Vec<String> },
+    #[error("{fault}; {message}")]
+    Proposed { fault: TableFault, message: &'static str, options: Vec<String> },
     #[error(
         "expected {expected} values as in the line of column names, found {found}{}",
         if found > expected { ": where numbers have commas, semicolons or tabs stand between the columns" } else { "" }

@@ -45,9 +45,9 @@ fn mistyped(json: &[u8]) -> Option<(String, FileFault)> {
     facts.into_iter().find_map(|(fact, value)| {
         let found = value.to_string();
         let alone = Map::from_iter([(fact.clone(), value)]);
-        let said = serde_json::from_value::<Meta>(Value::Object(alone)).err()?.to_string();
+        let message = serde_json::from_value::<Meta>(Value::Object(alone)).err()?.to_string();
         // The message about an unknown word suggests a known word.
-        let expected = match said.strip_prefix("invalid ")?.rsplit_once("expected ")?.1 {
+        let expected = match message.strip_prefix("invalid ")?.rsplit_once("expected ")?.1 {
             "f64" => "a number without quotes, such as 50".to_owned(),
             "u32" => "a whole number without quotes, such as 12".to_owned(),
             "a sequence" => "a list, such as [\"coulomb\", \"viscous\"]".to_owned(),

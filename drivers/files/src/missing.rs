@@ -35,10 +35,10 @@ impl RawTable {
         let text = if is_of_scpi(code) { format!("{code:e}") } else { code.to_string() };
         let verb = if count == 1 { "is" } else { "are" };
         let (count, rows) = (counted(count), plural(rows, "cell"));
-        let said = format!("{count} of {rows} {verb} {text}, far from all others: perhaps a code for an empty cell");
+        let message = format!("{count} of {rows} {verb} {text}, far from all others: perhaps a code for an empty cell");
         let options = vec![format!("--missing {text} --leave-empty-rows"), "--missing none".to_owned()];
         let place = Box::new(self.located(file, row));
-        Err(FileError { place, fault: FileFault::Choice { said, options } }.in_column(&column.name))
+        Err(FileError { place, fault: FileFault::Choice { message, options } }.in_column(&column.name))
     }
 }
 

@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_says_itself_what_it_is_is_taken() {
+    fn only_columns_with_a_full_name_are_taken() {
         let taken = |name: &str, kind| {
             let found = matches(&[Column::new(name, vec![1.0])], Some(kind), Motion::Rotary);
             found.first().map(|one| (one.column, one.unit.as_ref().map(|(_, unit)| unit.factor)))

@@ -6,34 +6,35 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Note {
     /// A clause without a full stop.
-    pub said: String,
+    #[serde(rename = "said")]
+    pub message: String,
     /// In command-line notation, such as `--leave remark`.
     pub option: Option<String>,
 }
 
 impl Note {
-    pub fn new(said: impl Into<String>) -> Self {
-        Self { said: said.into(), option: None }
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), option: None }
     }
 
-    pub fn with(said: impl Into<String>, option: impl Into<String>) -> Self {
-        Self { said: said.into(), option: Some(option.into()) }
+    pub fn with(message: impl Into<String>, option: impl Into<String>) -> Self {
+        Self { message: message.into(), option: Some(option.into()) }
     }
 }
 
 impl std::fmt::Display for Note {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match &self.option {
-            Some(option) => write!(f, "{} ({option})", self.said),
-            None => f.write_str(&self.said),
+            Some(option) => write!(f, "{} ({option})", self.message),
+            None => f.write_str(&self.message),
         }
     }
 }
 
 /// All notes in one paragraph; empty without notes.
 pub fn paragraph(notes: &[Note]) -> String {
-    let said: Vec<String> = notes.iter().map(Note::to_string).collect();
-    if said.is_empty() { String::new() } else { format!("{}.", said.join("; ")) }
+    let messages: Vec<String> = notes.iter().map(Note::to_string).collect();
+    if messages.is_empty() { String::new() } else { format!("{}.", messages.join("; ")) }
 }
 
 /// 34442 → 34,442.

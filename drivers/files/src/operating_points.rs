@@ -25,8 +25,8 @@ pub fn may_be(table: &RawTable, kind: Kind, guessed: &[Proposal]) -> bool {
 /// Both only have a meaning as the order of the rows.
 pub fn settle(table: &mut RawTable, meta: &mut Meta, guessed: &[Proposal]) -> Result<(), FileFault> {
     if meta.kind == Some(Kind::Friction) && table.place(ANGLE).is_some() {
-        let said = format!("the table has {ANGLE}: it is the record of a motion and no table of conditions");
-        return Err(FileFault::Choice { said, options: vec!["the file without --operating-points".into()] });
+        let message = format!("the table has {ANGLE}: it is the record of a motion and no table of conditions");
+        return Err(FileFault::Choice { message, options: vec!["the file without --operating-points".into()] });
     }
     if meta.kind == Some(Kind::Friction) && table.place(SPEED).is_none() {
         return Err(without_speed(table, guessed));
@@ -51,8 +51,8 @@ pub fn settle(table: &mut RawTable, meta: &mut Meta, guessed: &[Proposal]) -> Re
         table.columns.insert(1, Column::new(ANGLE, values));
         counted = "time_s counts the rows, and motor_position_rad adds up their speeds";
     }
-    let said = format!("each row is one steady operating point: {counted}");
-    table.notes.push(Note::with(said, "--operating-points"));
+    let message = format!("each row is one steady operating point: {counted}");
+    table.notes.push(Note::with(message, "--operating-points"));
     Ok(())
 }
 
@@ -62,9 +62,9 @@ fn without_speed(table: &RawTable, guessed: &[Proposal]) -> FileFault {
     if guessed.iter().any(|one| one.column == SPEED) {
         let fault = TableFault::MissingColumn { kind: Kind::Friction, column: SPEED, found: table.names() };
         let options = guessed.iter().filter(of_points).map(Proposal::option).collect();
-        return FileFault::Proposed { fault, said: "the file seems to hold it", options };
+        return FileFault::Proposed { fault, message: "the file seems to hold it", options };
     }
-    let said = format!("a table of conditions needs {SPEED}, and the file has {}", table.names().join(", "));
+    let message = format!("a table of conditions needs {SPEED}, and the file has {}", table.names().join(", "));
     let option = |unit: &str| format!("--map {SPEED}=NAME --unit {SPEED}={unit}");
-    FileFault::Choice { said, options: vec![option("rad/s"), option("rpm")] }
+    FileFault::Choice { message, options: vec![option("rad/s"), option("rpm")] }
 }

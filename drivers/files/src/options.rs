@@ -298,15 +298,16 @@ mod tests {
             (options.names, options.time),
             (vec!["time_s".to_owned(), "x".into()], TimeFrom::RateInstead(200.0))
         );
-        let said = |choices: Choices| choices.options().unwrap_err().to_string();
-        let unit = |text: &str| said(Choices { unit: vec![text.into()], ..Choices::default() });
+        let message = |choices: Choices| choices.options().unwrap_err().to_string();
+        let unit = |text: &str| message(Choices { unit: vec![text.into()], ..Choices::default() });
         assert!(unit("motor_position_rad=rpm").contains("expected COLUMN=UNIT"), "of another dimension");
         assert!(unit("motor_position_rad").contains("expected COLUMN=UNIT"));
-        assert!(said(Choices { rate: Some(-1.0), ..Choices::default() }).contains("-1 is no rate"));
-        assert!(said(Choices { spread_time: true, rate: Some(1.0), ..Choices::default() }).contains("choose one"));
+        assert!(message(Choices { rate: Some(-1.0), ..Choices::default() }).contains("-1 is no rate"));
+        assert!(message(Choices { spread_time: true, rate: Some(1.0), ..Choices::default() }).contains("choose one"));
         assert!(
-            said(Choices { operating_points: true, split_runs: true, ..Choices::default() }).contains("--split-runs")
+            message(Choices { operating_points: true, split_runs: true, ..Choices::default() })
+                .contains("--split-runs")
         );
-        assert!(said(Choices { decimal: vec!["dot".into()], ..Choices::default() }).contains("point or comma"));
+        assert!(message(Choices { decimal: vec!["dot".into()], ..Choices::default() }).contains("point or comma"));
     }
 }

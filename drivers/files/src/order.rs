@@ -139,22 +139,22 @@ pub fn noticed(values: &[f64], starts: &[usize]) -> Vec<Note> {
     }
     let gaps = steps().filter(|(_, step)| *step > GAP * usual).count();
     if let Some((row, longest)) = steps().max_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| gaps > 0) {
-        let said = format!(
+        let message = format!(
             "the time has {}, the longest of {} after {:.3} s",
             plural(gaps, "gap"),
             seconds(longest),
             values[row - 1]
         );
-        notes.push(Note::new(said));
+        notes.push(Note::new(message));
     }
     let uneven = steps().filter(|(_, step)| (step / usual - 1.0).abs() > JITTER).count();
     if uneven - gaps > values.len() / 20 {
-        let said = format!(
+        let message = format!(
             "the time is uneven: {} come more or less than {} after the one before",
             plural(uneven - gaps, "row"),
             seconds(usual)
         );
-        notes.push(Note::new(said));
+        notes.push(Note::new(message));
     }
     notes
 }
@@ -193,8 +193,8 @@ mod tests {
     #[test]
     fn gaps_are_noticed() {
         let values: Vec<f64> = (0..100).map(|row| f64::from(row) * 0.01 + if row > 50 { 2.0 } else { 0.0 }).collect();
-        let said = noticed(&values, &[])[0].to_string();
-        assert_eq!(said, "the time has 1 gap, the longest of 2.01 s after 0.500 s");
+        let message = noticed(&values, &[])[0].to_string();
+        assert_eq!(message, "the time has 1 gap, the longest of 2.01 s after 0.500 s");
         assert!(noticed(&values[..40], &[]).is_empty());
     }
 }

@@ -42,7 +42,8 @@ pub struct PreviewColumn {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PreviewFault {
-    pub said: String,
+    #[serde(rename = "said")]
+    pub message: String,
     /// Line of a text, row of a columnar file.
     pub line: Option<u64>,
     pub column: Option<String>,
@@ -53,7 +54,7 @@ pub struct PreviewFault {
 impl From<&FileError> for PreviewFault {
     fn from(error: &FileError) -> Self {
         PreviewFault {
-            said: error.cause(),
+            message: error.cause(),
             line: error.place.line.or(error.place.row),
             column: error.column().map(str::to_owned),
             options: error.options(),

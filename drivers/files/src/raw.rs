@@ -73,8 +73,8 @@ impl RawTable {
         match &self.proposed_names {
             None => self.leave_index(),
             Some(proposed) if self.columns.iter().any(|column| column.name.is_empty()) => {
-                let said = "no line names the columns: they are called column_1, column_2 and so on";
-                self.notes.push(Note::with(said, format!("--names {proposed}")));
+                let message = "no line names the columns: they are called column_1, column_2 and so on";
+                self.notes.push(Note::with(message, format!("--names {proposed}")));
             }
             Some(_) => {}
         }
@@ -84,19 +84,19 @@ impl RawTable {
             if column.name.is_empty() {
                 column.name = format!("column_{}", place + 1);
                 if !is_nameless {
-                    let said = format!("column {} has no name and is called {}", place + 1, column.name);
-                    self.notes.push(Note::new(said));
+                    let message = format!("column {} has no name and is called {}", place + 1, column.name);
+                    self.notes.push(Note::new(message));
                 }
             }
             if taken.contains(&column.name) {
                 let twice = column.name.clone();
                 let more = (2..).map(|number| format!("{twice}_{number}")).find(|name| !taken.contains(name));
                 column.name = more.unwrap_or_default();
-                let said = format!(
+                let message = format!(
                     "{twice} stands twice among the names: the first is taken, the other is called {}",
                     column.name
                 );
-                self.notes.push(Note::new(said));
+                self.notes.push(Note::new(message));
             }
             column.source.clone_from(&column.name);
             taken.push(column.name.clone());
@@ -221,11 +221,11 @@ impl RawTable {
             column: None,
             fault: FileFault::Width { expected: names, found: odd.cells },
         };
-        let mut told: Vec<Wrong> = self.odd.iter().take(crate::error::TOLD_ROWS).map(width).collect();
+        let mut shown: Vec<Wrong> = self.odd.iter().take(crate::error::SHOWN_ROWS).map(width).collect();
         let line = |row: usize| if self.is_text { self.lines.of(row).unwrap_or_default() } else { row as u64 + 1 };
         for column in self.columns.iter().filter(|column| is_needed(&column.name)) {
             let missing = column.found.first_missing.iter().filter(|_| !leave_empty);
-            told.extend(column.found.wrong.iter().chain(missing).map(|cell| Wrong {
+            shown.extend(column.found.wrong.iter().chain(missing).map(|cell| Wrong {
                 line: line(cell.row),
                 column: Some(column.name.clone()),
                 fault: FileFault::NotNumber { found: cell.text.clone() },
@@ -239,12 +239,12 @@ impl RawTable {
         rows.sort_unstable();
         rows.dedup();
         // Only the first fault of each row is reported.
-        told.sort_by_key(|wrong| wrong.line);
-        told.dedup_by_key(|wrong| wrong.line);
-        told.truncate(crate::error::TOLD_ROWS);
+        shown.sort_by_key(|wrong| wrong.line);
+        shown.dedup_by_key(|wrong| wrong.line);
+        shown.truncate(crate::error::SHOWN_ROWS);
         match rows.len() {
             0 => Ok(()),
-            count => Err(FileError::of_rows(file, told, count, self.gaps(is_needed), self.is_text)),
+            count => Err(FileError::of_rows(file, shown, count, self.gaps(is_needed), self.is_text)),
         }
     }
 }

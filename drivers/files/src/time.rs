@@ -49,8 +49,8 @@ pub(crate) fn settle(
         (TimeFrom::RateInstead(hz), _, _) => from_rate(table, hz, "--time-from-rate"),
         (TimeFrom::Rate(hz), None, _) => from_rate(table, hz, "--rate"),
         (TimeFrom::Rate(hz), Some(_), _) => {
-            let said = "the table has a time of its own".to_owned();
-            return Err(in_file(FileFault::Choice { said, options: vec![format!("--time-from-rate {hz}")] }));
+            let message = "the table has a time of its own".to_owned();
+            return Err(in_file(FileFault::Choice { message, options: vec![format!("--time-from-rate {hz}")] }));
         }
         (TimeFrom::Column, None, Some(hz)) => from_rate(table, hz, "sample_rate_hz of the facts"),
         (TimeFrom::Column | TimeFrom::Spread, None, _) => return Ok(Vec::new()),
@@ -103,8 +103,8 @@ fn to_seconds(column: &mut Column, meta: &Meta) -> Result<Option<Note>, FileFaul
         // Seconds since 1970 are only valid as dates before 2100.
         (None, is_open) if is_open || values.first().is_some_and(|first| *first > EPOCH_S.end) => {
             let (name, why) = open_unit(values, meta.sample_rate_hz)?;
-            let said = format!("{TIME} has no unit and was taken as {name}, {why}");
-            (Unit::parse(name).unwrap_or(Unit::SI), Some(Note::with(said, format!("--unit {TIME}=UNIT"))))
+            let message = format!("{TIME} has no unit and was taken as {name}, {why}");
+            (Unit::parse(name).unwrap_or(Unit::SI), Some(Note::with(message, format!("--unit {TIME}=UNIT"))))
         }
         (None, _) => (Unit::SI, None),
     };
@@ -171,11 +171,21 @@ fn open_unit(values: &[f64], rate_hz: Option<f64>) -> Result<(&'static str, Stri
     let mut likely: Vec<&(&str, f64)> = likely.collect();
     likely.sort_by_key(|(_, factor)| !STEPS_S.contains(&(step * factor)));
     let makes = |(name, factor): &&(&str, f64)| format!("{} with {name}", at(*factor));
-    let said = format!(
-        "the time has no unit, and its rows are {step:.4} apart: rows a second would be {}",
+    let message = format!(
+        "the time has no unit, and its rows are {} apart: rows a second would be {}",
+        rounded(step),
         likely.iter().map(makes).collect::<Vec<String>>().join(", ")
     );
-    Err(FileFault::Choice { said, options: likely.iter().map(|(name, _)| format!("--unit {TIME}={name}")).collect() })
+    Err(FileFault::Choice {
+        message,
+        options: likely.iter().map(|(name, _)| format!("--unit {TIME}={name}")).collect(),
+    })
+}
+
+/// Rounds to four decimals, or to four digits if the value is smaller than that. Prints without trailing zeros.
+fn rounded(value: f64) -> f64 {
+    let scale = 10_f64.powf((3.0 - value.abs().log10().floor()).clamp(4.0, 12.0));
+    (value * scale).round() / scale
 }
 
 fn from_rate(table: &mut RawTable, hz: f64, whence: &str) {
@@ -199,8 +209,8 @@ fn refuse_overflow(table: &RawTable, place: usize, file: &str) -> Result<(), Fil
     let is_of = |period: &f64| back.iter().all(|row| LOST.contains(&((values[row - 1] - values[*row]) / period)));
     let period = [1e-3, 1e-6, 1e-9].map(|tick_s| tick_s * OVERFLOW).into_iter().find(is_of);
     let (Some(period), Some(row)) = (period, back.first()) else { return Ok(()) };
-    let said = "the time begins anew as a counter of 32 bits does that overflows".to_owned();
-    let fault = FileFault::Choice { said, options: vec![format!("--unwrap {TIME}={period}")] };
+    let message = "the time begins anew as a counter of 32 bits does that overflows".to_owned();
+    let fault = FileFault::Choice { message, options: vec![format!("--unwrap {TIME}={period}")] };
     Err(FileError { place: Box::new(table.located(file, *row)), fault }.in_column(TIME))
 }
 
@@ -208,20 +218,20 @@ fn refuse_overflow(table: &RawTable, place: usize, file: &str) -> Result<(), Fil
 fn spread(table: &mut RawTable, order: &Order) {
     let Some(place) = table.place(TIME) else { return };
     order::spread(&mut table.columns[place].values);
-    let said = format!(
+    let message = format!(
         "{} of {} repeat a time stamp and were spread up to the next",
         counted(order.repeats),
         plural(table.rows, "row")
     );
-    table.notes.push(Note::with(said, "--spread-time"));
+    table.notes.push(Note::with(message, "--spread-time"));
 }
 
 fn several(table: &RawTable, starts: &[usize], file: &str) -> FileError {
     let count = starts.len() + 1;
-    let said = format!("the time begins again: the file holds {count} recordings");
+    let message = format!("the time begins again: the file holds {count} recordings");
     let place = table.located(file, starts[0]);
     let options = vec!["--split-runs".to_owned()];
-    FileError { place: Box::new(place), fault: FileFault::Choice { said, options } }.in_column(TIME)
+    FileError { place: Box::new(place), fault: FileFault::Choice { message, options } }.in_column(TIME)
 }
 
 /// The first row that is not later than the row before, the probable cause, and the remedy.
@@ -231,7 +241,7 @@ fn out_of_order(table: &RawTable, values: &[f64], starts: &[usize], file: &str) 
     let fault = TableFault::TimeNotRising { row, before: values[row - 1], after: values[row] };
     let order = Order::of(values);
     let rate = order::rate_hz(values, starts);
-    let (said, options) = match order.back.iter().filter(|row| !is_start(row)).count() {
+    let (message, options) = match order.back.iter().filter(|row| !is_start(row)).count() {
         0 => {
             let (rows, repeats) = (plural(values.len(), "row"), counted(order.repeats));
             let verb = if order.repeats == 1 { "repeats" } else { "repeat" };
@@ -256,5 +266,5 @@ fn out_of_order(table: &RawTable, values: &[f64], starts: &[usize], file: &str) 
         }
     };
     let place = table.located(file, row);
-    Some(FileError { place: Box::new(place), fault: FileFault::Time { fault, said, options } })
+    Some(FileError { place: Box::new(place), fault: FileFault::Time { fault, message, options } })
 }

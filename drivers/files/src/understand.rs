@@ -112,7 +112,7 @@ impl RawTable {
             };
             let value =
                 |decimal| crate::text::number(cell.text.as_bytes(), decimal).map_or(f64::NAN, |(value, _)| value);
-            let said = format!(
+            let message = format!(
                 "“{}” is {} where the {sign} stands before decimals, and {} where it parts thousands",
                 cell.text.trim(),
                 value(decimals),
@@ -122,7 +122,7 @@ impl RawTable {
                 |decimal: Decimal| format!("--decimal {}", shell(&format!("{}={}", column.source, decimal.word())));
             let options = vec![option(decimals), option(thousands)];
             let place = self.located(file, cell.row);
-            return Err(FileError { place: Box::new(place), fault: FileFault::Choice { said, options } }
+            return Err(FileError { place: Box::new(place), fault: FileFault::Choice { message, options } }
                 .in_column(&column.name));
         }
         Ok(())
@@ -192,14 +192,14 @@ impl RawTable {
     fn settle_units(&mut self, options: &ReadOptions, motion: Motion) -> Result<(), FileFault> {
         for column in self.columns.iter_mut().filter(|column| column.name != "time_s") {
             let (name, Some(text)) = (column.name.clone(), column.unit.clone()) else { continue };
-            let is_said =
+            let is_stated =
                 options.unit.iter().any(|(of, _)| *of == name) || options.scale.iter().any(|(of, _)| *of == name);
-            let Some(dimension) = dimension_of(&name).filter(|_| !is_said) else { continue };
+            let Some(dimension) = dimension_of(&name).filter(|_| !is_stated) else { continue };
             let si = jointbench_instrument::units::unit_of(&name).unwrap_or_default();
             let option = |unit: &str| format!("--unit {}", shell(&format!("{name}={unit}")));
             let asked = |units: &[&str]| {
-                let said = format!("the file says {text} for column {name}");
-                Err(FileFault::Choice { said, options: units.iter().map(|unit| option(unit)).collect() })
+                let message = format!("the file says {text} for column {name}");
+                Err(FileFault::Choice { message, options: units.iter().map(|unit| option(unit)).collect() })
             };
             let is_renamed = column.source != name && options.map.iter().any(|(of, _)| *of == name);
             let unit = Unit::parse(&text);
@@ -213,14 +213,14 @@ impl RawTable {
                     false => continue,
                 }
             }
-            let said = match unit {
+            let message = match unit {
                 Some(unit) if fits || (unit.is_linear() && motion == Motion::Linear) => {
                     column.values.iter_mut().for_each(|value| *value = unit.to_si(*value));
                     format!("{name} is {}, converted from {text}", column.source)
                 }
                 Some(unit) if unit.is_linear() => {
-                    let said = format!("the file says {text} for column {name}, a unit of a linear axis");
-                    return Err(FileFault::Choice { said, options: vec![LINEAR.to_owned()] });
+                    let message = format!("the file says {text} for column {name}, a unit of a linear axis");
+                    return Err(FileFault::Choice { message, options: vec![LINEAR.to_owned()] });
                 }
                 Some(_) => return asked(&[si]),
                 None => match counts_of(&text, &name) {
@@ -228,7 +228,7 @@ impl RawTable {
                     None => format!("{name} is {}, read as {si}", column.source),
                 },
             };
-            self.notes.push(Note::with(said, format!("--unit {name}=UNIT")));
+            self.notes.push(Note::with(message, format!("--unit {name}=UNIT")));
             column.unit = None;
         }
         Ok(())
@@ -241,8 +241,8 @@ impl RawTable {
         };
         for (wanted, unit) in &options.unit {
             if unit.is_linear() && motion != Motion::Linear {
-                let said = format!("{wanted} has a unit of a linear axis, and the meta file states a rotary one");
-                return Err(FileFault::Choice { said, options: vec![LINEAR.to_owned()] });
+                let message = format!("{wanted} has a unit of a linear axis, and the meta file states a rotary one");
+                return Err(FileFault::Choice { message, options: vec![LINEAR.to_owned()] });
             }
             let place = place(self, wanted)?;
             let column = &mut self.columns[place];
@@ -300,12 +300,12 @@ impl Understood {
         };
         let is_missing = |name: &&&str| self.trace.column(name).is_none();
         let missing: Vec<&str> = kind.required_columns().iter().filter(is_missing).copied().collect();
-        let said = match missing[..] {
+        let message = match missing[..] {
             [] => return None,
             _ => format!("no {kind} model fits the table yet: it lacks {}", missing.join(", ")),
         };
         let options: Vec<String> = self.guessed.iter().map(guess::Proposal::option).collect();
-        Some(if options.is_empty() { Note::new(said) } else { Note::with(said, options.join(" ")) })
+        Some(if options.is_empty() { Note::new(message) } else { Note::with(message, options.join(" ")) })
     }
 
     /// The checked run, and the notes.
@@ -319,13 +319,13 @@ impl Understood {
         };
         let run = match starts.is_empty() {
             true => RunTable::new(meta.clone(), trace).map_err(refused)?,
-            false => joined(&meta, &trace, &starts).map_err(|said| {
-                FileFault::Choice { said, options: vec!["the file without --split-runs".into()] }.in_file(&file)
+            false => joined(&meta, &trace, &starts).map_err(|message| {
+                FileFault::Choice { message, options: vec!["the file without --split-runs".into()] }.in_file(&file)
             })?,
         };
         if !starts.is_empty() {
-            let said = format!("the file holds {} recordings, numbered in column run", starts.len() + 1);
-            notes.push(Note::with(said, "--split-runs"));
+            let message = format!("the file holds {} recordings, numbered in column run", starts.len() + 1);
+            notes.push(Note::with(message, "--split-runs"));
         }
         if !meta.operating_points {
             notes.extend(contradiction::proposals(&run));
@@ -365,16 +365,16 @@ fn refusal(fault: TableFault, file: &str, table: &RawTable, guessed: &[guess::Pr
         }
         TableFault::MissingColumn { column, .. } if guessed.iter().any(|one| one.column == *column) => {
             let options = guessed.iter().map(guess::Proposal::option).collect();
-            FileFault::Proposed { fault, said: "the file seems to hold it", options }
+            FileFault::Proposed { fault, message: "the file seems to hold it", options }
         }
         TableFault::MissingColumn { kind, column: "time_s", .. } if operating_points::may_be(table, *kind, guessed) => {
             let maps = guessed.iter().map(guess::Proposal::option);
             let options = std::iter::once("--operating-points".to_owned()).chain(maps).collect();
-            FileFault::Proposed { fault, said: "each row may be the mean of one steady operating point", options }
+            FileFault::Proposed { fault, message: "each row may be the mean of one steady operating point", options }
         }
         TableFault::MissingColumn { column: "time_s", .. } => {
             let options = vec!["--rate HZ".to_owned()];
-            FileFault::Proposed { fault, said: "a table without a time has one by its rate", options }
+            FileFault::Proposed { fault, message: "a table without a time has one by its rate", options }
         }
         _ => FileFault::Table(fault),
     };

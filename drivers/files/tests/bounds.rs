@@ -38,25 +38,25 @@ fn gzipped(text: &[u8]) -> Vec<u8> {
 #[test]
 fn a_csv_has_bounds() {
     read_bytes("run.csv", rows(100).as_bytes(), &options(SMALL)).unwrap();
-    let said = refused("run.csv", rows(101).as_bytes());
-    assert!(said.contains("line 102") && said.contains("more than 100 rows: split the file"), "{said}");
-    let said = refused("run.csv", b"a,b,c,d,e\n1,2,3,4,5\n");
-    assert!(said.contains("5 columns: at most 4 are read"), "{said}");
-    let said = refused("run.csv", format!("time_s,{}\n0,0\n", "x".repeat(40)).as_bytes());
-    assert!(said.contains("“xxxxxxxxxxxxxxxxxxxx…” has 40 bytes: at most 32"), "{said}");
-    let said = refused("run.csv", format!("{HEAD}0,\"{}\",1\n", "9".repeat(70)).as_bytes());
-    assert!(said.contains("line 2, column motor_position_rad: a cell of 70 bytes"), "{said}");
+    let message = refused("run.csv", rows(101).as_bytes());
+    assert!(message.contains("line 102") && message.contains("more than 100 rows: split the file"), "{message}");
+    let message = refused("run.csv", b"a,b,c,d,e\n1,2,3,4,5\n");
+    assert!(message.contains("5 columns: at most 4 are read"), "{message}");
+    let message = refused("run.csv", format!("time_s,{}\n0,0\n", "x".repeat(40)).as_bytes());
+    assert!(message.contains("“xxxxxxxxxxxxxxxxxxxx…” has 40 bytes: at most 32"), "{message}");
+    let message = refused("run.csv", format!("{HEAD}0,\"{}\",1\n", "9".repeat(70)).as_bytes());
+    assert!(message.contains("line 2, column motor_position_rad: a cell of 70 bytes"), "{message}");
 }
 
 #[test]
 fn what_is_packed_is_not_unpacked_without_end() {
     read_bytes("run.csv.gz", &gzipped(rows(9).as_bytes()), &options(SMALL)).unwrap();
-    let said = refused("run.csv.gz", &gzipped(&vec![b'0'; 20 << 20]));
-    assert!(said.contains("it unpacks to more than 1 MiB: split the file, leave columns out"), "{said}");
+    let message = refused("run.csv.gz", &gzipped(&vec![b'0'; 20 << 20]));
+    assert!(message.contains("it unpacks to more than 1 MiB: split the file, leave columns out"), "{message}");
     // Within the absolute bound of an upload, but a useless table.
     let bomb = gzipped(&vec![b'0'; 257 << 20]);
-    let said = read_bytes("run.csv.gz", &bomb, &options(Bounds::UPLOADED)).unwrap_err().to_string();
-    assert!(said.contains("more than 200 times its size"), "{said}");
+    let message = read_bytes("run.csv.gz", &bomb, &options(Bounds::UPLOADED)).unwrap_err().to_string();
+    assert!(message.contains("more than 200 times its size"), "{message}");
 }
 
 #[test]
@@ -70,10 +70,10 @@ fn a_parquet_file_has_bounds() {
         bytes
     };
     read_bytes("run.parquet", &run(100, 3), &options(SMALL)).unwrap();
-    let said = refused("run.parquet", &run(101, 3));
-    assert!(said.contains("more than 100 rows"), "{said}");
-    let said = refused("run.parquet", &run(9, 5));
-    assert!(said.contains("5 columns: at most 4"), "{said}");
+    let message = refused("run.parquet", &run(101, 3));
+    assert!(message.contains("more than 100 rows"), "{message}");
+    let message = refused("run.parquet", &run(9, 5));
+    assert!(message.contains("5 columns: at most 4"), "{message}");
 }
 
 fn arrow(columns: Vec<(&str, ArrayRef)>, compression: Option<CompressionType>) -> Vec<u8> {
@@ -103,8 +103,8 @@ fn an_arrow_file_has_bounds() {
     for compression in [None, Some(CompressionType::LZ4_FRAME), Some(CompressionType::ZSTD)] {
         let table = read_bytes("run.arrow", &run(100, compression), &options(SMALL)).unwrap();
         assert_eq!(table.column("motor_current_a").unwrap()[99], 99.0);
-        let said = refused("run.arrow", &run(101, compression));
-        assert!(said.contains("more than 100 rows"), "{said}");
+        let message = refused("run.arrow", &run(101, compression));
+        assert!(message.contains("more than 100 rows"), "{message}");
     }
     let wide = ["a", "b", "c", "d", "e"].map(|name| (name, numbers(3))).to_vec();
     assert!(refused("run.arrow", &arrow(wide, None)).contains("5 columns"));
@@ -112,15 +112,15 @@ fn an_arrow_file_has_bounds() {
 
 /// The stated unpacked length of a buffer may have any value.
 #[test]
-fn an_arrow_file_that_says_it_is_huge_is_not_believed() {
+fn an_arrow_file_with_a_false_size_is_rejected() {
     let file = run(90, Some(CompressionType::ZSTD));
     let length = (90_u64 * 8).to_le_bytes();
     let at = file.windows(8).position(|bytes| bytes == length).unwrap();
     for (claimed, why) in [(1_i64 << 40, "it unpacks to more than 1 MiB"), (-2, "does not fit the file")] {
         let mut lies = file.clone();
         lies[at..at + 8].copy_from_slice(&claimed.to_le_bytes());
-        let said = refused("run.arrow", &lies);
-        assert!(said.contains(why), "{claimed}: {said}");
+        let message = refused("run.arrow", &lies);
+        assert!(message.contains(why), "{claimed}: {message}");
     }
 }
 
@@ -136,7 +136,7 @@ fn words_are_left_before_they_are_unpacked() {
         let table = read_bytes("run.arrow", &file, &options(SMALL)).unwrap();
         assert_eq!((table.len(), table.column("remark")), (9, None), "nobody needs it");
         let needed = ReadOptions { map: vec![("temperature_c".into(), "remark".into())], ..options(SMALL) };
-        let said = read_bytes("run.arrow", &file, &needed).unwrap_err().to_string();
-        assert!(said.contains("column temperature_c: expected numbers") && said.contains(found), "{said}");
+        let message = read_bytes("run.arrow", &file, &needed).unwrap_err().to_string();
+        assert!(message.contains("column temperature_c: expected numbers") && message.contains(found), "{message}");
     }
 }

@@ -76,12 +76,12 @@ fn text_is_refused_where_it_is_wrong() {
 }
 
 #[test]
-fn wrong_rows_are_counted_and_the_first_of_them_told() {
+fn wrong_rows_are_counted_and_the_first_of_them_shown() {
     let rows: Vec<String> = (0..9).map(|i| format!("{i},x,2")).collect();
     let refused = take("run.csv", format!("{NAMES}\n0,1\n{}\n9,1,2\n", rows.join("\n")).as_bytes()).unwrap_err();
     assert_eq!((refused.place.line, refused.place.column.as_deref()), (Some(2), None));
-    let told = |line| format!("; line {line}, column motor_position_rad: expected a number, found “x”");
-    let more: Vec<String> = (3..7).map(told).collect();
+    let expected = |line| format!("; line {line}, column motor_position_rad: expected a number, found “x”");
+    let more: Vec<String> = (3..7).map(expected).collect();
     assert_eq!(
         refused.to_string(),
         format!(
@@ -195,8 +195,8 @@ fn other_files_and_facts_are_refused() {
 
     let facts = parse_meta("meta.json", b"{\"kind\": \"friction\",\n \"gear_ratio\": \"fifty\"}").unwrap_err();
     assert_eq!(facts.place.line, Some(2));
-    let said = "meta.json, line 2: gear_ratio is \"fifty\": expected a number without quotes, such as 50";
-    assert_eq!(facts.to_string(), said);
+    let message = "meta.json, line 2: gear_ratio is \"fifty\": expected a number without quotes, such as 50";
+    assert_eq!(facts.to_string(), message);
     let facts = |text: &str| parse_meta("meta.json", text.as_bytes()).unwrap_err().to_string();
     assert!(facts("{\"poles\": 1.5}").contains("poles is 1.5: expected a whole number without quotes"));
     assert!(facts("{\"baseline\": \"coulomb\"}").contains("baseline is \"coulomb\": expected a list, such as"));
@@ -308,8 +308,8 @@ fn a_unit_of_another_quantity_or_of_a_sliding_axis_is_refused() {
     let text = "time_s,theta_m,Iq [V]\n0,0,0.5\n1,1,0.5\n";
     let map = ["motor_position_rad=theta_m", "motor_current_a=Iq [V]"];
     assert!(mapped(text, &map, &[]).unwrap_err().contains("the file says V for column motor_current_a"));
-    let said = mapped(text, &map, &["motor_current_a=A", "motor_position_rad=m"]).unwrap_err();
-    assert!(said.contains("linear axis") && said.contains("\"motion\": \"linear\""), "{said}");
+    let message = mapped(text, &map, &["motor_current_a=A", "motor_position_rad=m"]).unwrap_err();
+    assert!(message.contains("linear axis") && message.contains("\"motion\": \"linear\""), "{message}");
     let run = mapped(text, &map, &["motor_current_a=A"]).unwrap();
     assert_eq!(run.column("motor_position_rad"), Some(&[0.0, 1.0][..]), "the m of theta_m is the motor");
 }

@@ -89,7 +89,8 @@ impl Bench {
         let counters = [&mut self.reference_encoder, &mut self.test_encoder];
         instruments.extend(counters.into_iter().flatten().map(|counter| -> &mut dyn Instrument { counter.as_mut() }));
         instruments.extend(self.stage.as_mut().map(|stage| -> &mut dyn Instrument { stage.as_mut() }));
-        instruments.extend(self.thermometer.as_mut().map(|felt| -> &mut dyn Instrument { felt.as_mut() }));
+        instruments
+            .extend(self.thermometer.as_mut().map(|thermometer| -> &mut dyn Instrument { thermometer.as_mut() }));
         instruments
     }
 }

@@ -242,13 +242,13 @@ mod tests {
 
     #[test]
     fn what_does_not_belong_together_is_refused_in_words() {
-        for (change, said) in [
+        for (change, message) in [
             ((|m| m.gear_ratio = Some(100.0)) as fn(&mut Meta), "(gear_ratio = 100, first run 50)"),
             (|m| m.motion = crate::Motion::Linear, "(motion = linear,"),
         ] {
             let (first, second) = two(change);
             let fault = first.join(vec![second]).unwrap_err().to_string();
-            assert!(fault.contains(said), "{fault}");
+            assert!(fault.contains(message), "{fault}");
         }
         let (first, second) = two(|_| {});
         let copied = first.clone().join(vec![second.clone(), second]).unwrap_err();

@@ -195,7 +195,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fact_that_is_nearly_known_is_told_from_one_of_the_users_own() {
+    fn a_misspelt_fact_is_distinguished_from_a_fact_of_the_user() {
         let misspelt = |text: &str| {
             let meta: Meta = serde_json::from_str(text).unwrap();
             meta.misspelt().map(|(found, meant)| (found.to_owned(), meant))

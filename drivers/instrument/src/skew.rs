@@ -21,18 +21,23 @@ pub const TORQUE_SKEW: &str = "torque_skew_s";
 /// held.
 pub const BRAKE_SKEW: &str = "brake_current_skew_s";
 /// Time of the thermometer reading relative to the row. The thermometer is read least often.
-pub const WARMTH_SKEW: &str = "thermometer_skew_s";
+pub const THERMOMETER_SKEW: &str = "thermometer_skew_s";
 /// Times are stored in whole microseconds; times that differ by less than this are equal.
 const HELD_S: f64 = 3e-6;
 
 /// The skew columns and the columns that each applies to. A thermometer's first channel may be the joint's temperature.
 pub fn skewed(trace: &Trace) -> [(&'static str, Vec<String>); 3] {
-    let stands_in = trace.column("thermometer_1_c").is_none();
-    let is_warmth = |name: &str| name.starts_with("thermometer_") && name.ends_with("_c");
-    let warmth = trace.channels().iter().map(|channel| &channel.name);
-    let warmth = warmth.filter(|name| is_warmth(name) || stands_in && *name == "temperature_c").cloned();
+    let replaces_joint = trace.column("thermometer_1_c").is_none();
+    let is_thermometer = |name: &str| name.starts_with("thermometer_") && name.ends_with("_c");
+    let thermometers = trace.channels().iter().map(|channel| &channel.name);
+    let thermometers =
+        thermometers.filter(|name| is_thermometer(name) || replaces_joint && *name == "temperature_c").cloned();
     let torque = ["link_torque_nm", "brake_torque_nm", "other_range_torque_nm"].map(str::to_owned);
-    [(TORQUE_SKEW, torque.into()), (BRAKE_SKEW, vec!["brake_current_a".into()]), (WARMTH_SKEW, warmth.collect())]
+    [
+        (TORQUE_SKEW, torque.into()),
+        (BRAKE_SKEW, vec!["brake_current_a".into()]),
+        (THERMOMETER_SKEW, thermometers.collect()),
+    ]
 }
 
 /// The value at each time of the grid, by linear interpolation. `None` if a reading is missing on one side: no
@@ -64,13 +69,13 @@ pub(crate) fn align(trace: Trace) -> Trace {
 fn align_by(trace: Trace, skew: &str, skewed: &[String]) -> Trace {
     let Some(skew_s) = trace.column(skew).filter(|skew| skew.iter().any(|s| *s != 0.0)) else { return trace };
     let time_s = trace.column("time_s").unwrap_or_default();
-    let felt_s: Vec<f64> = time_s.iter().zip(skew_s).map(|(at_s, skew_s)| at_s + skew_s).collect();
+    let reading_s: Vec<f64> = time_s.iter().zip(skew_s).map(|(at_s, skew_s)| at_s + skew_s).collect();
     let ends: Vec<usize> = match trace.column("segment") {
         Some(segment) => (1..=time_s.len()).filter(|at| segment.get(*at) != Some(&segment[at - 1])).collect(),
         None => vec![time_s.len()],
     };
     // A held reading is in several rows. It counts once, at its own time.
-    let is_fresh = |i: usize, start: usize| i == start || felt_s[i] > felt_s[i - 1] + HELD_S;
+    let is_fresh = |i: usize, start: usize| i == start || reading_s[i] > reading_s[i - 1] + HELD_S;
     let time_s = time_s.to_vec();
     let (mut channels, mut columns) = trace.into_parts();
     for (channel, column) in channels.iter_mut().zip(&mut columns) {
@@ -84,9 +89,9 @@ fn align_by(trace: Trace, skew: &str, skewed: &[String]) -> Trace {
         for end in &ends {
             let fresh: Vec<usize> = (start..*end).filter(|i| is_fresh(*i, start)).collect();
             let of = |values: &[f64]| -> Vec<f64> { fresh.iter().map(|i| values[*i]).collect() };
-            let grid = on_grid(&of(&felt_s), &of(column), &time_s[start..*end]);
+            let grid = on_grid(&of(&reading_s), &of(column), &time_s[start..*end]);
             let rows = column[start..*end].iter_mut().zip(grid);
-            rows.for_each(|(felt, value)| *felt = value.unwrap_or(*felt));
+            rows.for_each(|(reading, value)| *reading = value.unwrap_or(*reading));
             start = *end;
         }
         // An interpolated value is no longer a whole count.
@@ -107,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_that_was_felt_later_is_moved_to_its_rows_within_its_segment() {
+    fn a_delayed_column_is_moved_to_its_rows_within_its_segment() {
         let channels = ["time_s", "link_torque_nm", "torque_skew_s", "motor_current_a", "segment"].map(Channel::new);
         let rows: Vec<[f64; 5]> = (0..8)
             .map(|i| {

@@ -71,10 +71,10 @@ mod tests {
 
     #[test]
     fn serde_speaks_plainly() {
-        let said = plainly("unknown variant `silnet`, expected one of `none`, `silent`, `late`");
-        assert_eq!(said, "unknown value silnet: did you mean silent?");
-        let said = plainly("unknown field `mok`, expected `joint` or `load`");
-        assert_eq!(said, "unknown value mok: there are joint, load");
+        let message = plainly("unknown variant `silnet`, expected one of `none`, `silent`, `late`");
+        assert_eq!(message, "unknown value silnet: did you mean silent?");
+        let message = plainly("unknown field `mok`, expected `joint` or `load`");
+        assert_eq!(message, "unknown value mok: there are joint, load");
         assert_eq!(
             plainly("invalid type: integer `3`, expected a string"),
             "invalid type: integer `3`, expected a string"
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_near_is_told_all() {
+    fn an_unknown_value_gets_the_whole_list() {
         assert_eq!(instead("silnet", &["silent", "late"]), "did you mean silent?");
         assert_eq!(instead("nosuch", &["silent", "late"]), "there are silent, late");
     }

@@ -1,7 +1,7 @@
 //! A run table: the samples of one run with the facts about the set-up, checked once when it is created.
 
 use crate::skew::align;
-use crate::zero::take_off;
+use crate::zero::subtract;
 use crate::{Kind, Meta, Trace};
 use serde::{Deserialize, Serialize};
 
@@ -164,7 +164,7 @@ impl RunTable {
             return Err(TableFault::TimeNotRising { row: row + 1, before: time_s[row], after: time_s[row + 1] });
         }
         check_facts(&meta, time_s)?;
-        let trace = align(take_off(&mut meta, trace));
+        let trace = align(subtract(&mut meta, trace));
         Ok(Self { kind, meta, trace })
     }
 

@@ -8,7 +8,7 @@ use crate::{Channel, Meta, Trace};
 /// The fact: the reading of the sensor without torque.
 pub const TORQUE_ZERO: &str = "torque_sensor_zero_nm";
 
-pub(crate) fn take_off(meta: &mut Meta, trace: Trace) -> Trace {
+pub(crate) fn subtract(meta: &mut Meta, trace: Trace) -> Trace {
     let Some(zero_nm) = meta.other.get(TORQUE_ZERO).and_then(|zero| zero.as_f64()).filter(|zero| *zero != 0.0) else {
         return trace;
     };
@@ -21,11 +21,11 @@ pub(crate) fn take_off(meta: &mut Meta, trace: Trace) -> Trace {
             // Brake torque is positive when it brakes, so the sign of the zero follows the last commanded direction of
             // rotation.
             "brake_torque_nm" => {
-                let mut way = 1.0;
+                let mut direction = 1.0;
                 for (row, torque) in column.iter_mut().enumerate() {
-                    let told = setpoint.as_ref().map_or(0.0, |setpoint| setpoint[row]);
-                    way = if told == 0.0 { way } else { told.signum() };
-                    *torque -= way * zero_nm;
+                    let setpoint_rad_s = setpoint.as_ref().map_or(0.0, |setpoint| setpoint[row]);
+                    direction = if setpoint_rad_s == 0.0 { direction } else { setpoint_rad_s.signum() };
+                    *torque -= direction * zero_nm;
                 }
             }
             _ => continue,
@@ -45,8 +45,8 @@ mod tests {
     fn a_zero_is_taken_off_once_and_turns_with_the_shaft_where_the_torque_does() {
         let names = ["time_s", "brake_current_a", "brake_torque_nm", "link_torque_nm", "velocity_setpoint_rad_s"];
         let mut trace = Trace::new(names.map(Channel::new).into());
-        for (i, told) in [0.0, 5.0, 0.0, -5.0, 0.0].into_iter().enumerate() {
-            trace.push_row(&[i as f64, 0.0, 1.0, 1.0, told]);
+        for (i, setpoint_rad_s) in [0.0, 5.0, 0.0, -5.0, 0.0].into_iter().enumerate() {
+            trace.push_row(&[i as f64, 0.0, 1.0, 1.0, setpoint_rad_s]);
         }
         let mut meta = Meta { kind: Some(Kind::Brake), ..Meta::default() };
         meta.other.insert(TORQUE_ZERO.to_owned(), 0.25.into());

@@ -9,7 +9,7 @@
 use jointbench_devices::sim::Load;
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::catalogue::brake_model;
-use jointbench_procedure::conduct::conduct_knowing;
+use jointbench_procedure::in_memory_run::run_in_memory_with_facts;
 use jointbench_procedure::{BenchFacts, Procedure, procedure};
 use std::time::Instant;
 
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let procedure: &dyn Procedure = procedure(&pair[0]).ok_or("no such procedure")?;
         let parameters = serde_json::from_str(pair.get(1).map_or("{}", String::as_str))?;
         let started = Instant::now();
-        let done = conduct_knowing(&mut bench, &facts, procedure, &parameters)?;
+        let done = run_in_memory_with_facts(&mut bench, &facts, procedure, &parameters)?;
         facts.brake_model = brake_model(&done.table).or(facts.brake_model);
         let ran_s = started.elapsed().as_secs_f64();
         println!("{}: {} rows, {:.0} s of the bench in {ran_s:.1} s", pair[0], done.table.len(), done.duration_s);

@@ -1,10 +1,11 @@
 //! The columns of a run table: those that a bench can fill, and one row of them.
 
+use crate::column_names::{MOTOR_CURRENT_SETPOINT, OTHER_RANGE};
 use crate::encoder_columns::{self, Encoders};
 use crate::plan::Plan;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{DriveHealth, JointReading, Pose};
-use jointbench_instrument::skew::{BRAKE_SKEW, TORQUE_SKEW, WARMTH_SKEW};
+use jointbench_instrument::skew::{BRAKE_SKEW, THERMOMETER_SKEW, TORQUE_SKEW};
 use jointbench_instrument::{Bench, Channel, Kind, Trace};
 
 /// Resolution of time in the table: finer than any serial instrument, and exact to store.
@@ -12,15 +13,9 @@ const TIME_STEP_S: f64 = 1e-6;
 /// Resolution of commanded and stored velocity set-points.
 pub(crate) const VELOCITY_STEP_RAD_S: f64 = 1e-4;
 
-/// Only for a plan that commands motor current; the rest of such a plan may have none.
-pub(crate) const MOTOR_CURRENT_SETPOINT: &str = "motor_current_setpoint_a";
-
-/// The torque in the sensor's other range.
-pub(crate) const OTHER_RANGE: &str = "other_range_torque_nm";
-
 /// The torque of one tick.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TorqueMoment {
+pub(crate) struct TickTorque {
     pub nm: f64,
     /// Largest absolute value, if it is a mean of several samples.
     pub peak_nm: f64,
@@ -32,7 +27,7 @@ pub(crate) struct TorqueMoment {
 
 /// The brake's current of one tick.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct BrakeMoment {
+pub(crate) struct TickBrake {
     pub measured_a: f64,
     /// Delay of the reading against that of the joint; negative if it is held.
     pub skew_s: f64,
@@ -41,14 +36,14 @@ pub(crate) struct BrakeMoment {
 
 /// Measured and commanded values of one tick. Slow quantities hold their last reading.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Moment {
+pub(crate) struct TickValues {
     pub time_s: f64,
     pub joint: JointReading,
-    pub torque: Option<TorqueMoment>,
+    pub torque: Option<TickTorque>,
     pub temperature_c: Option<f64>,
     /// Delay of the thermometer reading against the row; negative if it is held.
-    pub warmth_skew_s: f64,
-    pub brake: Option<BrakeMoment>,
+    pub thermometer_skew_s: f64,
+    pub brake: Option<TickBrake>,
     pub velocity_setpoint_rad_s: f64,
     /// For a run of encoders.
     pub encoders: Option<Encoders>,
@@ -82,53 +77,54 @@ pub(crate) struct Columns {
     channels: Vec<Channel>,
     brake_nm_per_a: f64,
     /// Set for a brake run: the last commanded direction of the shaft.
-    braked_way: Option<f64>,
+    brake_direction: Option<f64>,
     /// Motor turns for each turn of the shaft whose velocity is also recorded.
     velocity_gear_ratio: Option<f64>,
     /// The plan commands motor current, which is recorded in motor_current_setpoint_a.
     commands_current: bool,
     /// Thermometer channels that replace the joint's temperature: 0 or 1.
-    standing_in: usize,
+    replacing: usize,
     row: Vec<f64>,
 }
 
 impl Columns {
-    /// `placed`: the plan moves the stage. `streams`: the torque sensor streams. `felt`: channels of the thermometer.
+    /// `moves_stage`: the plan moves the stage. `streams`: the torque sensor streams. `thermometers`: number of
+    /// channels of the thermometer.
     pub fn of(
         plan: &Plan,
-        placed: bool,
+        moves_stage: bool,
         streams: bool,
         bench: &Bench,
         reading: &JointReading,
         health: &DriveHealth,
-        felt: usize,
+        thermometers: usize,
     ) -> Self {
         let is_brake = plan.kind == Kind::Brake;
-        let standing_in = usize::from(health.temperature.is_none() && felt > 0);
+        let replacing = usize::from(health.temperature.is_none() && thermometers > 0);
         let brake_nm_per_a = if is_brake { 1.0 } else { nominal_brake_nm_per_a(&bench.constants) };
         let velocity_name = velocity_name(plan.kind);
         let mut channels = joint_channels(bench, reading, is_brake);
         channels.extend(torque_channels(plan, bench, streams));
-        channels.extend(temperature_channels(bench, health, felt, standing_in));
+        channels.extend(temperature_channels(bench, health, thermometers, replacing));
         channels.extend(brake_channels(bench, is_brake, brake_nm_per_a));
         channels.push(channel("velocity_setpoint_rad_s", Some(VELOCITY_STEP_RAD_S)));
         let commands_current = plan.commands_current();
         channels.extend(commands_current.then(|| channel(MOTOR_CURRENT_SETPOINT, None)));
         channels.extend(velocity_name.map(|name| channel(name, None)));
         if plan.kind == Kind::Encoder {
-            channels.extend(encoder_columns::channels(bench, placed));
+            channels.extend(encoder_columns::channels(bench, moves_stage));
         }
         channels.extend(["segment", "repeat"].map(|name| channel(name, Some(1.0))));
         Self {
             row: Vec::with_capacity(channels.len()),
             channels,
             brake_nm_per_a,
-            braked_way: is_brake.then_some(1.0),
+            brake_direction: is_brake.then_some(1.0),
             // The encoders of an encoder bench are on the motor's shaft.
             velocity_gear_ratio: velocity_name
                 .map(|_| if plan.kind == Kind::Encoder { 1.0 } else { bench.constants.gear_ratio }),
             commands_current,
-            standing_in,
+            replacing,
         }
     }
 
@@ -136,36 +132,36 @@ impl Columns {
         Trace::new(self.channels.clone())
     }
 
-    /// The row of a tick, in the order of the channels. `felt_c`: the thermometer's values.
-    pub fn row(&mut self, moment: &Moment, felt_c: &[f64], segment: u32, repeat: u32) -> &[f64] {
-        if let Some(way) = &mut self.braked_way
-            && moment.velocity_setpoint_rad_s != 0.0
+    /// The row of a tick, in the order of the channels. `thermometer_c`: the thermometer's values.
+    pub fn row(&mut self, values: &TickValues, thermometer_c: &[f64], segment: u32, repeat: u32) -> &[f64] {
+        if let Some(direction) = &mut self.brake_direction
+            && values.velocity_setpoint_rad_s != 0.0
         {
-            *way = moment.velocity_setpoint_rad_s.signum();
+            *direction = values.velocity_setpoint_rad_s.signum();
         }
-        let way = self.braked_way.unwrap_or(1.0);
+        let direction = self.brake_direction.unwrap_or(1.0);
         let row = &mut self.row;
         row.clear();
-        row.extend([moment.time_s, moment.joint.motor_position.0, moment.joint.motor_velocity.0]);
-        row.push(moment.joint.motor_current.0);
-        row.extend(moment.joint.link_position.map(|position| position.0));
-        if let Some(torque) = moment.torque {
-            row.extend([way * torque.nm, to_time_step(torque.skew_s)]);
-            row.extend(torque.other_nm.map(|other_nm| way * other_nm));
+        row.extend([values.time_s, values.joint.motor_position.0, values.joint.motor_velocity.0]);
+        row.push(values.joint.motor_current.0);
+        row.extend(values.joint.link_position.map(|position| position.0));
+        if let Some(torque) = values.torque {
+            row.extend([direction * torque.nm, to_time_step(torque.skew_s)]);
+            row.extend(torque.other_nm.map(|other_nm| direction * other_nm));
         }
-        row.extend(moment.temperature_c);
-        row.extend(felt_c.iter().skip(self.standing_in));
-        row.extend((!felt_c.is_empty()).then(|| to_time_step(moment.warmth_skew_s)));
-        if let Some(brake) = moment.brake {
+        row.extend(values.temperature_c);
+        row.extend(thermometer_c.iter().skip(self.replacing));
+        row.extend((!thermometer_c.is_empty()).then(|| to_time_step(values.thermometer_skew_s)));
+        if let Some(brake) = values.brake {
             row.push(brake.measured_a);
-            row.extend(self.braked_way.map(|_| to_time_step(brake.skew_s)));
+            row.extend(self.brake_direction.map(|_| to_time_step(brake.skew_s)));
             row.push(brake.commanded_a * self.brake_nm_per_a);
         }
-        row.push(moment.velocity_setpoint_rad_s);
-        row.extend(self.commands_current.then_some(moment.motor_current_setpoint_a));
-        row.extend(self.velocity_gear_ratio.map(|gear_ratio| moment.joint.motor_velocity.0 / gear_ratio));
-        if let Some(encoders) = &moment.encoders {
-            encoder_columns::row(encoders, moment.pose, row);
+        row.push(values.velocity_setpoint_rad_s);
+        row.extend(self.commands_current.then_some(values.motor_current_setpoint_a));
+        row.extend(self.velocity_gear_ratio.map(|gear_ratio| values.joint.motor_velocity.0 / gear_ratio));
+        if let Some(encoders) = &values.encoders {
+            encoder_columns::row(encoders, values.pose, row);
         }
         row.extend([f64::from(segment), f64::from(repeat)]);
         row
@@ -199,16 +195,17 @@ fn torque_channels(plan: &Plan, bench: &Bench, streams: bool) -> Vec<Channel> {
     channels
 }
 
-/// `standing_in`: thermometer channels that replace the joint's temperature.
-fn temperature_channels(bench: &Bench, health: &DriveHealth, felt: usize, standing_in: usize) -> Vec<Channel> {
+/// `replacing`: thermometer channels that replace the joint's temperature.
+fn temperature_channels(bench: &Bench, health: &DriveHealth, thermometers: usize, replacing: usize) -> Vec<Channel> {
     let mut channels = Vec::new();
-    let felt_step_c = bench.thermometer.as_ref().map(|thermometer| thermometer.resolution().0);
-    if health.temperature.is_some() || felt > 0 {
+    let thermometer_step_c = bench.thermometer.as_ref().map(|thermometer| thermometer.resolution().0);
+    if health.temperature.is_some() || thermometers > 0 {
         let own_step_c = bench.joint.resolution().temperature.map(|step| step.0);
-        channels.push(channel("temperature_c", if standing_in == 0 { own_step_c } else { felt_step_c }));
+        channels.push(channel("temperature_c", if replacing == 0 { own_step_c } else { thermometer_step_c }));
     }
-    channels.extend((standing_in..felt).map(|at| channel(&format!("thermometer_{}_c", at + 1), felt_step_c)));
-    channels.extend((felt > 0).then(|| channel(WARMTH_SKEW, Some(TIME_STEP_S))));
+    channels
+        .extend((replacing..thermometers).map(|at| channel(&format!("thermometer_{}_c", at + 1), thermometer_step_c)));
+    channels.extend((thermometers > 0).then(|| channel(THERMOMETER_SKEW, Some(TIME_STEP_S))));
     channels
 }
 

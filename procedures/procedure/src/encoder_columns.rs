@@ -1,5 +1,6 @@
 //! The columns of a run of two encoders, with the pose of a stage if there is one.
 
+use crate::column_names::POSE;
 use jointbench_instrument::roles::{CounterReading, Pose};
 use jointbench_instrument::units::Radians;
 use jointbench_instrument::{Bench, Channel};
@@ -11,10 +12,6 @@ pub(crate) struct Encoders {
     pub test: CounterReading,
     pub consistent: Option<bool>,
 }
-
-/// Names of the pose's columns: shifts (m), then rotations about the same axes (rad).
-pub(crate) const POSE: [&str; 6] =
-    ["stage_radial_m", "stage_vertical_m", "stage_axial_m", "stage_tilt_rad", "stage_nod_rad", "stage_rotation_rad"];
 
 /// reference_position_rad, test_position_rad, encoder_skew_s (delay of the test encoder's reading),
 /// encoder_consistent, and the pose if the plan moves the stage.

@@ -61,10 +61,10 @@ impl Identification {
     }
 
     /// The result for a run and its state: an incomplete run has not reached its purpose, independent of its partial
-    /// results. `goes_on`: the rest of the run may be measured later. `step`: where it ended, such as `step 3 of 41`.
-    pub fn of_run(mut self, run: RunId, state: RunState, goes_on: bool, step: Option<&str>) -> Self {
+    /// results. `can_resume`: the rest of the run may be measured later. `step`: where it ended, such as `step 3 of 41`.
+    pub fn of_run(mut self, run: RunId, state: RunState, can_resume: bool, step: Option<&str>) -> Self {
         if state != RunState::Completed {
-            let next = match (state.is_final(), goes_on) {
+            let next = match (state.is_final(), can_resume) {
                 (false, _) => "Let the run finish.",
                 (true, false) => "Repeat the run.",
                 (true, true) => {
@@ -73,17 +73,17 @@ impl Identification {
             };
             let at = step.map(|step| format!(" in {step}")).unwrap_or_default();
             let gap = if self.summary.contains('\n') { '\n' } else { ' ' };
-            let said = &self.summary;
+            let summary = &self.summary;
             self.summary = match (self.verdict, state.is_final()) {
                 // A run that still records has not failed.
-                (Verdict::Failed, false) => format!("No result yet. {said}"),
+                (Verdict::Failed, false) => format!("No result yet. {summary}"),
                 (Verdict::Failed, true) => {
                     format!(
-                        "The run did not complete ({state}{at}). The recorded part allows no identification. {said}"
+                        "The run did not complete ({state}{at}). The recorded part allows no identification. {summary}"
                     )
                 }
-                (_, false) => format!("The run is still in progress ({state}{at}). Result so far:{gap}{said}"),
-                (_, true) => format!("The run did not complete ({state}{at}). From the recorded part:{gap}{said}"),
+                (_, false) => format!("The run is still in progress ({state}{at}). Result so far:{gap}{summary}"),
+                (_, true) => format!("The run did not complete ({state}{at}). From the recorded part:{gap}{summary}"),
             };
             // Advice about the planning does not apply to an incomplete run.
             self.advice = Some(next.to_owned());
@@ -105,15 +105,15 @@ impl Identification {
 
 /// Replaces the hyphen before each separate number by a minus sign; commands contain no such numbers.
 fn signed(text: &str) -> String {
-    let mut said = String::with_capacity(text.len());
+    let mut text_with_minus = String::with_capacity(text.len());
     let mut before = ' ';
     let mut letters = text.chars().peekable();
     while let Some(letter) = letters.next() {
         let is_sign = letter == '-' && " ([".contains(before) && letters.peek().is_some_and(char::is_ascii_digit);
-        said.push(if is_sign { '−' } else { letter });
+        text_with_minus.push(if is_sign { '−' } else { letter });
         before = letter;
     }
-    said
+    text_with_minus
 }
 
 /// A run whose parameters were determined by this one.
@@ -238,27 +238,27 @@ mod tests {
 
     #[test]
     fn what_to_do_next_can_be_typed() {
-        let said = |state, goes_on| {
+        let advice = |state, can_resume| {
             let made = Identification::failed("Too few steps.", "look closer (jointbench export RUN)");
-            made.of_run(12, state, goes_on, None).advice.unwrap()
+            made.of_run(12, state, can_resume, None).advice.unwrap()
         };
-        assert_eq!(said(RunState::Completed, true), "look closer (jointbench export 12)");
-        assert!(said(RunState::Stopped, true).contains("jointbench run --continue 12"));
-        assert_eq!(said(RunState::Failed, false), "Repeat the run.");
-        assert_eq!(said(RunState::Paused, true), "Let the run finish.");
+        assert_eq!(advice(RunState::Completed, true), "look closer (jointbench export 12)");
+        assert!(advice(RunState::Stopped, true).contains("jointbench run --continue 12"));
+        assert_eq!(advice(RunState::Failed, false), "Repeat the run.");
+        assert_eq!(advice(RunState::Paused, true), "Let the run finish.");
     }
 
     #[test]
     fn what_is_lacking_is_no_failure_while_the_run_is_on() {
-        let said = |lacking: &str, state| {
+        let summary = |lacking: &str, state| {
             Identification::failed(lacking, "Record a longer run.")
                 .of_run(12, state, true, Some("step 3 of 41"))
                 .summary
         };
         let few = "Too few samples: 12 usable in motion, at least 40 are needed.";
-        assert_eq!(said(few, RunState::Running), format!("No result yet. {few}"));
+        assert_eq!(summary(few, RunState::Running), format!("No result yet. {few}"));
         assert_eq!(
-            said(few, RunState::Aborted),
+            summary(few, RunState::Aborted),
             format!(
                 "The run did not complete (aborted in step 3 of 41). The recorded part allows no identification. {few}"
             )
@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn a_number_below_zero_has_a_minus_and_a_command_stays_as_it_is() {
         let text = "A shift of -0.150 mm (-3 to -1), in run-12.csv: jointbench run x --set shift=-2 from 5-7.";
-        let said = "A shift of −0.150 mm (−3 to −1), in run-12.csv: jointbench run x --set shift=-2 from 5-7.";
-        assert_eq!(Identification::failed(text, "").of_run(12, RunState::Completed, true, None).summary, said);
+        let expected = "A shift of −0.150 mm (−3 to −1), in run-12.csv: jointbench run x --set shift=-2 from 5-7.";
+        assert_eq!(Identification::failed(text, "").of_run(12, RunState::Completed, true, None).summary, expected);
     }
 }

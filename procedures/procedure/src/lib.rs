@@ -7,33 +7,40 @@
 #![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
+pub mod bench_facts;
+pub mod brake_model;
 pub mod catalogue;
+mod column_names;
 mod columns;
-pub mod conduct;
-pub mod continuing;
+pub mod deferred_plan;
 mod encoder_columns;
 pub mod engine;
 pub mod event;
 mod findings;
 mod guard;
 pub mod identification;
+pub mod in_memory_run;
 mod menu;
 pub mod parameter;
-pub mod place;
 pub mod plan;
 pub mod preview;
 pub mod profile;
 pub mod recorder;
 pub mod reproduce;
+pub mod resume;
+pub mod stage_pose;
 pub mod state;
-mod steady;
+pub mod steady;
 
+pub use bench_facts::BenchFacts;
+pub use brake_model::BrakeModel;
 pub use catalogue::{Procedure, catalogue, procedure};
+pub use deferred_plan::DeferredPlan;
 pub use engine::{RunEnd, Secured, run, secure};
 pub use event::{Control, Demand, Event, EventKind, Safe};
 pub use identification::Identification;
 pub use menu::menu;
-pub use plan::{BenchFacts, Lesson, Plan, PlanFault};
+pub use plan::{Plan, PlanFault};
 pub use preview::Preview;
 pub use recorder::{Commit, Live, Progress, Recorder, RecorderFault, RunId};
 pub use state::{Outcome, RunState, Transition};

@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn a_refusal_names_parameter_value_and_range() {
-        for (given, said) in [
+        for (given, message) in [
             (r#"{"repeats": 2.5}"#, "parameter repeats = 2.5: expected a whole number from 2 to 20"),
             (
                 r#"{"top_speed_rad_s": 2000}"#,
@@ -159,7 +159,7 @@ mod tests {
             ),
             (r#"{"speed": 1}"#, "unknown parameter speed: expected one of top_speed_rad_s, repeats"),
         ] {
-            assert_eq!(parse(given).unwrap_err(), said);
+            assert_eq!(parse(given).unwrap_err(), message);
         }
     }
 }

@@ -1,73 +1,12 @@
 //! A plan of a procedure: a list of steps with their set-points over time. Pure data; the engine performs it.
 
-use crate::catalogue::{BrakeModel, procedure};
-use crate::continuing::Done;
-use crate::place::Place;
+use crate::deferred_plan::DeferredPlan;
 use crate::profile::Profile;
-use jointbench_instrument::bench::JointConstants;
-use jointbench_instrument::roles::PositionCounter;
-use jointbench_instrument::{Bench, Kind, Limits, Meta, RunTable};
-use serde::{Deserialize, Deserializer, Serialize};
+use crate::stage_pose::StagePose;
+use crate::steady::SteadyCriterion;
+use jointbench_instrument::{Kind, Meta};
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
-use std::f64::consts::TAU;
-use std::ops::Range;
-use std::sync::Arc;
-
-/// Facts about a bench that a procedure may use before anything moves.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct BenchFacts {
-    /// Name in the bench description.
-    pub name: String,
-    /// The bench is the mock bench.
-    pub simulated: bool,
-    /// Limits that the plan has to respect.
-    pub limits: Limits,
-    /// Constants of the joint and its brake.
-    pub constants: JointConstants,
-    /// A torque sensor is connected.
-    pub has_torque_sensor: bool,
-    /// The torque sensor reports every sample in two ranges.
-    pub has_two_ranges: bool,
-    /// A brake with its supply is connected.
-    pub has_brake: bool,
-    /// Reference and test encoder: counts in a turn. `None` if one of them is missing.
-    pub encoder_counts: Option<[f64; 2]>,
-    /// An alignment stage holds the sensor of the encoder under test.
-    pub has_stage: bool,
-    /// Motor current for each volt, if the joint's servo measures it as the voltage at a shunt.
-    pub amperes_per_volt: Option<f64>,
-    /// The brake model of an earlier run, if a procedure needs it ([`crate::Procedure::brake_model`]).
-    #[serde(skip)]
-    pub brake_model: Option<BrakeModel>,
-    /// Whether the joint's drive accepts a motor current in addition to a velocity.
-    pub feeds_forward: bool,
-}
-
-impl BenchFacts {
-    /// The facts of an open bench; without a brake model.
-    pub fn of(bench: &Bench) -> Self {
-        Self {
-            name: bench.name.clone(),
-            simulated: bench.simulated,
-            limits: bench.limits,
-            constants: bench.constants,
-            has_torque_sensor: bench.torque_sensor.is_some(),
-            has_two_ranges: bench.torque_sensor.as_ref().is_some_and(|sensor| sensor.has_two_ranges()),
-            has_brake: bench.brake.is_some(),
-            encoder_counts: counts(&bench.reference_encoder)
-                .zip(counts(&bench.test_encoder))
-                .map(|(reference, test)| [reference, test]),
-            has_stage: bench.stage.is_some(),
-            amperes_per_volt: bench.joint.amperes_per_volt(),
-            brake_model: None,
-            feeds_forward: bench.joint.feeds_forward(),
-        }
-    }
-}
-
-fn counts(encoder: &Option<Box<dyn PositionCounter>>) -> Option<f64> {
-    encoder.as_ref().map(|encoder| TAU / encoder.resolution().0)
-}
 
 /// The part of a plan that a step belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,7 +19,7 @@ pub enum Phase {
 
 /// The history that a step requires. A pause destroys it, and resuming restores it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Before {
+pub enum InitialState {
     /// The brake in the state after the previous step: a pause keeps its current, and a larger one is approached from
     /// below.
     #[default]
@@ -98,7 +37,7 @@ pub enum Drive {
     #[default]
     Velocity,
     /// The velocity, with a feedforward of motor current.
-    Fed(Feed),
+    Fed(Feedforward),
     /// The velocity up to `from_s`, then motor current alone until its profile ends or `until` is reached.
     Current {
         /// End of the velocity section, from the start of the step.
@@ -106,13 +45,13 @@ pub enum Drive {
         /// Motor current (A) over the time of the step.
         current_a: Profile,
         /// Condition that ends the section early.
-        until: Until,
+        until: EndCondition,
     },
 }
 
 /// Source of a feedforward current.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Feed {
+pub enum Feedforward {
     /// Over the time of the step (A).
     Planned(Profile),
     /// A share of the measured friction: motor torque less link torque, low-pass filtered. It has the sign of the
@@ -129,7 +68,7 @@ pub enum Feed {
 
 /// End of a section with current alone: the velocity loop takes over after a breakaway.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Until {
+pub struct EndCondition {
     /// Consecutive samples in which the motor moved in the direction of the current.
     pub increases: u32,
     /// Motor-side speed that ends the section in any case.
@@ -148,13 +87,13 @@ pub struct Step {
     /// Number of the repetition of the whole profile.
     pub repeat: u32,
     /// State of brake and encoder that it requires.
-    pub before: Before,
+    pub before: InitialState,
     /// Motor-side velocity [rad/s] over the time of the step. Starts and ends at rest.
     pub velocity: Profile,
     /// Brake current (A) over the time of the step.
     pub brake: Profile,
     /// Pose of the stage during the step.
-    pub place: Place,
+    pub place: StagePose,
     /// Command of the drive.
     pub drive: Drive,
 }
@@ -164,8 +103,8 @@ impl Step {
     pub fn duration_s(&self) -> f64 {
         let drive_s = match &self.drive {
             Drive::Velocity => 0.0,
-            Drive::Fed(Feed::Planned(current_a)) => current_a.duration_s(),
-            Drive::Fed(Feed::Observed { .. }) => 0.0,
+            Drive::Fed(Feedforward::Planned(current_a)) => current_a.duration_s(),
+            Drive::Fed(Feedforward::Observed { .. }) => 0.0,
             Drive::Current { from_s, current_a, .. } => from_s + current_a.duration_s(),
         };
         self.velocity.duration_s().max(self.brake.duration_s()).max(drive_s)
@@ -173,50 +112,23 @@ impl Step {
 
     /// Whether its duration is an upper bound: it ends with the breakaway of the joint, or when the edge is found.
     pub(crate) fn may_end_early(&self) -> bool {
-        matches!(self.drive, Drive::Current { .. }) || matches!(self.place, Place::Edge(_))
+        matches!(self.drive, Drive::Current { .. }) || matches!(self.place, StagePose::Edge(_))
     }
 
     /// The largest commanded motor current (A).
     pub fn top_motor_current_a(&self) -> f64 {
         match &self.drive {
-            Drive::Fed(Feed::Planned(current_a)) | Drive::Current { current_a, .. } => current_a.largest(),
-            Drive::Velocity | Drive::Fed(Feed::Observed { .. }) => 0.0,
+            Drive::Fed(Feedforward::Planned(current_a)) | Drive::Current { current_a, .. } => current_a.largest(),
+            Drive::Velocity | Drive::Fed(Feedforward::Observed { .. }) => 0.0,
         }
     }
 }
-
-/// Criterion of a warm joint, evaluated over whole cycles of warm-up steps.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Steady {
-    /// Steps of one cycle; every cycle has the same speeds.
-    pub cycle_steps: usize,
-    /// Largest drift of the temperature.
-    pub temperature_c_per_min: f64,
-    /// Largest relative drift of the mean |motor current|.
-    pub current_share_per_min: f64,
-}
-
-/// Steps that depend on a result of the run itself ([`crate::Procedure::learn`]). Until then they are planned for an
-/// expected joint, so that duration and travel are known before any motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Lesson {
-    /// Segments that the planning uses.
-    pub from: Range<u32>,
-    /// Segments of the dependent steps.
-    pub to: Range<u32>,
-    /// The earlier measurement of the same plan, and its finished part.
-    pub earlier: Option<Arc<(RunTable, Done)>>,
-}
-
-/// As in the catalogue.
-pub type ProcedureId = &'static str;
 
 /// A validated procedure, ready to run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// Id of the procedure.
-    #[serde(deserialize_with = "known_procedure")]
-    pub procedure: ProcedureId,
+    pub procedure: String,
     /// The parameters, including defaults.
     pub parameters: Map<String, Value>,
     /// Kind of its run table.
@@ -230,23 +142,17 @@ pub struct Plan {
     /// The steps in their order.
     pub steps: Vec<Step>,
     /// Ends the warm-up early. `None`: every step is run.
-    pub steady: Option<Steady>,
+    pub steady: Option<SteadyCriterion>,
     /// Also records the torque sensor's other range.
     pub both_ranges: bool,
     /// Streaming period of the torque sensor. `None`, or a sensor without streaming: one reading for each row.
     pub torque_period_s: Option<f64>,
     /// `None`: every step is known before the first one.
-    pub lesson: Option<Lesson>,
+    #[serde(rename = "lesson")]
+    pub deferred: Option<DeferredPlan>,
     /// Start position relative to that of the whole plan (motor) (rad): a continuation begins where the previous run
     /// ended.
     pub begins_rad: f64,
-}
-
-/// A plan from another process must name a procedure of this one.
-fn known_procedure<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ProcedureId, D::Error> {
-    let id = String::deserialize(deserializer)?;
-    let known = procedure(&id).map(|known| known.id());
-    known.ok_or_else(|| serde::de::Error::custom(format!("procedure {id} does not exist")))
 }
 
 impl Plan {
@@ -327,14 +233,14 @@ pub(crate) mod testing {
             phase: Phase::Measure,
             segment: index as u32,
             repeat: 0,
-            before: Before::AsLeft,
+            before: InitialState::AsLeft,
             velocity: Profile::plateau(if index % 2 == 0 { 20.0 } else { -20.0 }, 200.0, duration_s - 0.2),
             brake: Profile::constant(0.0),
-            place: Place::AsLeft,
+            place: StagePose::AsLeft,
             drive: Drive::Velocity,
         };
         Plan {
-            procedure: "test",
+            procedure: "test".into(),
             parameters: Map::new(),
             kind: Kind::Friction,
             meta: Meta::default(),
@@ -344,7 +250,7 @@ pub(crate) mod testing {
             steady: None,
             both_ranges: false,
             torque_period_s: None,
-            lesson: None,
+            deferred: None,
             begins_rad: 0.0,
         }
     }

@@ -1,7 +1,8 @@
 //! The dry run: effect of a plan on a bench, before anything moves.
 
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::procedure;
-use crate::plan::{BenchFacts, Drive, Plan};
+use crate::plan::{Drive, Plan};
 use jointbench_instrument::limits::Limited;
 use serde::Serialize;
 
@@ -232,7 +233,7 @@ impl Plan {
     }
 
     fn largest_share(&self, name: &str, facts: &BenchFacts) -> Option<f64> {
-        let procedure = procedure(self.procedure)?;
+        let procedure = procedure(&self.procedure)?;
         let given = self.parameters.get(name)?.as_f64()?;
         let least = procedure.schema().iter().find(|parameter| parameter.name == name)?.min;
         let hundredths = |share: f64| (100.0 * share).ceil() as u32;

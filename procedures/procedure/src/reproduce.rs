@@ -2,10 +2,10 @@
 //!
 //! The caller provides the true values of the bench if they are known; they are only compared at the end.
 
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::{Procedure, brake_model, procedure};
-use crate::conduct::{ConductFault, Conducted, conduct_knowing};
 use crate::identification::{Identification, Quantity};
-use crate::plan::BenchFacts;
+use crate::in_memory_run::{InMemoryRun, InMemoryRunFault, run_in_memory_with_facts};
 use jointbench_instrument::Bench;
 use serde_json::{Map, Value, json};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -33,7 +33,7 @@ pub enum Subject {
 
 /// Requirement on a figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Demand {
+pub enum Requirement {
     /// Largest half width of its interval, in the unit of the quantity.
     Within(f64),
     /// The same, as a share of the value.
@@ -56,7 +56,7 @@ pub struct Comparison {
     /// `None`: unknown, or the bench has no such figure.
     pub given: Option<f64>,
     /// `None`: the figure is shown but not judged.
-    pub demand: Option<Demand>,
+    pub demand: Option<Requirement>,
 }
 
 impl Comparison {
@@ -66,29 +66,29 @@ impl Comparison {
         Some((low..=high).contains(&given))
     }
 
-    /// The same if `of` intervals have to hold simultaneously in 95 of 100 campaigns ([`wider_for`]).
+    /// The same if `of` intervals have to hold simultaneously in 95 of 100 campaigns ([`simultaneous_factor`]).
     pub fn is_inside_with(&self, of: u64) -> Option<bool> {
         let ([low, high], given, value) = (self.found.ci95?, self.given?, self.found.value);
-        let wider = wider_for(of);
+        let wider = simultaneous_factor(of);
         Some((value + wider * (low - value)..=value + wider * (high - value)).contains(&given))
     }
 
     /// Whether the figure meets its requirement. `None` without one.
-    pub fn is_as_asked(&self) -> Option<bool> {
+    pub fn meets_requirement(&self) -> Option<bool> {
         let value = self.found.value;
         let reaches = |widest: f64| self.found.ci95.map(|[low, high]| 0.5 * (high - low) <= widest);
         match self.demand? {
-            Demand::Within(widest) => reaches(widest),
-            Demand::WithinShare(share) => reaches(share * value.abs()),
-            Demand::AtLeast(least) => Some(value >= least),
-            Demand::AtMost(most) => Some(value <= most),
+            Requirement::Within(widest) => reaches(widest),
+            Requirement::WithinShare(share) => reaches(share * value.abs()),
+            Requirement::AtLeast(least) => Some(value >= least),
+            Requirement::AtMost(most) => Some(value <= most),
         }
     }
 }
 
 /// Factor by which `of` 95 % intervals have to be wider to hold simultaneously in 95 of 100 campaigns (Šidák 1967),
 /// for normal deviates.
-pub fn wider_for(of: u64) -> f64 {
+pub fn simultaneous_factor(of: u64) -> f64 {
     let normal = Normal::standard();
     let reach = |confidence: f64| normal.inverse_cdf(0.5 + 0.5 * confidence);
     reach(0.95_f64.powf(1.0 / of.max(1) as f64)) / reach(0.95)
@@ -96,7 +96,7 @@ pub fn wider_for(of: u64) -> f64 {
 
 /// One procedure of the campaign.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chapter {
+pub struct ProcedureResult {
     /// Id of the procedure.
     pub procedure: &'static str,
     /// Its title.
@@ -112,7 +112,7 @@ pub struct Chapter {
 }
 
 /// A figure to compare: table, quantity, value of the document, requirement.
-type Figure = (&'static str, &'static str, Option<f64>, Option<Demand>);
+type Figure = (&'static str, &'static str, Option<f64>, Option<Requirement>);
 
 /// One procedure with its parameters, and the figures of the document.
 type Part = (&'static str, Value, Vec<Figure>);
@@ -120,10 +120,10 @@ type Part = (&'static str, Value, Vec<Figure>);
 fn friction([tau_c, c_v, tau_h, omega_s, delta_s]: [f64; 5]) -> Vec<Figure> {
     let table = "4.5, 4.6";
     vec![
-        (table, "tau_c", Some(tau_c), Some(Demand::WithinShare(0.02))),
-        (table, "c_v", Some(c_v), Some(Demand::WithinShare(0.03))),
-        (table, "tau_h", Some(tau_h), Some(Demand::WithinShare(0.05))),
-        (table, "omega_s", Some(omega_s), Some(Demand::WithinShare(0.15))),
+        (table, "tau_c", Some(tau_c), Some(Requirement::WithinShare(0.02))),
+        (table, "c_v", Some(c_v), Some(Requirement::WithinShare(0.03))),
+        (table, "tau_h", Some(tau_h), Some(Requirement::WithinShare(0.05))),
+        (table, "omega_s", Some(omega_s), Some(Requirement::WithinShare(0.15))),
         (table, "delta_s", Some(delta_s), None),
     ]
 }
@@ -141,15 +141,15 @@ fn compensation(figures: [f64; 9]) -> Vec<Figure> {
         "rho_max_observer",
     ];
     let beyond = [("ratio_full", 0.5), ("over_full", 0.0)]
-        .map(|(name, most)| ("beyond", name, None, Some(Demand::AtMost(most))));
+        .map(|(name, most)| ("beyond", name, None, Some(Requirement::AtMost(most))));
     names.into_iter().zip(figures).map(|(name, figure)| ("4.7", name, Some(figure), None)).chain(beyond).collect()
 }
 
 fn stiffness([inverse_k, k, beta_0]: [f64; 3]) -> Vec<Figure> {
     vec![
         ("4.8", "inverse_k", Some(inverse_k), None),
-        ("4.8", "k", Some(k), Some(Demand::WithinShare(0.01))),
-        ("4.8", "beta_0", Some(beta_0), Some(Demand::WithinShare(0.03))),
+        ("4.8", "k", Some(k), Some(Requirement::WithinShare(0.01))),
+        ("4.8", "beta_0", Some(beta_0), Some(Requirement::WithinShare(0.03))),
     ]
 }
 
@@ -160,14 +160,14 @@ const RANGES_AGREE_NM: f64 = 0.12;
 fn joint(bearing_nm_rad: f64, figures: [Vec<Figure>; 3]) -> Vec<Part> {
     let [friction, stiffness, compensation] = figures;
     vec![
-        ("brake_speed_independence", json!({}), vec![("3.4", "change_max", None, Some(Demand::AtMost(0.02)))]),
+        ("brake_speed_independence", json!({}), vec![("3.4", "change_max", None, Some(Requirement::AtMost(0.02)))]),
         ("brake_hysteresis", json!({}), Vec::new()),
-        ("brake_torque", json!({}), vec![("beyond", "error_max", None, Some(Demand::AtMost(0.01)))]),
+        ("brake_torque", json!({}), vec![("beyond", "error_max", None, Some(Requirement::AtMost(0.01)))]),
         ("demagnetise", json!({}), Vec::new()),
         (
             "torque_sensor_zero",
             json!({}),
-            vec![("data sheet", "disagreement", None, Some(Demand::AtMost(RANGES_AGREE_NM)))],
+            vec![("data sheet", "disagreement", None, Some(Requirement::AtMost(RANGES_AGREE_NM)))],
         ),
         ("friction", json!({"load_levels": 1, "repeats": 5}), friction),
         ("breakaway", json!({}), Vec::new()),
@@ -185,14 +185,14 @@ fn gear_and_brake_b() -> Vec<Part> {
     let (slow, stiff) =
         (json!({"top_current": share}), json!({"top_load": share, "bearing_stiffness_nm_rad": 155.0e3}));
     vec![
-        ("brake_speed_independence", slow, vec![("3.5", "change_max", None, Some(Demand::AtLeast(0.02)))]),
+        ("brake_speed_independence", slow, vec![("3.5", "change_max", None, Some(Requirement::AtLeast(0.02)))]),
         ("stiffness", stiff, stiffness([0.1812e-3, 5722.5, 0.5871e-3])),
     ]
 }
 
 /// The smallest steps of the stage in an edge search, a shift and a rotation.
-const SHIFT_STEP: Demand = Demand::Within(4e-6);
-const ROTATION_STEP: Demand = Demand::Within(2e-4);
+const SHIFT_STEP: Requirement = Requirement::Within(4e-6);
+const ROTATION_STEP: Requirement = Requirement::Within(2e-4);
 
 fn encoder() -> Vec<Part> {
     let point_rad = TAU / f64::from(1 << 18);
@@ -202,17 +202,17 @@ fn encoder() -> Vec<Part> {
         (
             "encoder_offset",
             json!({}),
-            vec![("eq. 4.3", "offset", Some(1437.0 * point_rad), Some(Demand::Within(point_rad)))],
+            vec![("eq. 4.3", "offset", Some(1437.0 * point_rad), Some(Requirement::Within(point_rad)))],
         ),
         ("encoder_startup", json!({}), vec![("section 4.1", "startup_spread", None, None)]),
-        ("encoder_delay", json!({}), vec![("4.2", "delay", Some(64.34e-6), Some(Demand::Within(1e-6)))]),
+        ("encoder_delay", json!({}), vec![("4.2", "delay", Some(64.34e-6), Some(Requirement::Within(1e-6)))]),
         (
             "encoder_linearity",
             json!({}),
             vec![
                 ("figs 4.4–4.11", "bits_before", Some(10.0), None),
                 ("figs 4.4–4.11", "bits_velocity", Some(14.0), None),
-                ("beyond", "bits_direction", None, Some(Demand::AtLeast(15.0))),
+                ("beyond", "bits_direction", None, Some(Requirement::AtLeast(15.0))),
             ],
         ),
         (
@@ -233,7 +233,7 @@ fn encoder() -> Vec<Part> {
 
 /// Figure 3.2 of the chapter on the Puma, joint 2: volts, and volts over degrees in a second at the link.
 fn puma() -> Vec<Part> {
-    let line = |name, figure, share: Option<f64>| ("3.2", name, Some(figure), share.map(Demand::WithinShare));
+    let line = |name, figure, share: Option<f64>| ("3.2", name, Some(figure), share.map(Requirement::WithinShare));
     let figures = vec![
         line("b_positive", 0.007581, Some(0.03)),
         line("f_positive", 0.545064, Some(0.02)),
@@ -274,43 +274,45 @@ impl Subject {
             Subject::FilteredEncoder { delay_without_s } => vec![(
                 "encoder_delay",
                 json!({"delay_without_filter_s": delay_without_s}),
-                vec![("4.3", "filter_delay", Some(10.99e-6), Some(Demand::Within(1e-6)))],
+                vec![("4.3", "filter_delay", Some(10.99e-6), Some(Requirement::Within(1e-6)))],
             )],
             Subject::Puma => puma(),
         }
     }
 }
 
-/// Runs the campaign in its order and reports each chapter when it is done. `given` contains the true values of the
+/// Runs the campaign in its order and reports the result of each procedure when it is done. `given` contains the true values of the
 /// bench, by the names of the quantities.
 pub fn reproduce(
     bench: &mut Bench,
     subject: Subject,
     given: &dyn Fn(&str) -> Option<f64>,
-    done: &mut dyn FnMut(&Chapter),
-) -> Result<Vec<Chapter>, ConductFault> {
-    let mut chapters: Vec<Chapter> = Vec::new();
+    done: &mut dyn FnMut(&ProcedureResult),
+) -> Result<Vec<ProcedureResult>, InMemoryRunFault> {
+    let mut results: Vec<ProcedureResult> = Vec::new();
     let mut facts = BenchFacts::of(bench);
     for (id, parameters, figures) in subject.campaign() {
         let Some(procedure) = procedure(id) else { continue };
         let mut parameters = parameters.as_object().cloned().unwrap_or_default();
         if id == "compensation" {
-            let friction = chapters.iter().find(|chapter| chapter.procedure == "friction");
-            let next = friction.and_then(|chapter| crate::procedure("friction")?.follow_up(&chapter.identification));
+            let friction = results.iter().find(|result| result.procedure == "friction");
+            let next = friction.and_then(|result| crate::procedure("friction")?.follow_up(&result.identification));
             parameters.extend(next.map(|next| next.parameters).unwrap_or_default());
         }
-        let Conducted { table, identification, duration_s } = conduct_knowing(bench, &facts, procedure, &parameters)?;
+        let InMemoryRun { table, identification, duration_s } =
+            run_in_memory_with_facts(bench, &facts, procedure, &parameters)?;
         if id == "brake_hysteresis" {
             facts.brake_model = brake_model(&table);
         }
         let Some(identification) = identification else { continue };
         let comparisons = compare(&identification, &figures, given);
         let title = procedure.title();
-        let chapter = Chapter { procedure: procedure.id(), title, parameters, identification, comparisons, duration_s };
-        done(&chapter);
-        chapters.push(chapter);
+        let result =
+            ProcedureResult { procedure: procedure.id(), title, parameters, identification, comparisons, duration_s };
+        done(&result);
+        results.push(result);
     }
-    Ok(chapters)
+    Ok(results)
 }
 
 fn compare(found: &Identification, figures: &[Figure], given: &dyn Fn(&str) -> Option<f64>) -> Vec<Comparison> {
@@ -346,8 +348,8 @@ mod tests {
         let given = |name: &str| (name == "tau_c").then_some(0.0302);
         let comparisons = compare(&found, &friction([0.030, 1.512e-4, 0.039, 0.06, 0.8]), &given);
         assert_eq!(comparisons.iter().map(|c| c.document).collect::<Vec<_>>(), [Some(0.030), Some(1.512e-4)]);
-        assert_eq!((comparisons[0].is_inside(), comparisons[0].is_as_asked()), (Some(true), Some(true)));
-        assert_eq!((comparisons[1].is_inside(), comparisons[1].is_as_asked()), (None, Some(true)));
+        assert_eq!((comparisons[0].is_inside(), comparisons[0].meets_requirement()), (Some(true), Some(true)));
+        assert_eq!((comparisons[1].is_inside(), comparisons[1].meets_requirement()), (None, Some(true)));
     }
 
     #[test]

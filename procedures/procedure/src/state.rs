@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn an_illegal_move_says_what_was_asked() {
+    fn an_illegal_move_names_the_transition() {
         let refused = RunState::Completed.after(Transition::Resume).unwrap_err();
         assert_eq!(refused.to_string(), "a run that is completed cannot resume");
     }

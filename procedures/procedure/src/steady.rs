@@ -1,17 +1,28 @@
 //! Criterion of a warm joint: temperature and current no longer drift between the cycles of the warm-up.
 
 use crate::findings::legs;
-use crate::plan::Steady;
 use jointbench_instrument::RunTable;
+use serde::{Deserialize, Serialize};
 
 /// Longest rest that does not restart the criterion, because gears cool in minutes. After a longer one the earlier
 /// cycles do not count.
-pub(crate) const COOLS_S: f64 = 60.0;
+pub(crate) const COOLING_S: f64 = 60.0;
+
+/// Criterion of a warm joint, evaluated over whole cycles of warm-up steps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SteadyCriterion {
+    /// Steps of one cycle; every cycle has the same speeds.
+    pub cycle_steps: usize,
+    /// Largest drift of the temperature.
+    pub temperature_c_per_min: f64,
+    /// Largest relative drift of the mean |motor current|.
+    pub current_share_per_min: f64,
+}
 
 /// Evaluates the warm-up of one run. Only the steady-state part of each step counts.
 #[derive(Debug, Clone)]
-pub(crate) struct SteadyWatch {
-    rule: Steady,
+pub(crate) struct SteadyDetector {
+    rule: SteadyCriterion,
     current: Mean,
     cycles: Vec<Mean>,
     steps: usize,
@@ -48,22 +59,22 @@ impl Drift {
         }
     }
 
-    pub fn is_temperature_steady(&self, rule: &Steady) -> bool {
+    pub fn is_temperature_steady(&self, rule: &SteadyCriterion) -> bool {
         self.temperature_c_per_min.abs() <= rule.temperature_c_per_min
     }
 
-    pub fn is_current_steady(&self, rule: &Steady) -> bool {
+    pub fn is_current_steady(&self, rule: &SteadyCriterion) -> bool {
         self.current_share_per_min.abs() <= rule.current_share_per_min
     }
 }
 
-impl SteadyWatch {
-    pub fn new(rule: Steady) -> Self {
+impl SteadyDetector {
+    pub fn new(rule: SteadyCriterion) -> Self {
         Self { rule, current: Mean::default(), cycles: Vec::new(), steps: 0 }
     }
 
     /// The state at the end of a run that is only a warm-up.
-    pub fn of(rule: Steady, run: &RunTable) -> Option<Self> {
+    pub fn of(rule: SteadyCriterion, run: &RunTable) -> Option<Self> {
         let [time_s, setpoint_rad_s, current_a] =
             ["time_s", "velocity_setpoint_rad_s", "motor_current_a"].map(|name| run.column(name));
         let (time_s, setpoint_rad_s, current_a) = (time_s?, setpoint_rad_s?, current_a?);
@@ -74,7 +85,7 @@ impl SteadyWatch {
             let rows = attempts[0].rows.start..attempts[attempts.len() - 1].rows.end;
             let plateau_rad_s = setpoint_rad_s[rows.clone()].iter().fold(0.0, |top, v: &f64| v.abs().max(top));
             for row in rows {
-                if row > 0 && time_s[row] - time_s[row - 1] >= COOLS_S {
+                if row > 0 && time_s[row] - time_s[row - 1] >= COOLING_S {
                     watch = Self::new(rule);
                 }
                 if setpoint_rad_s[row].abs() >= plateau_rad_s {
@@ -123,8 +134,8 @@ mod tests {
     /// A joint that warms up with a time constant of one minute, its friction falling by a fifth.
     #[test]
     fn an_exponential_warm_up_ends_where_its_slope_falls_below_the_bound() {
-        let rule = Steady { cycle_steps: 2, temperature_c_per_min: 1.0, current_share_per_min: 0.02 };
-        let mut watch = SteadyWatch::new(rule);
+        let rule = SteadyCriterion { cycle_steps: 2, temperature_c_per_min: 1.0, current_share_per_min: 0.02 };
+        let mut watch = SteadyDetector::new(rule);
         let mut ended_s = None;
         for step in 0..60 {
             for tick in 0..100 {
@@ -145,9 +156,9 @@ mod tests {
     }
 
     #[test]
-    fn two_cycles_say_nothing() {
-        let rule = Steady { cycle_steps: 1, temperature_c_per_min: 1.0, current_share_per_min: 1.0 };
-        let mut watch = SteadyWatch::new(rule);
+    fn two_cycles_give_no_drift() {
+        let rule = SteadyCriterion { cycle_steps: 1, temperature_c_per_min: 1.0, current_share_per_min: 1.0 };
+        let mut watch = SteadyDetector::new(rule);
         for cycle in 0..2 {
             watch.sample(f64::from(cycle), 1.0, None);
             watch.step_done();

@@ -70,9 +70,9 @@ fn ended_by(control: Control) -> (RunState, Vec<String>, f64) {
     let mut bench = mock.open_bench("bench").unwrap();
     let choices = json!({ "load_levels": 2, "top_load": 0.8 });
     let plan = procedure("friction").unwrap().plan(choices.as_object().unwrap(), &BenchFacts::of(&bench)).unwrap();
-    let (controls, heard) = channel();
+    let (controls, receiver) = channel();
     let mut kept = Steered { controls, asks: Some(control), notes: Vec::new() };
-    let end = run(&mut bench, &plan, 1, &heard, &mut kept);
+    let end = run(&mut bench, &plan, 1, &receiver, &mut kept);
     assert_eq!(end.safe, Safe::SafeVerified);
     (end.state, kept.notes, cogging_nm(&mut bench))
 }

@@ -19,12 +19,12 @@ const NOTICED_S: f64 = 0.6;
 
 /// The times of the rows, and the notes.
 #[derive(Default)]
-struct Kept {
+struct MemoryRecorder {
     times_s: Vec<f64>,
     events: Vec<EventKind>,
 }
 
-impl Recorder for Kept {
+impl Recorder for MemoryRecorder {
     fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
         Ok(None)
     }
@@ -50,11 +50,11 @@ fn start(troubles: impl IntoIterator<Item = Planned>) -> (MockBench, Bench) {
     (mock, bench)
 }
 
-fn play(bench: &mut Bench, id: &str, parameters: serde_json::Value) -> (RunEnd, Kept) {
+fn play(bench: &mut Bench, id: &str, parameters: serde_json::Value) -> (RunEnd, MemoryRecorder) {
     let parameters = parameters.as_object().cloned().unwrap_or_default();
     let plan = procedure(id).unwrap().plan(&parameters, &BenchFacts::of(bench)).unwrap();
     let (_held, controls) = channel();
-    let mut kept = Kept::default();
+    let mut kept = MemoryRecorder::default();
     let end = run(bench, &plan, 1, &controls, &mut kept);
     (end, kept)
 }
@@ -69,7 +69,7 @@ fn check(id: &str, instrument: MockInstrument, trouble: Trouble, named: &str, sa
         _ => vec![(instrument, trouble, FROM_S, None)],
     };
     let (mock, mut bench) = start(troubles);
-    let (end, Kept { times_s, .. }) = play(&mut bench, id, serde_json::Value::Null);
+    let (end, MemoryRecorder { times_s, .. }) = play(&mut bench, id, serde_json::Value::Null);
 
     let reason = end.reason.unwrap_or_default();
     assert_eq!(end.state, RunState::Failed, "{case}: {reason}");
@@ -123,13 +123,13 @@ fn without_its_torque_sensor_a_run_fails_and_the_bench_is_read_back_safe() {
 
 /// A joint that does not answer was commanded to disarm, and confirms it when it is reachable again.
 #[test]
-fn without_its_joint_a_run_fails_and_says_what_could_not_be_read_back() {
+fn without_its_joint_a_run_fails_and_reports_what_could_not_be_read_back() {
     let joint = |trouble| (MockInstrument::Joint, trouble, "joint");
     check_all(CABLE.into_iter().chain([Trouble::Refusing]).map(joint), &[Safe::SafeCommanded, Safe::UnsafeUnknown]);
 }
 
 #[test]
-fn without_its_supply_a_run_fails_and_says_what_could_not_be_read_back() {
+fn without_its_supply_a_run_fails_and_reports_what_could_not_be_read_back() {
     let brake = |trouble| (MockInstrument::Brake, trouble, "brake_a");
     check_all(CABLE.into_iter().chain([Trouble::Refusing]).map(brake), &[Safe::SafeCommanded, Safe::UnsafeUnknown]);
 }
@@ -156,7 +156,7 @@ fn another_unit_behind_a_port_that_was_never_lost_is_named_at_the_end() {
     for instrument in [MockInstrument::TorqueSensor, MockInstrument::Brake] {
         let short = json!({"load_levels": 3, "dwell_s": 0.5, "top_load": 0.3});
         let (_mock, mut bench) = start([(instrument, Trouble::Exchanged, FROM_S, None)]);
-        let (end, Kept { events, .. }) = play(&mut bench, "stiffness", short);
+        let (end, MemoryRecorder { events, .. }) = play(&mut bench, "stiffness", short);
         let reason = end.reason.unwrap_or_default();
         assert_eq!(end.state, RunState::Failed, "{instrument:?}: {reason}");
         assert!(reason.contains("another instrument answers: expected"), "{instrument:?}: {reason}");
@@ -193,7 +193,7 @@ fn a_gap_in_the_torque_stream_is_reported_and_not_filled() {
     let short = json!({"load_levels": 3, "dwell_s": 0.5, "top_load": 0.3});
     let gaps = (MockInstrument::TorqueSensor, Trouble::StreamGap, FROM_S, Some(FROM_S + 0.6));
     let (_mock, mut bench) = start([gaps]);
-    let (end, Kept { times_s, events }) = play(&mut bench, "stiffness", short);
+    let (end, MemoryRecorder { times_s, events }) = play(&mut bench, "stiffness", short);
     assert_eq!((end.state, end.safe), (RunState::Completed, Safe::SafeVerified), "{:?}", end.reason);
     let counts: Vec<u64> = events
         .iter()

@@ -4,8 +4,8 @@ use jointbench_devices::sim::{EncoderTruth, MockInstrument, PlannedTrouble, Trou
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, fit};
-use jointbench_procedure::conduct::{ConductFault, conduct};
 use jointbench_procedure::identification::{Form, Identification, Mark, Verdict};
+use jointbench_procedure::in_memory_run::{InMemoryRunFault, run_in_memory};
 use jointbench_procedure::parameter::Values;
 use jointbench_procedure::{
     BenchFacts, Commit, Control, Demand, EventKind, Live, Recorder, RecorderFault, RunState, Safe, procedure,
@@ -20,7 +20,7 @@ fn open(seed: u64, filter: bool) -> (EncoderTruth, MockBench, Bench) {
 }
 
 fn run(bench: &mut Bench, id: &str, parameters: Value) -> Identification {
-    let conducted = conduct(bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap();
+    let conducted = run_in_memory(bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap();
     let found = conducted.identification.unwrap();
     println!("{id}: {} in {:.0} s of the bench", found.summary, conducted.duration_s);
     let finds = procedure(id).unwrap().finds();
@@ -87,9 +87,9 @@ fn a_hunt_that_is_paused_finds_the_same_edges() {
     let alignment = procedure("encoder_alignment").unwrap();
     let given = json!({"halvings": 3, "map_positions": 3});
     let plan = alignment.plan(given.as_object().unwrap(), &BenchFacts::of(&bench)).unwrap();
-    let (controls, heard) = channel();
+    let (controls, receiver) = channel();
     let mut pauser = Pauser { controls, commits: 0, pauses: 0, shown: 0, rows: None };
-    let end = jointbench_procedure::run(&mut bench, &plan, 1, &heard, &mut pauser);
+    let end = jointbench_procedure::run(&mut bench, &plan, 1, &receiver, &mut pauser);
     assert_eq!((end.state, end.safe, pauser.pauses), (RunState::Completed, Safe::SafeVerified, 4), "{:?}", end.reason);
     let table = RunTable::new(plan.meta.clone(), pauser.rows.unwrap()).unwrap();
     let values = Values::parse(alignment.schema(), given.as_object().unwrap()).unwrap();
@@ -132,9 +132,9 @@ fn however_a_run_of_the_stage_is_ended_shaft_and_stage_stand_still() {
     {
         let (_, mock, mut bench) = open(11, false);
         let plan = procedure("encoder_alignment").unwrap().plan(&Default::default(), &BenchFacts::of(&bench)).unwrap();
-        let (controls, heard) = channel();
+        let (controls, receiver) = channel();
         let mut recorder = Interrupter { controls, control, commits: 0, rows: 0 };
-        let end = jointbench_procedure::run(&mut bench, &plan, 1, &heard, &mut recorder);
+        let end = jointbench_procedure::run(&mut bench, &plan, 1, &receiver, &mut recorder);
         assert_eq!((end.state, end.safe), (state, Safe::SafeVerified), "{control:?}: {:?}", end.reason);
         assert_eq!(end.rows, recorder.rows, "{control:?}");
         assert!(!bench.joint.health().unwrap().armed);
@@ -146,7 +146,7 @@ fn however_a_run_of_the_stage_is_ended_shaft_and_stage_stand_still() {
         let moved_m = (stage.pose().unwrap().shift_m[0] - here.shift_m[0]).abs();
         assert!(stage.is_referenced().unwrap() && moved_m < 1e-6, "{control:?}: {moved_m} m");
         // The next run can start.
-        let offset = conduct(&mut bench, procedure("encoder_offset").unwrap(), &Default::default()).unwrap();
+        let offset = run_in_memory(&mut bench, procedure("encoder_offset").unwrap(), &Default::default()).unwrap();
         assert_eq!(offset.identification.unwrap().verdict, Verdict::Identified);
     }
 }
@@ -160,7 +160,8 @@ fn an_encoder_that_falls_silent_ends_the_run_and_the_bench_is_safe() {
     let mock = MockBench::start(settings).unwrap();
     let mut bench = mock.open_bench("encoder bench").unwrap();
     let offset = procedure("encoder_offset").unwrap();
-    let Err(ConductFault::Ended { end, .. }) = conduct(&mut bench, offset, json!({}).as_object().unwrap()) else {
+    let Err(InMemoryRunFault::Ended { end, .. }) = run_in_memory(&mut bench, offset, json!({}).as_object().unwrap())
+    else {
         panic!("the run came to its end without an encoder");
     };
     assert_eq!((end.state, end.safe), (RunState::Failed, Safe::SafeVerified), "{:?}", end.reason);
@@ -180,7 +181,8 @@ fn a_stage_that_lost_its_power_ends_the_run_too() {
     let mock = MockBench::start(settings).unwrap();
     let mut bench = mock.open_bench("encoder bench").unwrap();
     let alignment = procedure("encoder_alignment").unwrap();
-    let Err(ConductFault::Ended { end, .. }) = conduct(&mut bench, alignment, json!({}).as_object().unwrap()) else {
+    let Err(InMemoryRunFault::Ended { end, .. }) = run_in_memory(&mut bench, alignment, json!({}).as_object().unwrap())
+    else {
         panic!("the run came to its end with a stage that knows nothing");
     };
     assert_eq!((end.state, end.safe), (RunState::Failed, Safe::SafeVerified), "{:?}", end.reason);
@@ -242,9 +244,9 @@ fn a_bench_without_a_switch_waits_for_a_hand_and_notices_when_it_did_nothing() {
     let startup = procedure("encoder_startup").unwrap();
     let given = json!({"power_ups": 3});
     let plan = startup.plan(given.as_object().unwrap(), &BenchFacts::of(&bench)).unwrap();
-    let (controls, heard) = channel();
+    let (controls, receiver) = channel();
     let mut hand = Hand { mock, controls, asked: 0, rows: None };
-    let end = jointbench_procedure::run(&mut bench, &plan, 1, &heard, &mut hand);
+    let end = jointbench_procedure::run(&mut bench, &plan, 1, &receiver, &mut hand);
     assert_eq!((end.state, end.safe), (RunState::Completed, Safe::SafeVerified), "{:?}", end.reason);
     assert_eq!(hand.asked, 4, "once more than there are power-ups");
     let table = RunTable::new(plan.meta.clone(), hand.rows.unwrap()).unwrap();
@@ -269,7 +271,7 @@ fn the_dry_run_says_nothing_of_a_brake_where_there_is_none() {
 #[test]
 fn offset_and_delay_are_those_that_the_mock_was_given() {
     let (truth, _mock, mut bench) = open(3, false);
-    let conducted = conduct(&mut bench, procedure("encoder_offset").unwrap(), &Default::default()).unwrap();
+    let conducted = run_in_memory(&mut bench, procedure("encoder_offset").unwrap(), &Default::default()).unwrap();
     let offset = conducted.identification.unwrap();
     check(&offset, "offset", truth.startup_rad, POINT_RAD);
     let effects = ["offset", "harmonic_1", "harmonic_2", "delay"].map(String::from);

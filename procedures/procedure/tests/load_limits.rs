@@ -3,7 +3,7 @@
 use jointbench_devices::sim::Load;
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::Bench;
-use jointbench_procedure::conduct::conduct;
+use jointbench_procedure::in_memory_run::run_in_memory;
 use jointbench_procedure::{BenchFacts, Plan, procedure};
 use serde_json::json;
 
@@ -22,9 +22,9 @@ fn refusal(plan: &Plan, bench: &BenchFacts) -> Option<String> {
 /// The load that the refusal of a plan with its defaults names.
 fn named(id: &str, name: &str, bench: &BenchFacts) -> f64 {
     let plan = procedure(id).expect("a procedure").plan(&Default::default(), bench).expect("a plan");
-    let said = refusal(&plan, bench).unwrap_or_else(|| panic!("{id} is allowed with its defaults"));
-    let share = said.split(&format!("set {name} = ")).nth(1).and_then(|rest| rest.split(' ').next());
-    share.and_then(|share| share.parse().ok()).unwrap_or_else(|| panic!("{id}: {said}"))
+    let message = refusal(&plan, bench).unwrap_or_else(|| panic!("{id} is allowed with its defaults"));
+    let share = message.split(&format!("set {name} = ")).nth(1).and_then(|rest| rest.split(' ').next());
+    share.and_then(|share| share.parse().ok()).unwrap_or_else(|| panic!("{id}: {message}"))
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn a_run_with_the_named_load_keeps_the_limits() {
     let (_mock, mut bench) = behind_the_gear();
     let share = named("brake_speed_independence", "top_current", &BenchFacts::of(&bench));
     let choices = json!({ "top_current": share });
-    let run = conduct(&mut bench, procedure("brake_speed_independence").unwrap(), choices.as_object().unwrap());
+    let run = run_in_memory(&mut bench, procedure("brake_speed_independence").unwrap(), choices.as_object().unwrap());
     assert!(run.is_ok(), "{:?}", run.err());
 }
 
@@ -64,6 +64,6 @@ fn where_no_load_is_within_the_limits_none_is_named() {
     let (_mock, bench) = behind_the_gear();
     let (facts, fast) = (BenchFacts::of(&bench), json!({"speed_rad_s": 19.0}));
     let plan = procedure("stiffness").unwrap().plan(fast.as_object().unwrap(), &facts).expect("a plan");
-    let said = refusal(&plan, &facts).expect("too fast");
-    assert!(said.contains("reduce speed or load"), "{said}");
+    let message = refusal(&plan, &facts).expect("too fast");
+    assert!(message.contains("reduce speed or load"), "{message}");
 }

@@ -34,7 +34,7 @@ pub(super) fn ending(run: &Run) -> String {
     if let Some(why) = &summary.not_stored {
         text += &format!("; not yet stored: {why}");
     }
-    let can_go_on = jointbench_procedure::procedure(&summary.procedure).is_some_and(|one| one.goes_on().is_ok());
+    let can_go_on = jointbench_procedure::procedure(&summary.procedure).is_some_and(|one| one.can_resume().is_ok());
     if can_go_on && is_over(summary.state) && summary.state != RunState::Completed && summary.rows > 0 {
         text += &format!("; complete it with `jointbench run --continue {}`", summary.id);
     }

@@ -7,7 +7,9 @@ use crate::view::{self, reread};
 use jointbench_devices::sim::{Load, Truth};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::identification::Quantity;
-use jointbench_procedure::reproduce::{Chapter, Comparison, Demand, Subject, reproduce as campaign, wider_for};
+use jointbench_procedure::reproduce::{
+    Comparison, ProcedureResult, Requirement, Subject, reproduce as campaign, simultaneous_factor,
+};
 use std::fmt::Write;
 use std::fs;
 use std::io;
@@ -30,7 +32,7 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
         create_folder(page)?;
     }
     let mut page = preamble(arguments.seed);
-    let mut chapters: Vec<(&str, Chapter)> = Vec::new();
+    let mut chapters: Vec<(&str, ProcedureResult)> = Vec::new();
     for (title, joint, mut subject) in SUBJECTS {
         println!("{title}");
         page += &format!("\n## {title}\n");
@@ -78,7 +80,7 @@ struct Outcome {
 }
 
 impl Outcome {
-    fn of(chapters: &[(&str, Chapter)]) -> Self {
+    fn of(chapters: &[(&str, ProcedureResult)]) -> Self {
         let comparisons: Vec<(&str, &Comparison)> = chapters
             .iter()
             .flat_map(|(title, chapter)| chapter.comparisons.iter().map(move |one| (*title, one)))
@@ -92,7 +94,7 @@ impl Outcome {
             compared,
             missed: where_not(&Comparison::is_inside),
             beyond: where_not(&|one| one.is_inside_with(compared)),
-            broken: where_not(&Comparison::is_as_asked),
+            broken: where_not(&Comparison::meets_requirement),
         }
     }
 
@@ -105,7 +107,7 @@ impl Outcome {
              coverage the intervals must be {:.2} times as wide; then {} contain it{}.",
             compared - missed.len() as u64,
             except(missed),
-            wider_for(*compared),
+            simultaneous_factor(*compared),
             if beyond.is_empty() { "all".to_owned() } else { (compared - beyond.len() as u64).to_string() },
             except(beyond),
         )
@@ -130,7 +132,7 @@ fn preamble(seed: u64) -> String {
     )
 }
 
-fn measure(joint: Joint, subject: Subject, seed: u64) -> Result<Vec<Chapter>, Exit> {
+fn measure(joint: Joint, subject: Subject, seed: u64) -> Result<Vec<ProcedureResult>, Exit> {
     // The joints of the documents have no hidden effects except a Stribeck effect.
     let hidden: &[&str] = if joint == Joint::EncoderShaft { &[] } else { &["stribeck"] };
     let mut settings = MockSettings::new(joint, seed).hiding(hidden);
@@ -200,7 +202,7 @@ fn unwritable(path: &Path, fault: &io::Error) -> Exit {
 }
 
 fn mark(one: &Comparison) -> &'static str {
-    match (one.is_inside(), one.is_as_asked()) {
+    match (one.is_inside(), one.meets_requirement()) {
         (Some(false), _) => "  MISSED",
         (_, Some(false)) => "  REQUIREMENT NOT MET",
         _ => "",
@@ -214,18 +216,18 @@ fn titled(found: &Quantity) -> String {
     }
 }
 
-fn asked(demand: Demand, unit: &str) -> String {
+fn asked(demand: Requirement, unit: &str) -> String {
     let figure = |value: f64| with_interval(value, None, unit).0;
     match demand {
-        Demand::Within(widest) => format!("±{}", figure(widest)),
-        Demand::WithinShare(share) => format!("±{:.0} %", 100.0 * share),
-        Demand::AtLeast(least) => format!("≥ {}", figure(least)),
-        Demand::AtMost(most) => format!("≤ {}", figure(most)),
+        Requirement::Within(widest) => format!("±{}", figure(widest)),
+        Requirement::WithinShare(share) => format!("±{:.0} %", 100.0 * share),
+        Requirement::AtLeast(least) => format!("≥ {}", figure(least)),
+        Requirement::AtMost(most) => format!("≤ {}", figure(most)),
     }
 }
 
 /// A chapter of the page. Its figures are written to a folder with the name of the page.
-fn chapter_text(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<String, Exit> {
+fn chapter_text(chapter: &ProcedureResult, title: &str, page: Option<&Path>) -> Result<String, Exit> {
     let mut text = format!("\n### {}\n\n{}\n", chapter.title, chapter.identification.summary);
     if !chapter.comparisons.is_empty() {
         let _ = writeln!(text, "\n{COLUMNS}\n|---|---|---|---|---|---|---|---|---|");
@@ -244,7 +246,7 @@ fn chapter_text(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<S
             one.given.map(number).unwrap_or_default(),
             yes(one.is_inside()),
             one.demand.map(|demand| asked(demand, &one.found.unit)).unwrap_or_default(),
-            yes(one.is_as_asked()),
+            yes(one.meets_requirement()),
         );
     }
     let Some(page) = page else { return Ok(text) };

@@ -20,7 +20,7 @@ pub use process::{Jobs, Streamed};
 pub(crate) use reply::{Head, Refusal};
 
 use crate::view::{EffectTrial, Exclusion};
-use jointbench_procedure::Lesson;
+use jointbench_procedure::DeferredPlan;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -84,7 +84,7 @@ pub enum Job {
     /// The part of an unfinished run's measurement that its remaining steps need.
     Recall {
         run: i64,
-        lesson: Lesson,
+        lesson: DeferredPlan,
     },
     Statistics {
         run: i64,

@@ -108,7 +108,7 @@ impl Lab {
             .await
             .map_err(|fault| LabError::Internal(format!("the identification of run {id} failed: {fault}")))?
             .ok_or_else(none)?
-            .of_run(id, record.state, procedure.goes_on().is_ok(), step.as_deref());
+            .of_run(id, record.state, procedure.can_resume().is_ok(), step.as_deref());
         if let [before @ .., last] = runs.as_slice()
             && !before.is_empty()
         {

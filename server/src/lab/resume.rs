@@ -7,8 +7,8 @@ use crate::store::{EventRecord, RunRecord};
 use crate::view::{Preview, Run, reread};
 use jiff::Timestamp;
 use jointbench_instrument::{Meta, RunTable, TableFault};
-use jointbench_procedure::continuing::{Continues, Done, joined, learnt_from};
-use jointbench_procedure::{Lesson, Plan, RunState};
+use jointbench_procedure::resume::{Continuation, FinishedSteps, joined};
+use jointbench_procedure::{DeferredPlan, Plan, RunState};
 
 impl Lab {
     /// Starts a run with the remaining steps of another run, after steps that restore their history.
@@ -33,17 +33,19 @@ impl Lab {
         let procedure = jointbench_procedure::procedure(name).ok_or_else(|| {
             LabError::Invalid(format!("run {id} used procedure {name}, which does not exist in this version"))
         })?;
-        procedure.goes_on().map_err(|why| LabError::Invalid(format!("run {id} cannot be resumed: {why}; {again}")))?;
+        procedure
+            .can_resume()
+            .map_err(|why| LabError::Invalid(format!("run {id} cannot be resumed: {why}; {again}")))?;
         let (bench, plan) = self.plan(&record.bench, name, &record.parameters).await?;
         let done = self.done(&record, Some(&plan)).await?;
         let rest = plan
-            .rest(id, done.steps, done.next_segment, &bench.facts())
+            .remaining(id, done.steps, done.next_segment, &bench.facts())
             .ok_or_else(|| LabError::Invalid(format!("run {id} has no finished step to resume from: {again}")))?;
         // The earlier data may be long: read it only if the plan needs it.
-        let rest = match rest.lesson.clone() {
-            Some(lesson) => {
-                let recalled = self.recall(id, lesson).await?;
-                recalled.into_iter().fold(rest, |rest, (measured, done)| rest.recalling(measured, done))
+        let rest = match rest.deferred.clone() {
+            Some(deferred) => {
+                let recalled = self.recall(id, deferred).await?;
+                recalled.into_iter().fold(rest, |rest, (measured, done)| rest.with_earlier_measurement(measured, done))
             }
             None => rest,
         };
@@ -56,7 +58,7 @@ impl Lab {
         let (bench, plan) = self.plan(&record.bench, &record.procedure, &record.parameters).await?;
         let plan = match continues(&record)? {
             Some(before) => plan
-                .rest(before.run, before.from_step, before.restored_from, &bench.facts())
+                .remaining(before.run, before.from_step, before.restored_from, &bench.facts())
                 .ok_or_else(|| LabError::Invalid(format!("run {id} was planned by an incompatible version")))?,
             None => plan,
         };
@@ -97,7 +99,7 @@ impl Lab {
     }
 
     /// The same with its finished steps.
-    async fn measured(&self, id: i64) -> Answer<(RunTable, Done)> {
+    async fn measured(&self, id: i64) -> Answer<(RunTable, FinishedSteps)> {
         let mut parts = self.parts(id).await?;
         let (Some(first), later) = (parts.pop(), parts.into_iter().rev()) else { unreachable!("at least one part") };
         let mut whole = self.table(first.id).await?;
@@ -112,17 +114,17 @@ impl Lab {
         Ok((whole, done))
     }
 
-    /// The part of a measurement that a lesson needs. `None` if it was not measured.
-    async fn recall(&self, run: i64, lesson: Lesson) -> Answer<Option<(RunTable, Done)>> {
-        let bytes = self.compute_json(Job::Recall { run, lesson }).await?;
+    /// The part of a measurement that a deferred plan needs. `None` if it was not measured.
+    async fn recall(&self, run: i64, deferred: DeferredPlan) -> Answer<Option<(RunTable, FinishedSteps)>> {
+        let bytes = self.compute_json(Job::Recall { run, lesson: deferred }).await?;
         rmp_serde::from_slice(&bytes)
             .map_err(|fault| LabError::Internal(format!("run {run} cannot be recalled: {fault}")))
     }
 
     /// The same as bytes, because JSON has no NaN.
-    pub(super) async fn recall_here(&self, run: i64, lesson: &Lesson) -> Answer<Vec<u8>> {
+    pub(super) async fn recall_here(&self, run: i64, deferred: &DeferredPlan) -> Answer<Vec<u8>> {
         let (whole, done) = self.measured(run).await?;
-        let recalled = match learnt_from(&whole, lesson) {
+        let recalled = match deferred.source_rows(&whole) {
             Err(TableFault::Empty) => None,
             part => Some((part?, done)),
         };
@@ -131,13 +133,14 @@ impl Lab {
 
     /// The steps of the procedure's plan that a run and its predecessors have finished. With a `plan`, its steps are
     /// compared with the events.
-    async fn done(&self, record: &RunRecord, plan: Option<&Plan>) -> Answer<Done> {
+    async fn done(&self, record: &RunRecord, plan: Option<&Plan>) -> Answer<FinishedSteps> {
         let continues = continues(record)?;
-        let mut done = Done { steps: continues.map_or(0, |continues| continues.from_step), ..Done::default() };
+        let mut done =
+            FinishedSteps { steps: continues.map_or(0, |continues| continues.from_step), ..FinishedSteps::default() };
         for event in self.inner.store.events(record.id, 0).await? {
             let number = |name: &str| event.data.get(name).and_then(serde_json::Value::as_u64);
             let (Some(step), Some(segment)) = (number("step"), number("segment")) else { continue };
-            done.take(continues, step as usize, segment as u32, event.kind == "step_finished");
+            done.add(continues, step as usize, segment as u32, event.kind == "step_finished");
             let (from, restored) = continues.map_or((0, 0), |continues| (continues.from_step, continues.restored));
             let label = event.data.get("label").and_then(serde_json::Value::as_str);
             let planned = (step as usize)
@@ -157,9 +160,9 @@ impl Lab {
     }
 }
 
-fn continues(record: &RunRecord) -> Answer<Option<Continues>> {
+fn continues(record: &RunRecord) -> Answer<Option<Continuation>> {
     let meta: Meta = reread(&record.meta)?;
-    Ok(Continues::of(&meta))
+    Ok(Continuation::of(&meta))
 }
 
 fn began(record: &RunRecord) -> Answer<Timestamp> {

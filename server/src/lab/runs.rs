@@ -54,7 +54,7 @@ impl Lab {
             return Err(LabError::Bench(format!("bench {} is not ready: {faults}", bench.name())));
         }
         let run = self.inner.store.create_run(&new_run(bench, &plan, by)?).await?;
-        let procedure = plan.procedure;
+        let procedure = plan.procedure.clone();
         tracing::info!(run.id = run, bench = bench.name(), procedure, by, planned_s = plan.duration_s(), "run queued");
         claim.start(run, plan).await?;
         self.judge_when_ended(bench, run);
@@ -188,7 +188,7 @@ fn new_run(bench: &BenchHandle, plan: &Plan, by: &str) -> Answer<NewRun> {
     });
     Ok(NewRun {
         bench: description.name.clone(),
-        procedure: plan.procedure.to_owned(),
+        procedure: plan.procedure.clone(),
         kind: plan.kind.to_string(),
         simulated: description.is_simulated(),
         parameters: plan.parameters.clone(),

@@ -75,10 +75,10 @@ impl From<files::Preview> for ImportPreview {
             rows: preview.rows,
             columns: preview.columns.into_iter().map(column).collect(),
             proposals: preview.proposals.into_iter().map(proposal).collect(),
-            notes: preview.notes.into_iter().map(|one| ImportNote { said: one.said, option: one.option }).collect(),
+            notes: preview.notes.into_iter().map(|one| ImportNote { said: one.message, option: one.option }).collect(),
             left: preview.left,
             refused: preview.refused.map(|one| ImportRefusal {
-                said: one.said,
+                said: one.message,
                 line: one.line,
                 column: one.column,
                 options: one.options,

@@ -59,7 +59,7 @@ impl AdamThermometer {
     }
 
     /// Identifies the module and reads the configuration of its channels.
-    fn who(&mut self) -> Result<Identity, Fault> {
+    fn read_identity(&mut self) -> Result<Identity, Fault> {
         let name = self.link.probe(&self.registers(MODULE_NAME, 2))?;
         if name[0] != ADAM_4015 {
             let (expected, found) = ("ADAM 4015".into(), format!("module {:04X}", name[0]));
@@ -111,7 +111,7 @@ impl Recovers for AdamThermometer {
     fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
         // Silence ends a frame, so nothing has to be sent.
         self.link.drain(b"", false)?;
-        self.who()
+        self.read_identity()
     }
 }
 
@@ -125,7 +125,7 @@ impl Instrument for AdamThermometer {
     }
 
     fn identify(&mut self) -> Result<Identity, Fault> {
-        if self.link.is_trusted() { self.who() } else { self.resume() }
+        if self.link.is_trusted() { self.read_identity() } else { self.resume() }
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {

@@ -59,7 +59,7 @@ impl LorenzSensor {
         Ok(sensor)
     }
 
-    fn who(&mut self) -> Result<Identity, Fault> {
+    fn read_identity(&mut self) -> Result<Identity, Fault> {
         self.link.probe(&Hello)?;
         let header = self.link.probe(&ReadConfig { block: STATOR_HEADER })?;
         let status = self.link.probe(&ReadStatusShort)?;
@@ -122,7 +122,7 @@ impl Recovers for LorenzSensor {
         let mut stop = Vec::new();
         StopStream.encode(&mut stop);
         self.link.drain(&stop, false)?;
-        self.who()
+        self.read_identity()
     }
 }
 
@@ -139,7 +139,7 @@ impl Instrument for LorenzSensor {
     fn identify(&mut self) -> Result<Identity, Fault> {
         self.stop_stream()?;
         self.ready()?;
-        self.who()
+        self.read_identity()
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {

@@ -18,7 +18,7 @@ const LATE_PERIODS: u32 = 3;
 /// The index of a sample wraps after this many values.
 const INDICES: u64 = 256;
 /// Wait for samples that are due but missing. Samples that still do not arrive are delayed.
-const PATIENCE: Duration = Duration::from_millis(20);
+const LONGEST_WAIT: Duration = Duration::from_millis(20);
 
 pub(super) struct Stream {
     clock: Arc<dyn Clock>,
@@ -29,9 +29,9 @@ pub(super) struct Stream {
     range: Range,
     /// Number of the next frame.
     number: u64,
-    heard_s: f64,
+    received_s: f64,
     /// The same on the wall clock, because a bench clock may not advance while the driver listens.
-    heard: Instant,
+    received_at: Instant,
     /// Time when frames were last found in the received bytes.
     found_s: f64,
     gap: Option<u64>,
@@ -39,7 +39,7 @@ pub(super) struct Stream {
 
 impl Stream {
     /// Samples in order, up to a gap, which is kept for the next call.
-    fn sort(&mut self, now_s: f64) -> Result<Vec<TorqueSample>, FaultKind> {
+    fn decode(&mut self, now_s: f64) -> Result<Vec<TorqueSample>, FaultKind> {
         let mut samples = Vec::new();
         while self.gap.is_none()
             && let Some(item) = self.frames.next()
@@ -47,8 +47,8 @@ impl Stream {
             match item {
                 Item::Frame(frame) => {
                     let moment = self.placed.moment(self.number);
-                    let felt = |channel: usize| in_range(frame.counts[channel], self.nominal_nm[channel]);
-                    let [torque, other] = self.range.in_use_and_other().map(felt);
+                    let torque_of = |channel: usize| in_range(frame.counts[channel], self.nominal_nm[channel]);
+                    let [torque, other] = self.range.in_use_and_other().map(torque_of);
                     let (at_s, uncertainty_s) = (moment.at_s, moment.uncertainty_s);
                     samples.push(TorqueSample { number: self.number, at_s, uncertainty_s, torque, other });
                     self.number += 1;
@@ -77,7 +77,7 @@ impl Stream {
 
     /// Reads the available bytes and waits briefly for samples that are due. Some reads are delayed by a fraction of
     /// the period.
-    fn listen(&mut self, link: &mut Link) -> Result<f64, Fault> {
+    fn receive(&mut self, link: &mut Link) -> Result<f64, Fault> {
         let delay_s = self.placed.delay_s();
         if delay_s > 0.0 {
             self.clock.sleep_until_s(self.clock.now_s() + delay_s);
@@ -87,25 +87,25 @@ impl Stream {
         // deadlines.
         let silent = (link.deadline() / 2).max(LATE_PERIODS * Duration::from_secs_f64(self.placed.period_s()));
         let mut bytes = Vec::new();
-        let mut patience = Duration::ZERO;
-        while link.overhear(&mut bytes, patience)? > 0 || patience.is_zero() {
+        let mut wait = Duration::ZERO;
+        while link.receive_unrequested(&mut bytes, wait)? > 0 || wait.is_zero() {
             if !bytes.is_empty() {
-                (self.heard_s, self.heard) = (now_s, Instant::now());
+                (self.received_s, self.received_at) = (now_s, Instant::now());
                 self.frames.push(&bytes);
                 bytes.clear();
             }
-            patience = PATIENCE.min(silent.saturating_sub(self.heard.elapsed()));
-            if self.arrived() >= self.placed.due(now_s) || patience.is_zero() {
+            wait = LONGEST_WAIT.min(silent.saturating_sub(self.received_at.elapsed()));
+            if self.arrived() >= self.placed.due(now_s) || wait.is_zero() {
                 break;
             }
         }
-        let waited = self.heard.elapsed();
-        if waited > silent || now_s - self.heard_s > silent.as_secs_f64() {
-            if link.overhear(&mut bytes, silent.saturating_sub(waited))? == 0 {
+        let waited = self.received_at.elapsed();
+        if waited > silent || now_s - self.received_s > silent.as_secs_f64() {
+            if link.receive_unrequested(&mut bytes, silent.saturating_sub(waited))? == 0 {
                 let deadline_ms = silent.as_millis() as u64;
                 return Err(link.fault(FaultKind::Silent { request: "the stream".into(), deadline_ms }));
             }
-            (self.heard_s, self.heard) = (now_s, Instant::now());
+            (self.received_s, self.received_at) = (now_s, Instant::now());
             self.frames.push(&bytes);
         }
         Ok(now_s)
@@ -149,11 +149,11 @@ impl TorqueStream for LorenzSensor {
         let nominal_nm = self.nominals()?;
         let before_s = clock.now_s();
         self.ready()?.request(&StartStream { period: steps as u8 })?;
-        let heard_s = clock.now_s();
+        let started_s = clock.now_s();
         let period_s = steps * PERIOD_STEP_S;
-        let placed = StreamClock::new(period_s, before_s, heard_s);
+        let placed = StreamClock::new(period_s, before_s, started_s);
         let frames = Frames::default();
-        let (range, heard) = (self.settings.range, Instant::now());
+        let (range, received_at) = (self.settings.range, Instant::now());
         self.stream = Some(Stream {
             clock,
             placed,
@@ -161,9 +161,9 @@ impl TorqueStream for LorenzSensor {
             nominal_nm,
             range,
             number: 0,
-            heard_s,
-            heard,
-            found_s: heard_s,
+            received_s: started_s,
+            received_at,
+            found_s: started_s,
             gap: None,
         });
         Ok(Seconds(period_s))
@@ -177,8 +177,8 @@ impl TorqueStream for LorenzSensor {
         if let Some(count) = stream.gap.take() {
             return Err(self.link.fault(FaultKind::StreamGap { count }));
         }
-        let heard = stream.listen(&mut self.link).and_then(|now_s| {
-            let samples = stream.sort(now_s).map_err(|kind| self.link.fault(kind))?;
+        let collected = stream.receive(&mut self.link).and_then(|now_s| {
+            let samples = stream.decode(now_s).map_err(|kind| self.link.fault(kind))?;
             if !samples.is_empty() || stream.gap.is_some() {
                 stream.found_s = now_s;
             } else if now_s - stream.found_s > self.link.deadline().as_secs_f64() {
@@ -187,7 +187,7 @@ impl TorqueStream for LorenzSensor {
             }
             Ok((now_s, samples))
         });
-        match heard {
+        match collected {
             Ok((now_s, samples)) => {
                 if let Some(newest) = stream.arrived().checked_sub(1)
                     && stream.gap.is_none()

@@ -3,7 +3,7 @@
 use super::{Recovers, same};
 use crate::protocol::odrive::{
     CLOSED_LOOP, ClearErrors, FeedWatchdog, Feedback, IDLE, Part, ReadErrors, ReadFeedback, ReadInfo, ReadNumber,
-    RequestState, Set, SetTorque, SetVelocity, StandDown,
+    RequestState, Set, SetTorque, SetVelocity, TorqueOff,
 };
 use crate::transport::{Link, PortSettings};
 use jointbench_instrument::clock::between;
@@ -265,7 +265,7 @@ impl JointController for OdriveJoint {
     fn disarm(&mut self) -> Result<(), Fault> {
         self.held = None;
         self.armed = false;
-        self.link.send(&StandDown { after_broken_line: !self.link.is_trusted() })
+        self.link.send(&TorqueOff { after_broken_line: !self.link.is_trusted() })
     }
 
     fn resolution(&self) -> JointResolution {

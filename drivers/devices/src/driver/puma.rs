@@ -25,7 +25,7 @@ use std::time::Duration;
 /// Longest time for the servo to switch its arm power on.
 const ARMING_S: f64 = 1.0;
 /// Time between the two positions of a first velocity.
-const GLANCE_S: f64 = 0.02;
+const VELOCITY_SPAN_S: f64 = 0.02;
 /// The servo switches arm power off after a longer time without a request, so a set-point covers at most this time.
 const LONGEST_GAP_S: f64 = 0.25;
 
@@ -85,7 +85,7 @@ impl PumaGains {
 
 /// The last command to the servo.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Told {
+enum LastCommand {
     Nothing,
     /// Target position, commanded velocity and time of the command.
     Position {
@@ -98,7 +98,7 @@ enum Told {
 
 /// The latest position, unwrapped.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Seen {
+struct LastPosition {
     at_s: f64,
     counts: i64,
     velocity_rad_s: f64,
@@ -112,8 +112,8 @@ pub struct PumaAxis {
     identity: Option<Identity>,
     number: u8,
     armed: bool,
-    told: Told,
-    seen: Option<Seen>,
+    last_command: LastCommand,
+    last_position: Option<LastPosition>,
 }
 
 impl PumaAxis {
@@ -125,8 +125,8 @@ impl PumaAxis {
             let what = "counts_per_turn, amperes_per_volt and ninter: expected numbers above 0".into();
             return Err(link.fault(FaultKind::Refused { what }));
         }
-        let (identity, told, seen) = (None, Told::Nothing, None);
-        let mut axis = Self { settings, link, clock, identity, number: 0, armed: false, told, seen };
+        let (identity, last_command, last_position) = (None, LastCommand::Nothing, None);
+        let mut axis = Self { settings, link, clock, identity, number: 0, armed: false, last_command, last_position };
         axis.identify()?;
         Ok(axis)
     }
@@ -168,7 +168,7 @@ impl PumaAxis {
     }
 
     fn lost_power(&mut self) -> Fault {
-        (self.armed, self.told, self.seen) = (false, Told::Nothing, None);
+        (self.armed, self.last_command, self.last_position) = (false, LastCommand::Nothing, None);
         let what = "its power was interrupted: it is disarmed, and its position reference is lost";
         self.link.fault(FaultKind::Reported { what: what.into() })
     }
@@ -178,21 +178,21 @@ impl PumaAxis {
     }
 
     /// Reads the position once.
-    fn look(&mut self) -> Result<Seen, Fault> {
+    fn read_position(&mut self) -> Result<LastPosition, Fault> {
         let at_s = self.clock.now_s();
         let word = self.ask(ReadPosition)?;
-        let seen = match self.seen {
-            None => Seen { at_s, counts: word.into(), velocity_rad_s: 0.0 },
+        let last_position = match self.last_position {
+            None => LastPosition { at_s, counts: word.into(), velocity_rad_s: 0.0 },
             Some(before) => {
                 let counts = before.counts + i64::from(word.wrapping_sub(before.counts as i16));
                 let moved_rad = (counts - before.counts) as f64 * self.step_rad();
                 let since_s = at_s - before.at_s;
                 let velocity_rad_s = if since_s > 0.0 { moved_rad / since_s } else { before.velocity_rad_s };
-                Seen { at_s, counts, velocity_rad_s }
+                LastPosition { at_s, counts, velocity_rad_s }
             }
         };
-        self.seen = Some(seen);
-        Ok(seen)
+        self.last_position = Some(last_position);
+        Ok(last_position)
     }
 
     /// Verifies that the servo's memory contains the written byte.
@@ -239,7 +239,7 @@ impl Recovers for PumaAxis {
             }
         }
         if self.armed && !self.probe(ReadStatus)?.value.is_armed() {
-            (self.armed, self.told) = (false, Told::Nothing);
+            (self.armed, self.last_command) = (false, LastCommand::Nothing);
             let what = "the servo disarmed and switched arm power off".into();
             return Err(self.link.fault(FaultKind::Reported { what }));
         }
@@ -296,7 +296,7 @@ impl JointController for PumaAxis {
             }
             self.clock.sleep_until_s(self.clock.now_s() + 1e-2);
         }
-        self.told = Told::Nothing;
+        self.last_command = LastCommand::Nothing;
         self.armed = true;
         self.set_velocity(RadPerSec(0.0))
     }
@@ -308,31 +308,33 @@ impl JointController for PumaAxis {
         }
         let at_s = self.clock.now_s();
         // After current mode the motion starts from the present position.
-        let (from, since_s, before_rad_s) = match self.told {
-            Told::Position { counts, velocity_rad_s, at_s: told_s } => (counts, at_s - told_s, velocity_rad_s),
-            Told::Nothing | Told::Current => (self.look()?.counts as f64, 0.0, velocity.0),
+        let (from, since_s, before_rad_s) = match self.last_command {
+            LastCommand::Position { counts, velocity_rad_s, at_s: commanded_s } => {
+                (counts, at_s - commanded_s, velocity_rad_s)
+            }
+            LastCommand::Nothing | LastCommand::Current => (self.read_position()?.counts as f64, 0.0, velocity.0),
         };
         let mean_rad_s = 0.5 * (before_rad_s + velocity.0);
         let counts = from + mean_rad_s * since_s.min(LONGEST_GAP_S) / self.step_rad();
         // The word wraps like the encoder counter.
         self.ask(PositionMode(counts.round() as i64 as i16))?;
-        self.told = Told::Position { counts, velocity_rad_s: velocity.0, at_s };
+        self.last_command = LastCommand::Position { counts, velocity_rad_s: velocity.0, at_s };
         Ok(())
     }
 
     fn set_motor_current(&mut self, current: Amperes) -> Result<(), Fault> {
         let counts = self.converter_counts(current)?;
-        self.told = Told::Current;
+        self.last_command = LastCommand::Current;
         self.ask(CurrentMode(counts))
     }
 
     fn read(&mut self) -> Result<JointReading, Fault> {
-        if self.seen.is_none() {
-            self.look()?;
-            self.clock.sleep_until_s(self.clock.now_s() + GLANCE_S);
+        if self.last_position.is_none() {
+            self.read_position()?;
+            self.clock.sleep_until_s(self.clock.now_s() + VELOCITY_SPAN_S);
         }
         let asked_s = self.clock.now_s();
-        let Seen { counts, velocity_rad_s, .. } = self.look()?;
+        let LastPosition { counts, velocity_rad_s, .. } = self.read_position()?;
         let volts = self.ask(ReadCurrent)?;
         let (at_s, uncertainty_s) = between(asked_s, self.clock.now_s());
         Ok(JointReading {
@@ -351,7 +353,7 @@ impl JointController for PumaAxis {
     }
 
     fn disarm(&mut self) -> Result<(), Fault> {
-        (self.armed, self.told) = (false, Told::Nothing);
+        (self.armed, self.last_command) = (false, LastCommand::Nothing);
         let stop = self.numbered(Stop);
         if self.link.is_trusted() { self.link.request(&stop).map(drop) } else { self.link.send(&stop) }
     }

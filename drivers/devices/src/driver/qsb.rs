@@ -1,7 +1,7 @@
 //! An incremental encoder behind a US Digital QSB counter.
 
 use super::{Recovers, same};
-use crate::protocol::qsb::{Held, Quieten, ReadRegister, Register, Version, WriteRegister};
+use crate::protocol::qsb::{Held, ReadRegister, Register, StopStreams, Version, WriteRegister};
 use crate::transport::{Command, Link, PortSettings};
 use jointbench_instrument::clock::between;
 use jointbench_instrument::roles::{CounterReading, EncoderStatus, Identity, Instrument, PositionCounter};
@@ -87,7 +87,7 @@ impl QsbCounter {
     }
 
     /// Identity of the counter, and whether it still has its position reference.
-    fn who(&mut self) -> Result<Identity, Fault> {
+    fn read_identity(&mut self) -> Result<Identity, Fault> {
         let version = Version::from(self.link.probe(&ReadRegister(Register::Version))?.value);
         let found = Identity {
             maker: "US Digital".into(),
@@ -124,10 +124,10 @@ impl Recovers for QsbCounter {
     }
 
     fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
-        let mut quieten = Vec::new();
-        Quieten.encode(&mut quieten);
-        self.link.drain(&quieten, true)?;
-        self.who()
+        let mut request = Vec::new();
+        StopStreams.encode(&mut request);
+        self.link.drain(&request, true)?;
+        self.read_identity()
     }
 }
 
@@ -141,7 +141,7 @@ impl Instrument for QsbCounter {
     }
 
     fn identify(&mut self) -> Result<Identity, Fault> {
-        if self.link.is_trusted() { self.who() } else { self.resume() }
+        if self.link.is_trusted() { self.read_identity() } else { self.resume() }
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {

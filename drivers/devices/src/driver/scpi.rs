@@ -205,7 +205,7 @@ impl CurrentSource for ScpiSource {
                 self.command_off()?;
                 self.read_back(false)
             }
-            told => told,
+            result => result,
         }
     }
 

@@ -66,9 +66,9 @@ impl From<u32> for Version {
 
 /// Stops all streams and sets the reply format. Its replies still have the previous format.
 #[derive(Debug, Clone, Copy)]
-pub struct Quieten;
+pub struct StopStreams;
 
-impl Command for Quieten {
+impl Command for StopStreams {
     fn encode(&self, out: &mut Vec<u8>) {
         out.extend_from_slice(b"\rW160\rW15F\r");
     }
@@ -142,17 +142,17 @@ fn held(packet: &[u8], kind: char, register: Register) -> Result<Held, FaultKind
     let text = std::str::from_utf8(packet).map_err(|_| garbled())?;
     let text: String = text.trim_end().strip_suffix('!').ok_or_else(garbled)?.chars().filter(|c| *c != ' ').collect();
     let hex = |from: usize, to: usize| text.get(from..to).and_then(|digits| u32::from_str_radix(digits, 16).ok());
-    let (Some(said), Some(of), Some(value), Some(stamp)) = (text.chars().next(), hex(1, 3), hex(3, 11), hex(11, 19))
+    let (Some(letter), Some(of), Some(value), Some(stamp)) = (text.chars().next(), hex(1, 3), hex(3, 11), hex(11, 19))
     else {
         return Err(garbled());
     };
     if text.len() != 19 || of != register as u32 {
         return Err(garbled());
     }
-    match said {
+    match letter {
         'e' => Err(FaultKind::Refused { what: format!("register {of:02X} rejects {value:X}") }),
         'x' => Err(FaultKind::Refused { what: format!("register {of:02X} does not know this command") }),
-        _ if said == kind => Ok(Held { value, stamp }),
+        _ if letter == kind => Ok(Held { value, stamp }),
         _ => Err(garbled()),
     }
 }

@@ -223,7 +223,7 @@ impl MockBench {
 
     /// Starts or ends a trouble of an instrument.
     pub fn trouble(&self, instrument: MockInstrument, trouble: Trouble) {
-        lock(&self.rig).afflict(instrument, trouble);
+        lock(&self.rig).apply_trouble(instrument, trouble);
     }
 
     /// Whether the recorder of this bench is to find a full disk.
@@ -333,8 +333,8 @@ impl PowerSwitch for Switch {
             }
         };
         let mut rig = lock(&self.0);
-        rig.afflict(found, Trouble::PowerCycled);
-        rig.afflict(found, Trouble::None);
+        rig.apply_trouble(found, Trouble::PowerCycled);
+        rig.apply_trouble(found, Trouble::None);
         Ok(())
     }
 }

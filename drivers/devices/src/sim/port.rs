@@ -15,7 +15,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Interval at which a thread checks whether it has to end, or its cable is unplugged.
-const GLANCE: Duration = Duration::from_millis(20);
+const POLL: Duration = Duration::from_millis(20);
 const GLANCE_STREAMING: Duration = Duration::from_micros(200);
 /// Largest overrun of a sleep.
 const SLEEP_GRAIN: Duration = Duration::from_micros(500);
@@ -109,7 +109,7 @@ pub fn serve_terminal(
         while !shared.is_closing() {
             if shared.is_unplugged(&rig) {
                 pulled.extend(wire.take().map(Pty::pull));
-                std::thread::sleep(GLANCE);
+                std::thread::sleep(POLL);
             } else if let Some(wire) = &mut wire {
                 converse(&shared, &rig, wire);
             } else {
@@ -120,7 +120,7 @@ pub fn serve_terminal(
                     }
                     Err(error) => {
                         tracing::error!(%error, instrument = shared.instrument.label(), "no pseudo-terminal");
-                        std::thread::sleep(GLANCE);
+                        std::thread::sleep(POLL);
                     }
                 }
             }
@@ -155,7 +155,7 @@ pub fn serve_tcp(
                             Err(error) => tracing::warn!(%error, "client lost"),
                         });
                     }
-                    _ => std::thread::sleep(GLANCE),
+                    _ => std::thread::sleep(POLL),
                 }
             }
         });
@@ -239,7 +239,7 @@ fn converse(port: &Port, rig: &Mutex<Rig>, wire: &mut impl Wire) {
 #[derive(Default)]
 struct Talk {
     input: Vec<u8>,
-    said: Vec<u8>,
+    reply: Vec<u8>,
     output: Vec<u8>,
     cable: Cable,
 }
@@ -249,30 +249,30 @@ impl Talk {
     fn carry(&mut self, port: &Port, free: &mut Instant, rig: &Mutex<Rig>, wire: &mut impl Wire) -> io::Result<()> {
         let instrument = port.instrument;
         let mut chunk = [0; 1024];
-        let wait = if lock(rig).is_streaming(instrument) { GLANCE_STREAMING } else { GLANCE };
-        let count = wire.hear(&mut chunk, wait)?;
+        let wait = if lock(rig).is_streaming(instrument) { GLANCE_STREAMING } else { POLL };
+        let count = wire.receive(&mut chunk, wait)?;
         self.exchange(instrument, &mut lock(rig), &chunk[..count])?;
         if !self.output.is_empty() {
             port.line.carry(count + self.output.len(), free);
-            wire.say(&self.output)?;
+            wire.send(&self.output)?;
             self.output.clear();
         }
         Ok(())
     }
 
-    /// Passes `heard` to the instrument and returns its output, as the cable transmits it.
-    fn exchange(&mut self, instrument: MockInstrument, rig: &mut Rig, heard: &[u8]) -> io::Result<()> {
+    /// Passes `received` to the instrument and returns its output, as the cable transmits it.
+    fn exchange(&mut self, instrument: MockInstrument, rig: &mut Rig, received: &[u8]) -> io::Result<()> {
         let trouble = rig.trouble(instrument);
         if trouble == Trouble::Unplugged {
             return Err(ErrorKind::NotConnected.into());
         }
-        self.input.extend_from_slice(heard);
-        if !heard.is_empty() {
-            rig.receive(instrument, &mut self.input, &mut self.said);
+        self.input.extend_from_slice(received);
+        if !received.is_empty() {
+            rig.receive(instrument, &mut self.input, &mut self.reply);
         }
-        rig.unasked(instrument, &mut self.said);
-        self.cable.carry(trouble, &mut self.said);
-        self.output.append(&mut self.said);
+        rig.unasked(instrument, &mut self.reply);
+        self.cable.carry(trouble, &mut self.reply);
+        self.output.append(&mut self.reply);
         Ok(())
     }
 }

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-const GLANCE: Duration = Duration::from_millis(20);
+const POLL: Duration = Duration::from_millis(20);
 
 /// Answers until it is dropped, as long as the requests match the record.
 ///
@@ -89,17 +89,17 @@ impl Shared {
         while !self.is_closing() {
             match listener.accept() {
                 Ok((mut stream, _)) if plain(&stream).is_ok() => return self.follow(traffic, &mut stream),
-                _ => std::thread::sleep(GLANCE),
+                _ => std::thread::sleep(POLL),
             }
         }
     }
 
     fn follow(&self, traffic: &Traffic, wire: &mut impl Wire) {
-        let mut heard = Vec::new();
+        let mut received = Vec::new();
         for (at_s, event) in &traffic.events {
             let followed = match event {
-                Event::Received(bytes) => wire.say(bytes),
-                Event::Sent(bytes) => self.expect(*at_s, bytes, &mut heard, wire),
+                Event::Received(bytes) => wire.send(bytes),
+                Event::Sent(bytes) => self.expect(*at_s, bytes, &mut received, wire),
                 Event::Lost => {
                     self.done.store(true, Ordering::Release);
                     return;
@@ -112,29 +112,29 @@ impl Shared {
         }
         self.done.store(true, Ordering::Release);
         // Silent from here on, but still plugged in.
-        while !self.is_closing() && wire.hear(&mut [0; 256], GLANCE).is_ok() {}
+        while !self.is_closing() && wire.receive(&mut [0; 256], POLL).is_ok() {}
     }
 
-    fn expect(&self, at_s: f64, bytes: &[u8], heard: &mut Vec<u8>, wire: &mut impl Wire) -> io::Result<()> {
+    fn expect(&self, at_s: f64, bytes: &[u8], received: &mut Vec<u8>, wire: &mut impl Wire) -> io::Result<()> {
         let mut chunk = [0; 1024];
         loop {
-            let same = heard.iter().zip(bytes).take_while(|(a, b)| a == b).count();
+            let same = received.iter().zip(bytes).take_while(|(a, b)| a == b).count();
             if same == bytes.len() {
-                heard.drain(..same);
+                received.drain(..same);
                 return Ok(());
             }
-            let departed = same < heard.len();
+            let departed = same < received.len();
             if departed {
-                let what = format!("at {at_s} s of the record: expected {}, heard {}", shown(bytes), shown(heard));
+                let what = format!("at {at_s} s of the record: expected {}, heard {}", shown(bytes), shown(received));
                 self.departure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(what);
             }
             if self.is_closing() {
                 return Err(ErrorKind::Interrupted.into());
             }
-            let count = wire.hear(&mut chunk, GLANCE)?;
+            let count = wire.receive(&mut chunk, POLL)?;
             // After a deviation the recorded replies are no longer valid.
             if !departed {
-                heard.extend_from_slice(&chunk[..count]);
+                received.extend_from_slice(&chunk[..count]);
             }
         }
     }

@@ -133,7 +133,7 @@ impl Rig {
 
     pub fn advance(&mut self) {
         while let Some((_, instrument, trouble)) = self.planned.pop_if(|(at_s, ..)| *at_s <= self.plant.now_s()) {
-            self.afflict(instrument, trouble);
+            self.apply_trouble(instrument, trouble);
         }
         self.joint.step(&mut self.plant);
         self.brake.step(&mut self.plant);
@@ -154,10 +154,10 @@ impl Rig {
     }
 
     /// Starts or ends a trouble of an instrument.
-    pub fn afflict(&mut self, instrument: MockInstrument, trouble: Trouble) {
+    pub fn apply_trouble(&mut self, instrument: MockInstrument, trouble: Trouble) {
         let before = std::mem::replace(&mut self.troubles[instrument as usize], trouble);
         let Some((firmware, plant)) = self.firmware(instrument) else { return };
-        firmware.afflict(trouble);
+        firmware.apply_trouble(trouble);
         if before != trouble && [before, trouble].contains(&Trouble::PowerCycled) {
             firmware.power_cycle(plant);
         }

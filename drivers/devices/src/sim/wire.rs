@@ -8,23 +8,23 @@ use std::time::Duration;
 
 pub trait Wire {
     /// `Ok(0)`: no bytes within `wait`.
-    fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
-    fn say(&mut self, bytes: &[u8]) -> io::Result<()>;
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 }
 
 #[cfg(unix)]
 impl Wire for Pty {
-    fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         self.read(buffer, wait)
     }
 
-    fn say(&mut self, bytes: &[u8]) -> io::Result<()> {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.write(bytes)
     }
 }
 
 impl Wire for TcpStream {
-    fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         self.set_read_timeout(Some(wait))?;
         match self.read(buffer) {
             Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
@@ -33,7 +33,7 @@ impl Wire for TcpStream {
         }
     }
 
-    fn say(&mut self, bytes: &[u8]) -> io::Result<()> {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.write_all(bytes)
     }
 }

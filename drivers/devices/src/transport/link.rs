@@ -14,7 +14,7 @@ const QUIET: Duration = Duration::from_millis(20);
 const MAX_PENDING: usize = 4096;
 
 /// Limit of one call of [`Link::overhear`]: a flooded line must not block its owner.
-const MAX_OVERHEARD: usize = 1 << 16;
+const MAX_UNREQUESTED: usize = 1 << 16;
 
 /// Whether the next reply belongs to the next request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,16 +112,16 @@ impl Link {
         }
     }
 
-    /// Appends the received bytes to `bytes`, for instruments that send without a request. Waits at most `patience` for
+    /// Appends the received bytes to `bytes`, for instruments that send without a request. Waits at most `wait` for
     /// the first byte; returns the number of bytes.
-    pub(crate) fn overhear(&mut self, bytes: &mut Vec<u8>, patience: Duration) -> Result<usize, Fault> {
+    pub(crate) fn receive_unrequested(&mut self, bytes: &mut Vec<u8>, wait: Duration) -> Result<usize, Fault> {
         let before = bytes.len();
         bytes.append(&mut self.received);
-        let mut until = Instant::now() + patience;
+        let mut until = Instant::now() + wait;
         loop {
             let count = self.next_chunk(until).map_err(|kind| self.broken(kind))?;
             bytes.append(&mut self.received);
-            if count == 0 || bytes.len() - before >= MAX_OVERHEARD {
+            if count == 0 || bytes.len() - before >= MAX_UNREQUESTED {
                 return Ok(bytes.len() - before);
             }
             until = Instant::now();
@@ -147,7 +147,7 @@ impl Link {
 
     /// Request and reply in any state of the link, for identification.
     pub fn probe<R: Request>(&mut self, request: &R) -> Result<R::Reply, Fault> {
-        let deadline = Instant::now() + self.patience();
+        let deadline = Instant::now() + self.reply_deadline();
         self.exchange(request, deadline).map_err(|kind| self.broken(kind))
     }
 
@@ -195,14 +195,14 @@ impl Link {
                 }
                 Scan::Short => {
                     if self.read(deadline)? == 0 {
-                        return Err(self.nothing_came(request.name()));
+                        return Err(self.no_reply(request.name()));
                     }
                 }
             }
         }
     }
 
-    fn patience(&self) -> Duration {
+    fn reply_deadline(&self) -> Duration {
         if self.missed { self.second_chance() } else { self.deadline }
     }
 
@@ -212,9 +212,9 @@ impl Link {
         self.deadline * 2 / 5
     }
 
-    fn nothing_came(&self, request: String) -> FaultKind {
+    fn no_reply(&self, request: String) -> FaultKind {
         if self.received.is_empty() {
-            FaultKind::Silent { request, deadline_ms: self.patience().as_millis() as u64 }
+            FaultKind::Silent { request, deadline_ms: self.reply_deadline().as_millis() as u64 }
         } else {
             FaultKind::Garbled { what: format!("{} and no more", shown(&self.received)) }
         }

@@ -23,7 +23,7 @@ pub enum Wire {
 }
 
 /// Polling interval while waiting for an instrument in this process: another thread may advance its time.
-const GLANCE: Duration = Duration::from_micros(200);
+const POLL: Duration = Duration::from_micros(200);
 
 impl Wire {
     pub fn open(settings: &PortSettings) -> Result<Self, FaultKind> {
@@ -66,7 +66,7 @@ impl Wire {
                 Ok(count) => return Ok(count),
                 Err(error) if is_wait_over(&error) => {
                     if let Wire::Inside(_) = self {
-                        std::thread::sleep(GLANCE.min(left));
+                        std::thread::sleep(POLL.min(left));
                     }
                 }
                 Err(error) => return Err(error),

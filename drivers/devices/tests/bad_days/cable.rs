@@ -54,7 +54,7 @@ fn the_reply_to_an_earlier_question_answers_no_later_one() {
 }
 
 #[test]
-fn a_second_copy_of_a_reply_is_nobodys() {
+fn a_second_copy_of_a_reply_is_discarded() {
     for transport in [Transport::Terminal, Transport::Tcp, Transport::Inside] {
         let (mock, mut bench) = start(transport);
         for instrument in MockInstrument::JOINT_BENCH {

@@ -21,14 +21,14 @@ fn name(bench: &mut Bench, instrument: MockInstrument) -> String {
     named.name().to_owned()
 }
 
-fn check_reported(result: Result<(), Fault>, said: &str) {
-    let fault = result.expect_err(said);
+fn check_reported(result: Result<(), Fault>, text: &str) {
+    let fault = result.expect_err(text);
     assert!(matches!(fault.kind, FaultKind::Reported { .. }) && !fault.is_retryable(), "{fault}");
-    assert!(fault.to_string().contains(said), "{fault}");
+    assert!(fault.to_string().contains(text), "{fault}");
 }
 
 #[test]
-fn a_drive_that_lost_its_state_gives_no_reading_before_that_is_told() {
+fn a_drive_that_lost_its_state_gives_no_reading_before_that_is_reported() {
     let (mock, mut bench) = start(Transport::Terminal);
     bench.joint.set_velocity(RadPerSec(30.0)).unwrap();
     wait(&bench, 0.2);
@@ -49,7 +49,7 @@ fn a_drive_that_lost_its_state_gives_no_reading_before_that_is_told() {
 }
 
 #[test]
-fn a_supply_that_lost_its_state_is_told() {
+fn a_supply_that_lost_its_state_is_reported() {
     let (mock, mut bench) = start(Transport::Tcp);
     let brake = bench.brake.as_mut().unwrap();
     brake.set_current(Amperes(0.3)).unwrap();
@@ -146,7 +146,7 @@ fn an_instrument_that_refuses_everything_gives_no_reading() {
 }
 
 #[test]
-fn a_supply_out_of_voltage_says_that_it_does_not_hold_the_current() {
+fn a_supply_out_of_voltage_reports_that_it_does_not_hold_the_current() {
     let (mock, mut bench) = start(Transport::Terminal);
     bench.brake.as_mut().unwrap().set_current(Amperes(0.4)).unwrap();
     let mut settled = |trouble| {
@@ -204,9 +204,9 @@ fn a_planned_trouble_comes_and_goes_by_itself() {
     };
     let mock = MockBench::start(MockSettings { troubles: vec![planned], ..settings(Transport::Terminal) }).unwrap();
     let mut bench = mock.open_bench("mock").unwrap();
-    let heard = [0.4, 0.55, 0.7].map(|at_s| {
+    let answers = [0.4, 0.55, 0.7].map(|at_s| {
         bench.clock.sleep_until_s(at_s);
         ask(&mut bench, MockInstrument::TorqueSensor).is_ok()
     });
-    assert_eq!(heard, [true, false, true]);
+    assert_eq!(answers, [true, false, true]);
 }

@@ -157,15 +157,15 @@ fn another_unit_is_named_where_no_cable_was_out() {
 }
 
 #[test]
-fn a_counter_that_lost_its_power_says_that_positions_do_not_fit() {
+fn a_counter_that_lost_its_power_reports_that_positions_do_not_fit() {
     let mock = start(Transport::Terminal);
     let mut counter = counter(&mock, MockInstrument::CounterS2);
     counter.read().unwrap();
     mock.trouble(MockInstrument::CounterS2, Trouble::PowerCycled);
     mock.trouble(MockInstrument::CounterS2, Trouble::None);
     let fault = (0..3).find_map(|_| counter.read().err()).expect("the greeting gives it away");
-    let told = if fault.is_retryable() { counter.read().unwrap_err() } else { fault };
-    assert!(told.to_string().contains("power was interrupted"), "{told}");
+    let fault = if fault.is_retryable() { counter.read().unwrap_err() } else { fault };
+    assert!(fault.to_string().contains("power was interrupted"), "{fault}");
     assert!(counter.read().is_ok(), "usable again");
 }
 
@@ -242,7 +242,7 @@ fn a_stage_moves_only_when_referenced_and_finds_where_the_encoder_loses_its_peri
 }
 
 #[test]
-fn a_stage_stops_at_once_and_says_when_it_lost_its_reference() {
+fn a_stage_stops_at_once_and_reports_a_lost_reference() {
     let mock = start(Transport::Terminal);
     let mut stage = stage(&mock);
     stage.reference().unwrap();

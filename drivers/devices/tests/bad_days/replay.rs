@@ -72,7 +72,7 @@ fn another_question_than_the_recorded_one_is_named_and_not_answered() {
 }
 
 #[test]
-fn a_lost_port_is_lost_again_and_a_record_that_cannot_be_written_is_told() {
+fn a_lost_port_is_lost_again_and_a_record_that_cannot_be_written_is_reported() {
     let replay =
         Replay::start(Traffic::parse("0.0 > 0A 2A 43 4C 53 0A\n0.1 ! lost\n").unwrap(), Transport::Tcp).unwrap();
     let mut port = PortSettings::new(replay.address().clone(), 115_200);

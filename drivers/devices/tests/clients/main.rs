@@ -45,8 +45,8 @@ fn check(client: &str, instrument: MockInstrument, transport: Transport, pace: f
         Ok(output) => return eprintln!("SKIPPED {client}: {}", String::from_utf8_lossy(&output.stdout).trim()),
         Err(error) => return eprintln!("SKIPPED {client}: no {python}: {error}"),
     };
-    let said = [output.stdout, output.stderr].concat();
-    assert!(output.status.success(), "{client} over {transport:?}: {}", String::from_utf8_lossy(&said));
+    let text = [output.stdout, output.stderr].concat();
+    assert!(output.status.success(), "{client} over {transport:?}: {}", String::from_utf8_lossy(&text));
     // A terminal is released a moment after its client has ended.
     std::thread::sleep(Duration::from_millis(50));
 }

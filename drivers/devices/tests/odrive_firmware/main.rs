@@ -130,7 +130,7 @@ fn it_is_identified_armed_turned_and_stood_down() {
 }
 
 #[test]
-fn a_drive_that_nobody_feeds_stands_down_and_says_why_and_is_armed_again() {
+fn a_drive_without_watchdog_feed_disarms_reports_why_and_is_armed_again() {
     let Some(drive) = Drive::start() else { return };
     let (mut joint, clock) = drive.open();
     joint.arm(RadPerSec(200.0), Amperes(5.0)).unwrap();
@@ -266,19 +266,19 @@ const LINES: &[&str] = &[
 /// Sent after each line: its known reply marks the end of the replies to that line.
 const LAST: (&str, &str) = ("f 77\n", "invalid motor 77\r\n");
 
-fn said(port: &mut dyn serialport::SerialPort, line: &str) -> String {
+fn reply_to(port: &mut dyn serialport::SerialPort, line: &str) -> String {
     port.write_all(format!("{line}\n{}", LAST.0).as_bytes()).unwrap();
-    let mut said = Vec::new();
-    while !said.ends_with(LAST.1.as_bytes()) {
+    let mut received = Vec::new();
+    while !received.ends_with(LAST.1.as_bytes()) {
         let mut bytes = [0; 256];
-        let count = port.read(&mut bytes).unwrap_or_else(|error| panic!("{line:?}: {error} after {said:?}"));
-        said.extend(&bytes[..count]);
+        let count = port.read(&mut bytes).unwrap_or_else(|error| panic!("{line:?}: {error} after {received:?}"));
+        received.extend(&bytes[..count]);
     }
-    String::from_utf8(said).unwrap()
+    String::from_utf8(received).unwrap()
 }
 
 #[test]
-fn the_mock_says_what_the_firmware_says() {
+fn the_mock_replies_as_the_firmware_does() {
     let Some(drive) = Drive::start() else { return };
     let settings = MockSettings { transport: Transport::Terminal, ..MockSettings::new(Joint::JointA, 1) };
     let mock = MockBench::start(settings).unwrap();
@@ -287,7 +287,7 @@ fn the_mock_says_what_the_firmware_says() {
         .map(|path| serialport::new(path, 921_600).timeout(Duration::from_secs(2)).open().unwrap());
     let long = [254, 255, 256, 257, 600].map(|length| "x".repeat(length));
     for line in LINES.iter().copied().chain(long.iter().map(String::as_str)) {
-        let [firmware, mock] = ports.each_mut().map(|port| said(port.as_mut(), line));
+        let [firmware, mock] = ports.each_mut().map(|port| reply_to(port.as_mut(), line));
         assert_eq!(mock, firmware, "{line:?}");
     }
 }

@@ -36,15 +36,15 @@ impl Simulator {
                 return None;
             }
         };
-        let mut said = String::new();
-        BufReader::new(program.stdout.as_mut().unwrap()).read_line(&mut said).unwrap();
-        let said = said.trim();
-        if said.starts_with('/') || said.starts_with("tcp://") {
-            return Some(Self { port: PortSettings::new(said, baud), program });
+        let mut line = String::new();
+        BufReader::new(program.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
+        let line = line.trim();
+        if line.starts_with('/') || line.starts_with("tcp://") {
+            return Some(Self { port: PortSettings::new(line, baud), program });
         }
         let _ended = program.wait();
-        assert!(said.starts_with(MISSING), "{words:?}: {said}");
-        eprintln!("SKIPPED {words:?}: {said}");
+        assert!(line.starts_with(MISSING), "{words:?}: {line}");
+        eprintln!("SKIPPED {words:?}: {line}");
         None
     }
 }
@@ -69,22 +69,25 @@ fn thermometer(simulator: &Simulator, channels: &[u8]) -> Result<AdamThermometer
 #[test]
 fn the_thermometer_on_a_server_of_pymodbus() {
     let Some(adam) = Simulator::start(&["pymodbus", "4015"], 9600) else { return };
-    let mut felt = thermometer(&adam, &[0, 1, 2]).unwrap();
-    assert_eq!(felt.identify().unwrap().model, "ADAM-4015");
+    let mut reader = thermometer(&adam, &[0, 1, 2]).unwrap();
+    assert_eq!(reader.identify().unwrap().model, "ADAM-4015");
     for _ in 0..20 {
-        let felt_c: Vec<f64> = felt.read().unwrap().iter().map(|felt| felt.0).collect();
+        let temperature_c: Vec<f64> = reader.read().unwrap().iter().map(|temperature| temperature.0).collect();
         let truth_c = [(0x8000, -50.0, 150.0), (0x4000, 0.0, 100.0), (0xC000, -200.0, 200.0)];
-        for (felt_c, (raw, low_c, high_c)) in felt_c.iter().zip(truth_c) {
-            assert!((felt_c - (low_c + (high_c - low_c) * f64::from(raw) / 65_535.0)).abs() < 1e-9, "{felt_c}");
+        for (temperature_c, (raw, low_c, high_c)) in temperature_c.iter().zip(truth_c) {
+            assert!(
+                (temperature_c - (low_c + (high_c - low_c) * f64::from(raw) / 65_535.0)).abs() < 1e-9,
+                "{temperature_c}"
+            );
         }
     }
-    drop(felt);
+    drop(reader);
     let broken = thermometer(&adam, &[3]).unwrap().read().unwrap_err();
     assert!(matches!(broken.kind, FaultKind::Saturated { .. }), "{broken}");
 }
 
 #[test]
-fn a_module_that_is_another_and_one_without_a_name_are_told() {
+fn another_module_and_one_without_a_name_are_reported() {
     let Some(other) = Simulator::start(&["pymodbus", "4017"], 9600) else { return };
     let Err(fault) = thermometer(&other, &[0]) else { panic!("it was taken for an ADAM-4015") };
     assert!(matches!(fault.kind, FaultKind::WrongInstrument { .. }), "{fault}");
@@ -134,7 +137,7 @@ fn the_torque_on_a_multimeter_of_labmcp() {
         // The supply of the multimeter takes a while to reach its voltage.
         std::thread::sleep(std::time::Duration::from_millis(300));
         match (sensor.read(), torque_nm) {
-            (Ok(felt), Some(torque_nm)) => assert!((felt.0 - torque_nm).abs() < 1e-3, "{felt:?}"),
+            (Ok(torque), Some(torque_nm)) => assert!((torque.0 - torque_nm).abs() < 1e-3, "{torque:?}"),
             (Err(beyond), None) => assert!(matches!(beyond.kind, FaultKind::Saturated { .. }), "{beyond}"),
             (read, _) => panic!("{volts} V: {read:?}"),
         }

@@ -102,9 +102,9 @@ impl Survey {
         // The lower half of the lines, because a preface differs from the rows.
         for held in held[held.len() / 2..].iter().filter(|held| held.len() > 1) {
             let filled = held.iter().filter(|one| **one != Holds::Nothing).count() as f64;
-            let tell = held.iter().filter(|one| matches!(one, Holds::Number | Holds::Stamp)).count() as f64;
-            if tell > 0.0 {
-                let more = tell * tell / filled;
+            let numbers = held.iter().filter(|one| matches!(one, Holds::Number | Holds::Stamp)).count() as f64;
+            if numbers > 0.0 {
+                let more = numbers * numbers / filled;
                 match worth.iter_mut().find(|(width, _)| *width == held.len()) {
                     Some((_, sum)) => *sum += more,
                     None => worth.push((held.len(), more)),

@@ -94,8 +94,8 @@ fn table(layout: &Layout, options: &ReadOptions) -> Result<RawTable, FileFault> 
     if !options.names.is_empty() {
         let (found, given) = (layout.width(), options.names.len());
         if found != given {
-            let said = format!("--names gives {given} names, and the table has {}", plural(found, "column"));
-            return Err(FileFault::Choice { said, options: vec![format!("--names {}", proposed_names(layout))] });
+            let message = format!("--names gives {given} names, and the table has {}", plural(found, "column"));
+            return Err(FileFault::Choice { message, options: vec![format!("--names {}", proposed_names(layout))] });
         }
         options.names.iter().zip(&mut names).for_each(|(given, name)| name.clone_from(given));
     }
@@ -205,12 +205,12 @@ fn notes(layout: &Layout, pieces: &Pieces<'_>) -> Vec<Note> {
         notes.push(Note::new(format!("the text was read as {}", coding.encoding.name())));
     }
     if layout.above > 0 {
-        let said = match layout.comments_above {
+        let message = match layout.comments_above {
             0 => format!("{} above the names skipped", plural(layout.above, "line")),
             count if count == layout.above => format!("{} above the names skipped", plural(count, "comment line")),
             count => format!("{} above the names skipped, {count} of them comments", plural(layout.above, "line")),
         };
-        notes.push(Note::new(said));
+        notes.push(Note::new(message));
     }
     if matches!(layout.separator, Separator::Blanks | Separator::Sign(b'|')) {
         notes.push(Note::new(format!("columns are parted by {}", layout.separator.name())));

@@ -61,40 +61,40 @@ fn wrong(run: &RunTable) -> Option<String> {
 }
 
 #[test]
-fn usual_shapes_are_read_right_or_say_the_option() {
+fn usual_shapes_are_read_right_or_name_the_option() {
     let options = options();
-    let (mut right, mut told) = (0, Vec::new());
+    let (mut right, mut problems) = (0, Vec::new());
     for path in files() {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         let choices = options.iter().find(|(of, _, _)| *of == name);
         match (take(&path, &Choices::default()), choices) {
             (Ok((run, _)), None) => match wrong(&run) {
                 None => right += 1,
-                Some(wrong) => told.push(format!("{name} is read wrong: {wrong}")),
+                Some(wrong) => problems.push(format!("{name} is read wrong: {wrong}")),
             },
-            (Ok(_), Some(_)) => told.push(format!("{name} is read without a question")),
-            (Err(refused), None) => told.push(format!("{refused}")),
+            (Ok(_), Some(_)) => problems.push(format!("{name} is read without a question")),
+            (Err(refused), None) => problems.push(format!("{refused}")),
             (Err(refused), Some((_, option, choices))) => {
                 if !refused.to_string().contains(option) {
-                    told.push(format!("{refused}: {option} is not named"));
+                    problems.push(format!("{refused}: {option} is not named"));
                 }
                 match take(&path, choices) {
-                    Err(refused) => told.push(format!("{refused}, with {choices:?}")),
+                    Err(refused) => problems.push(format!("{refused}, with {choices:?}")),
                     // The mixed table has other numbers.
-                    Ok((run, _)) if name != "mixed_signs.csv" => told.extend(wrong(&run)),
+                    Ok((run, _)) if name != "mixed_signs.csv" => problems.extend(wrong(&run)),
                     Ok((run, _)) => assert_eq!(run.column("motor_current_a").unwrap()[0], 1.2),
                 }
             }
         }
     }
     println!("{right} files are read without an option, {} say it", options.len());
-    assert!(told.is_empty(), "{}", told.join("\n"));
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
     assert!(right >= 57, "{right}");
 }
 
 #[test]
-fn what_was_skipped_or_assumed_is_said() {
-    let said = |name: &str| {
+fn skipped_and_assumed_parts_are_noted() {
+    let message = |name: &str| {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/shapes/written");
         jointbench_files::paragraph(&take(&folder.join(name), &Choices::default()).unwrap().1)
     };
@@ -122,8 +122,8 @@ fn what_was_skipped_or_assumed_is_said() {
         ("pandas_datetime.csv", &["time_s counts the seconds from the stamp in the first row, 2026-01-02 10:00:00"]),
         ("named_again.csv", &["the line of names stands 1 more time between the rows"]),
     ] {
-        let said = said(name);
-        assert!(words.iter().all(|word| said.contains(word)), "{name}: {said}");
-        assert_eq!(words.is_empty(), said.is_empty(), "{name}: {said}");
+        let message = message(name);
+        assert!(words.iter().all(|word| message.contains(word)), "{name}: {message}");
+        assert_eq!(words.is_empty(), message.is_empty(), "{name}: {message}");
     }
 }

@@ -15,8 +15,8 @@ fn column(text: &str, name: &str) -> Vec<f64> {
 
 #[track_caller]
 fn refused(text: &str, words: &[&str]) {
-    let said = take(text, &Choices::default()).unwrap_err().to_string();
-    assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    let message = take(text, &Choices::default()).unwrap_err().to_string();
+    assert!(words.iter().all(|word| message.contains(word)), "{message}");
 }
 
 /// A table with a time, a position and one more column.
@@ -61,7 +61,7 @@ fn rows(times: impl IntoIterator<Item = f64>) -> String {
 }
 
 #[test]
-fn a_clock_that_ticks_more_slowly_than_rows_come_is_told_and_spread() {
+fn a_clock_that_ticks_more_slowly_than_rows_come_is_reported_and_spread() {
     let ticking = rows((0..300).map(|row| f64::from(row * 5 / 16) * 0.016));
     refused(
         &ticking,
@@ -76,16 +76,24 @@ fn a_clock_that_ticks_more_slowly_than_rows_come_is_told_and_spread() {
     assert!(time_s.iter().enumerate().all(|(row, time)| (time - 0.005 * row as f64).abs() < 0.005), "{time_s:?}");
     let (counted, notes) = take(&ticking, &Choices { time_from_rate: Some(200.0), ..Choices::default() }).unwrap();
     assert!((counted.column("time_s").unwrap()[299] - 1.495).abs() < 1e-12);
-    assert!(notes[0].said.contains("counts the rows, 200 a second"), "{notes:?}");
+    assert!(notes[0].message.contains("counts the rows, 200 a second"), "{notes:?}");
 }
 
 #[test]
-fn several_recordings_in_a_file_are_told_and_split() {
+fn a_time_without_a_unit_states_its_step_without_trailing_zeros() {
+    for (step, words) in [(1.0, "its rows are 1 apart"), (2.5, "its rows are 2.5 apart")] {
+        let counter = rows((0..40).map(|row| step * f64::from(row))).replace("time_s", "time");
+        refused(&counter, &[words, "--unit time_s=ms"]);
+    }
+}
+
+#[test]
+fn several_recordings_in_a_file_are_reported_and_split() {
     let twice = rows((0..40).map(|row| 0.01 * f64::from(row % 20)));
     refused(&twice, &["line 22, column time_s: the time begins again: the file holds 2 recordings. Use --split-runs"]);
     let (run, notes) = take(&twice, &Choices { split_runs: true, ..Choices::default() }).unwrap();
     assert_eq!(run.column("run").unwrap().iter().sum::<f64>(), 20.0);
-    assert!(notes.iter().any(|note| note.said.contains("2 recordings, numbered in column run")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.message.contains("2 recordings, numbered in column run")), "{notes:?}");
     let slip = rows((0..40).map(|row| if row == 30 { 0.285 } else { 0.01 * f64::from(row) }));
     refused(&slip, &["line 32", "in 1 of 40 rows the time goes back", "Use --time-from-rate 100"]);
 }
@@ -96,8 +104,8 @@ fn a_table_without_a_time_gets_one() {
     refused(bare, &["column time_s is missing", "a table without a time has one by its rate: --rate HZ"]);
     let (run, _) = take(bare, &Choices { rate: Some(50.0), ..Choices::default() }).unwrap();
     assert_eq!(run.column("time_s").unwrap(), [0.0, 0.02, 0.04]);
-    let said = take(&rows([0.0, 1.0]), &Choices { rate: Some(50.0), ..Choices::default() }).unwrap_err().to_string();
-    assert!(said.contains("the table has a time of its own. Use --time-from-rate 50"), "{said}");
+    let message = take(&rows([0.0, 1.0]), &Choices { rate: Some(50.0), ..Choices::default() }).unwrap_err().to_string();
+    assert!(message.contains("the table has a time of its own. Use --time-from-rate 50"), "{message}");
 }
 
 #[test]
@@ -148,7 +156,7 @@ fn names_that_are_empty_or_there_twice_are_given() {
         (run.column("motor_position_rad").unwrap(), run.column("motor_current_a").unwrap()),
         (&[7.0, 8.0][..], &[0.1, 0.1][..])
     );
-    assert!(notes.iter().any(|note| note.said.contains("motor_current_a stands twice")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.message.contains("motor_current_a stands twice")), "{notes:?}");
 }
 
 #[test]
@@ -192,12 +200,12 @@ fn codes_for_an_empty_cell_are_asked_about() {
 }
 
 #[test]
-fn lines_below_the_last_row_are_skipped_and_told() {
+fn lines_below_the_last_row_are_skipped_and_reported() {
     let whole = rows((0..30).map(|row| 0.01 * f64::from(row)));
     let footed = format!("{whole}Mean,,0.1\nEnd of file\n");
     let (run, notes) = take(&footed, &Choices::default()).unwrap();
     assert_eq!(run.len(), 30);
-    assert_eq!(notes[0].said, "2 lines below the last row skipped, from line 32");
+    assert_eq!(notes[0].message, "2 lines below the last row skipped, from line 32");
     refused(&format!("{whole}0.3,0.3\n"), &["line 32: expected 3 values as in the line of column names, found 2"]);
     refused(&whole.replacen("0.05,", "broken,", 1), &["line 7, column time_s: expected a number, found “broken”"]);
 }
@@ -208,7 +216,7 @@ fn a_comment_in_the_last_column_is_no_row_of_another_width() {
     text.extend((1..30).map(|row| format!("0.{row:02}\t0.5\t0.1\n")));
     let (run, notes) = take(&text, &Choices::default()).unwrap();
     assert_eq!((run.len(), run.column("Comment")), (30, None));
-    assert!(notes.iter().any(|note| note.said.contains("column Comment is omitted: it holds words")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.message.contains("column Comment is omitted: it holds words")), "{notes:?}");
 }
 
 #[test]
@@ -221,12 +229,12 @@ fn a_counter_that_overflows_goes_on() {
         unwrap: unwrap.iter().map(|text| (*text).to_owned()).collect(),
         ..Choices::default()
     };
-    let said = take(&text, &choices(&[])).unwrap_err().to_string();
+    let message = take(&text, &choices(&[])).unwrap_err().to_string();
     assert!(
-        said.ends_with(
+        message.ends_with(
             "the time begins anew as a counter of 32 bits does that overflows. Use --unwrap time_s=4294.967296"
         ),
-        "{said}"
+        "{message}"
     );
     let (run, _) = take(&text, &choices(&["time_s=4294.967296"])).unwrap();
     let time_s = run.column("time_s").unwrap();
@@ -266,8 +274,8 @@ fn fortran_and_typesetters_write_numbers_too() {
 fn a_conversion_keeps_a_column_with_few_gaps() {
     let convert = |text: &str| understand_bytes("run.csv", text.as_bytes(), &ReadOptions::default());
     let text = "time_s,force,remark\n0.1,1,\n0.2,2,\n0.3,,4\n0.4,4,\n0.5,5,\n";
-    let said = convert(text).unwrap_err().to_string();
-    assert!(said.contains("line 4, column force") && said.contains("--leave-empty-rows"), "{said}");
+    let message = convert(text).unwrap_err().to_string();
+    assert!(message.contains("line 4, column force") && message.contains("--leave-empty-rows"), "{message}");
     let sparse = text.replace(",,4", ",3,4");
     let table = convert(&sparse).unwrap();
     assert_eq!(table.trace.column("force").unwrap(), [1.0, 2.0, 3.0, 4.0, 5.0]);

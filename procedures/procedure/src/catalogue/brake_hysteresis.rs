@@ -10,18 +10,17 @@
 //! Hysteresis*, chapter 1). No function shape is assumed. The inverse gives the current for a torque after any
 //! history.
 
-mod everett;
 mod identify;
 
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
+use crate::brake_model::BrakeModel;
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
-pub use everett::Everett as BrakeModel;
-pub(super) use everett::{Everett, History};
+use crate::plan::{Plan, PlanFault};
 pub(super) use identify::{BOUND, SETTLED};
 use jointbench_instrument::{Kind, RunTable};
 use rand::{RngExt, SeedableRng};

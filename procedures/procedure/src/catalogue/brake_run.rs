@@ -1,6 +1,7 @@
 //! Shared functions of the brake procedures: requirements on the bench, and the facts of a brake run.
 
-use crate::plan::{BenchFacts, PlanFault};
+use crate::bench_facts::BenchFacts;
+use crate::plan::PlanFault;
 use jointbench_instrument::{Kind, Meta};
 
 /// Largest share of the link's range that one step may use.

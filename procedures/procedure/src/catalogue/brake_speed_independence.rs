@@ -3,10 +3,11 @@
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{Line, Unusable, curve, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -129,7 +130,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         relative.push(scatter(&format!("{current_a:.2} A"), points.iter().map(|p| (p.0, p.1 / mean_nm))));
     }
     if absolute.is_empty() {
-        return Err(Unusable::TooLittle("No current was measured at three speeds.", "Repeat the run."));
+        return Err(Unusable::InsufficientData("No current was measured at three speeds.", "Repeat the run."));
     }
     let title = "Maximum relative change over speed, all currents";
     quantities.push(quantity(["change_max", "ΔT/T", title, ""], worst, None));

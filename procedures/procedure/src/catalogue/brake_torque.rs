@@ -9,11 +9,13 @@ use super::brake_run;
 use super::demagnetise::rated_nm;
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
-use crate::catalogue::brake_hysteresis::{BOUND, Everett, History, SETTLED};
+use crate::bench_facts::BenchFacts;
+use crate::brake_model::{BrakeModel, CurrentHistory};
+use crate::catalogue::brake_hysteresis::{BOUND, SETTLED};
 use crate::findings::{Unusable, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -68,7 +70,7 @@ impl Procedure for BrakeTorque {
         Some(values.count("model_run"))
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the model may have changed since then")
     }
 
@@ -115,8 +117,8 @@ impl Procedure for BrakeTorque {
 }
 
 /// Currents with the commanded torques, in sequence from a demagnetised brake.
-fn random(model: &Everett, torques: u32, rng: &mut ChaCha8Rng) -> Vec<(f64, f64)> {
-    let mut history = History::default();
+fn random(model: &BrakeModel, torques: u32, rng: &mut ChaCha8Rng) -> Vec<(f64, f64)> {
+    let mut history = CurrentHistory::default();
     let (drag_nm, most_nm) = (model.torque_nm(&history), model.torque_nm(&history.after(model.top_a())));
     // A current below the resolution of the supply is no command.
     let least_nm = drag_nm + 0.02 * (most_nm - drag_nm);
@@ -139,7 +141,7 @@ struct Point {
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     const FOREIGN: Unusable =
-        Unusable::TooLittle("The commanded torques are not stored with the run.", "Repeat the run.");
+        Unusable::InsufficientData("The commanded torques are not stored with the run.", "Repeat the run.");
     let commanded = run.meta().other.get(COMMANDED).cloned().ok_or(FOREIGN)?;
     let commanded: Vec<Vec<(f64, f64)>> = serde_json::from_value(commanded).map_err(|_| FOREIGN)?;
     let rated_nm = rated_nm(run).ok_or(FOREIGN)?;
@@ -156,7 +158,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         }
     }
     if points.len() < 2 {
-        return Err(Unusable::TooLittle("No random history was completed.", "Repeat the run."));
+        return Err(Unusable::InsufficientData("No random history was completed.", "Repeat the run."));
     }
     let errors: Vec<f64> = points.iter().map(|point| (point.felt_nm - point.asked_nm) / rated_nm).collect();
     let worst = errors.iter().map(|error| error.abs()).fold(0.0, f64::max);

@@ -7,10 +7,11 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate, stroke};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{Mean, Unusable, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Drive, Plan, PlanFault, Until};
+use crate::plan::{Drive, EndCondition, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::words;
@@ -70,7 +71,7 @@ impl Procedure for Breakaway {
                 let current_a = Profile::from(0.0).hold(REST_S).to(sign * top_a, ramp_s);
                 let way = if sign > 0.0 { "forward" } else { "backward" };
                 legs.push(format!("breakaway {way}, {position} of {positions}"), velocity, Profile::constant(0.0));
-                let until = Until { increases: values.count("increases"), speed_rad_s: RUNAWAY_RAD_S };
+                let until = EndCondition { increases: values.count("increases"), speed_rad_s: RUNAWAY_RAD_S };
                 legs.drive_of_last(Drive::Current { from_s, current_a, until });
             }
         }
@@ -89,13 +90,13 @@ impl Procedure for Breakaway {
 }
 
 /// Position and torque of a breakaway.
-struct Broke {
+struct BreakawayPoint {
     link_rad: f64,
     torque_nm: f64,
     sign: f64,
 }
 
-impl Broke {
+impl BreakawayPoint {
     /// `km` [Nm/A]: torque constant of the motor.
     fn of(onset: &Onset, km: f64, link_position_rad: Option<&[f64]>) -> Self {
         Self {
@@ -151,7 +152,7 @@ fn onward(position_rad: &[f64], current_a: f64) -> usize {
 
 fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
     let Some(setpoint) = run.column("motor_current_setpoint_a") else {
-        return Err(Unusable::TooLittle(
+        return Err(Unusable::InsufficientData(
             "The run has no motor current set-point, so it belongs to another procedure.",
             "Run breakaway.",
         ));
@@ -161,11 +162,11 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let increases = values.count("increases") as usize;
     let top_a = values.number("top_torque_nm") / km;
     let (onsets, held) = onsets(run, setpoint, increases, top_a);
-    let broke: Vec<Broke> = onsets.into_iter().map(|onset| Broke::of(&onset, km, link)).collect();
-    let of = |sign: f64| -> Vec<f64> { broke.iter().filter(|b| b.sign == sign).map(|b| b.torque_nm).collect() };
-    let all: Vec<f64> = broke.iter().map(|b| b.torque_nm).collect();
+    let points: Vec<BreakawayPoint> = onsets.into_iter().map(|onset| BreakawayPoint::of(&onset, km, link)).collect();
+    let of = |sign: f64| -> Vec<f64> { points.iter().filter(|b| b.sign == sign).map(|b| b.torque_nm).collect() };
+    let all: Vec<f64> = points.iter().map(|b| b.torque_nm).collect();
     let (Some(mean), Some(forward), Some(backward)) = (Mean::of(&all), Mean::of(&of(1.0)), Mean::of(&of(-1.0))) else {
-        return Err(Unusable::TooLittle("Too few breakaway events.", "Increase top_torque_nm."));
+        return Err(Unusable::InsufficientData("Too few breakaway events.", "Increase top_torque_nm."));
     };
     let [mean, forward, backward] = [mean, forward, backward].map(|mean| with_resolution(mean, ramp_step_nm(values)));
     let deviation = (all.iter().map(|t| (t - mean.value).powi(2)).sum::<f64>() / (all.len() - 1) as f64).sqrt();
@@ -192,14 +193,14 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
             named("tau_b_negative", "τ_b⁻", "Breakaway torque, negative direction", &backward),
             quantity(["deviation", "s", "Standard deviation over positions", "Nm"], deviation, None),
         ],
-        figures: vec![over_angle(&broke), distribution(&all)],
+        figures: vec![over_angle(&points), distribution(&all)],
         ..Identification::default()
     })
 }
 
-fn over_angle(broke: &[Broke]) -> Figure {
+fn over_angle(points: &[BreakawayPoint]) -> Figure {
     let side = |label, sign: f64| {
-        scatter(label, broke.iter().filter(move |b| b.sign == sign).map(|b| (b.link_rad, b.torque_nm)))
+        scatter(label, points.iter().filter(move |b| b.sign == sign).map(|b| (b.link_rad, b.torque_nm)))
     };
     Figure {
         name: "breakaway_over_angle".into(),

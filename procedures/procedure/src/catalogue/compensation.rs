@@ -8,10 +8,11 @@ mod identify;
 
 use super::legs::{Legs, sample_rate};
 use super::{Findable, Procedure};
+use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Drive, Feed, Plan, PlanFault};
+use crate::plan::{Drive, Feedforward, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
 use serde_json::{Map, Value};
@@ -44,7 +45,7 @@ const POINTS: u32 = 1000;
 
 /// The compensation methods, in the order of table 4.7; the column `repeat` numbers them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum Method {
     None,
     ZeroArea,
     Interpolated,
@@ -53,23 +54,24 @@ enum Way {
     Observer,
 }
 
-impl Way {
-    const ALL: [Way; 6] = [Way::None, Way::ZeroArea, Way::Interpolated, Way::CoulombViscous, Way::Full, Way::Observer];
+impl Method {
+    const ALL: [Method; 6] =
+        [Method::None, Method::ZeroArea, Method::Interpolated, Method::CoulombViscous, Method::Full, Method::Observer];
 
     fn words(self) -> [&'static str; 2] {
         match self {
-            Way::None => ["none", "no compensation"],
-            Way::ZeroArea => ["zero_area", "Coulomb with dead band"],
-            Way::Interpolated => ["interpolated", "Coulomb, interpolated"],
-            Way::CoulombViscous => ["coulomb_viscous", "Coulomb and viscous"],
-            Way::Full => ["full", "full model"],
-            Way::Observer => ["observer", "observer"],
+            Method::None => ["none", "no compensation"],
+            Method::ZeroArea => ["zero_area", "Coulomb with dead band"],
+            Method::Interpolated => ["interpolated", "Coulomb, interpolated"],
+            Method::CoulombViscous => ["coulomb_viscous", "Coulomb and viscous"],
+            Method::Full => ["full", "full model"],
+            Method::Observer => ["observer", "observer"],
         }
     }
 }
 
 /// Friction from the parameters, over the link velocity; motor torque.
-struct Stated {
+struct FrictionParameters {
     coulomb_nm: f64,
     viscous_nm_s: f64,
     rise_nm: f64,
@@ -78,7 +80,7 @@ struct Stated {
     gear_ratio: f64,
 }
 
-impl Stated {
+impl FrictionParameters {
     fn new(values: &Values, gear_ratio: f64) -> Self {
         let coulomb_nm = values.number("tau_c_nm");
         Self {
@@ -98,16 +100,16 @@ impl Stated {
     }
 
     /// Planned feedforward before scaling. `None`: the method has no planned feedforward.
-    fn fed_nm(&self, way: Way, link_rad_s: f64) -> Option<f64> {
+    fn fed_nm(&self, method: Method, link_rad_s: f64) -> Option<f64> {
         let line = |over: f64| (link_rad_s / over).clamp(-1.0, 1.0);
         let viscous_nm = self.viscous_nm_s * self.gear_ratio * link_rad_s;
-        match way {
-            Way::None | Way::Observer => None,
-            Way::ZeroArea if link_rad_s.abs() < RAMP_RAD_S => Some(0.0),
-            Way::ZeroArea => Some(self.coulomb_nm.copysign(link_rad_s)),
-            Way::Interpolated => Some(self.coulomb_nm * line(RAMP_RAD_S)),
-            Way::CoulombViscous => Some(self.coulomb_nm * line(RAMP_RAD_S) + viscous_nm),
-            Way::Full => Some(self.friction_nm(link_rad_s).abs() * line(STEEP_RAD_S)),
+        match method {
+            Method::None | Method::Observer => None,
+            Method::ZeroArea if link_rad_s.abs() < RAMP_RAD_S => Some(0.0),
+            Method::ZeroArea => Some(self.coulomb_nm.copysign(link_rad_s)),
+            Method::Interpolated => Some(self.coulomb_nm * line(RAMP_RAD_S)),
+            Method::CoulombViscous => Some(self.coulomb_nm * line(RAMP_RAD_S) + viscous_nm),
+            Method::Full => Some(self.friction_nm(link_rad_s).abs() * line(STEEP_RAD_S)),
         }
     }
 }
@@ -147,7 +149,7 @@ impl Procedure for Compensation {
         }
         let constants = &bench.constants;
         let rate_hz = values.number("sample_rate_hz");
-        let stated = Stated::new(values, constants.gear_ratio);
+        let friction = FrictionParameters::new(values, constants.gear_ratio);
         let period_s = values.number("period_s");
         let points = POINTS * values.count("periods");
         let step_s = period_s / f64::from(POINTS);
@@ -158,30 +160,30 @@ impl Procedure for Compensation {
         // The last point of a sine is zero except for rounding.
         let velocity = profile(&|v| constants.gear_ratio * v).to(0.0, 0.0);
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
-        for way in Way::ALL {
-            legs.repeat = way as u32;
-            legs.push(way.words()[1].into(), velocity.clone(), Profile::constant(0.0));
+        for method in Method::ALL {
+            legs.repeat = method as u32;
+            legs.push(method.words()[1].into(), velocity.clone(), Profile::constant(0.0));
             let share = values.number("share");
-            let fed_a = |v: f64| share * stated.fed_nm(way, v).unwrap_or(0.0) / constants.torque_constant_nm_per_a;
-            match way {
-                Way::None => {}
-                Way::Observer => {
+            let fed_a = |v: f64| share * friction.fed_nm(method, v).unwrap_or(0.0) / constants.torque_constant_nm_per_a;
+            match method {
+                Method::None => {}
+                Method::Observer => {
                     let ramp_rad_s = RAMP_RAD_S * constants.gear_ratio;
-                    legs.drive_of_last(Drive::Fed(Feed::Observed { share, corner_hz: CORNER_HZ, ramp_rad_s }));
+                    legs.drive_of_last(Drive::Fed(Feedforward::Observed { share, corner_hz: CORNER_HZ, ramp_rad_s }));
                 }
-                _ => legs.drive_of_last(Drive::Fed(Feed::Planned(profile(&fed_a)))),
+                _ => legs.drive_of_last(Drive::Fed(Feedforward::Planned(profile(&fed_a)))),
             }
-            over_compensates(&stated, way, share, values.number("amplitude_rad_s"))?;
+            over_compensates(&friction, method, share, values.number("amplitude_rad_s"))?;
         }
         Ok(legs.friction_plan(self, values, bench, rate_hz))
     }
 
     fn finds(&self) -> Vec<Findable> {
-        let of_way = |way: Way| {
-            let [suffix, _] = way.words();
+        let of_method = |method: Method| {
+            let [suffix, _] = method.words();
             identify::FIGURES.map(|[name, _, _, unit]| Findable { name: format!("{name}_{suffix}"), unit })
         };
-        Way::ALL.into_iter().flat_map(of_way).collect()
+        Method::ALL.into_iter().flat_map(of_method).collect()
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
@@ -227,14 +229,19 @@ fn four_digits(value: f64) -> f64 {
 }
 
 /// Rejects a feedforward that exceeds the stated friction at any speed of the reference.
-fn over_compensates(stated: &Stated, way: Way, share: f64, top_rad_s: f64) -> Result<(), PlanFault> {
-    let over = (1..=POINTS)
-        .map(|i| top_rad_s * f64::from(i) / f64::from(POINTS))
-        .find(|v| stated.fed_nm(way, *v).is_some_and(|fed_nm| share * fed_nm > stated.friction_nm(*v) * (1.0 + 1e-9)));
+fn over_compensates(
+    friction: &FrictionParameters,
+    method: Method,
+    share: f64,
+    top_rad_s: f64,
+) -> Result<(), PlanFault> {
+    let over = (1..=POINTS).map(|i| top_rad_s * f64::from(i) / f64::from(POINTS)).find(|v| {
+        friction.fed_nm(method, *v).is_some_and(|fed_nm| share * fed_nm > friction.friction_nm(*v) * (1.0 + 1e-9))
+    });
     match over {
         None => Ok(()),
         Some(v) => Err(PlanFault::Contradiction {
-            what: format!("{} would over-compensate at {v:.3} rad/s (link)", way.words()[1]),
+            what: format!("{} would over-compensate at {v:.3} rad/s (link)", method.words()[1]),
             cure: "reduce share",
         }),
     }
@@ -252,7 +259,7 @@ mod tests {
     fn every_way_follows_the_same_reference_and_none_exceeds_friction() {
         let plan = Compensation.plan(json!({}).as_object().unwrap(), &joint_a()).unwrap();
         assert!(plan.preview(&joint_a()).is_allowed(), "{:?}", plan.preview(&joint_a()).checks);
-        assert_eq!(plan.steps.len(), Way::ALL.len());
+        assert_eq!(plan.steps.len(), Method::ALL.len());
         assert!(plan.steps.iter().all(|step| step.velocity == plan.steps[0].velocity));
         // At most the stated friction at the top speed of the reference.
         let most_a = (0.039 + 1.512e-4 * 0.15 * 177.8) / 0.0406;

@@ -3,10 +3,11 @@
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{Hold, Unusable, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::words;
 use std::f64::consts::TAU;
@@ -111,7 +112,7 @@ impl Turn {
 }
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
-    const LITTLE: Unusable = Unusable::TooLittle("The run ended before the last turn.", "Repeat the run.");
+    const LITTLE: Unusable = Unusable::InsufficientData("The run ended before the last turn.", "Repeat the run.");
     let (Some(torque), Some(angle), Some(rated_nm)) =
         (run.column("brake_torque_nm"), run.column("position_rad"), rated_nm(run))
     else {

@@ -14,15 +14,18 @@ use super::compensation;
 use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
 use super::warm_up;
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::{FollowUp, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault, Steady};
+use crate::plan::{Plan, PlanFault};
+use crate::steady::SteadyCriterion;
 use jointbench_instrument::{Kind, RunTable};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
+mod free_friction;
 mod identify;
 mod inconclusive;
 
@@ -103,7 +106,7 @@ impl Procedure for Friction {
             meta.other.insert("brake_history".into(), history.into());
         }
         Ok(Plan {
-            steady: Some(Steady {
+            steady: Some(SteadyCriterion {
                 cycle_steps: warm_up::CYCLE_STEPS,
                 temperature_c_per_min: 0.3,
                 current_share_per_min: 0.01,

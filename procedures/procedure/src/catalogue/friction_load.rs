@@ -6,12 +6,13 @@
 use super::friction::Friction;
 use super::legs::sample_rate;
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{
-    Unusable, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter, settled, verdict,
+    Unusable, curve, interval_of, legs, parameter, plateaus, quantity, scatter, select_legs, settled, verdict,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::words;
 use jointbench_model::{Fit, ModelError, ModelSpec, Options, fit};
@@ -58,7 +59,7 @@ impl Procedure for FrictionLoad {
             given.insert("fast_speeds".into(), speeds);
         }
         let plan = Friction.plan(&given, bench)?;
-        Ok(Plan { procedure: self.id(), parameters: values.to_json(), ..plan })
+        Ok(Plan { procedure: self.id().to_owned(), parameters: values.to_json(), ..plan })
     }
 
     fn finds(&self) -> Vec<Findable> {
@@ -77,7 +78,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let warm_up = run.meta().other.get("warm_up_segments").and_then(serde_json::Value::as_i64).unwrap_or(0);
     let legs = legs(run);
     let held = || legs.iter().filter(|leg| leg.segment >= warm_up && leg.direction != 0.0 && leg.brake_nm.is_some());
-    let table = keep(run, held())?;
+    let table = select_legs(run, held())?;
     let (law, fit) = choose(&table)?;
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let mut quantities = Vec::new();

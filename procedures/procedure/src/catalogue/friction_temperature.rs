@@ -7,10 +7,11 @@
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::warm_up;
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{Plateau, Unusable, interval_of, parameter, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Phase, Plan, PlanFault};
+use crate::plan::{Phase, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelSpec, Options, fit_prepared};
@@ -55,7 +56,7 @@ impl Procedure for FrictionTemperature {
         SCHEMA
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("warm-up and cool-down form one temperature history")
     }
 
@@ -100,7 +101,10 @@ impl Procedure for FrictionTemperature {
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     if run.column("temperature_c").is_none() {
-        return Err(Unusable::TooLittle("The joint reports no temperature.", "Connect a thermistor or a thermometer."));
+        return Err(Unusable::InsufficientData(
+            "The joint reports no temperature.",
+            "Connect a thermistor or a thermometer.",
+        ));
     }
     let prepared = settled(run)?;
     let points = plateaus(&prepared);

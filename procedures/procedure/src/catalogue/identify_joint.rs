@@ -6,7 +6,7 @@
 //! brake current and at the start position of the run, so that the parts only share the warm-up. Compensation also
 //! needs the identified friction for its feedforward: it is planned when that is known.
 
-mod learn;
+mod deferred;
 mod part;
 
 use super::brake_hysteresis::BrakeHysteresis;
@@ -19,11 +19,12 @@ use super::friction_temperature::FrictionTemperature;
 use super::legs::sample_rate;
 use super::presliding::Presliding;
 use super::stiffness::Stiffness;
-use super::{Findable, Learnt, Procedure, procedure};
+use super::{Findable, PlannedSteps, Procedure, procedure};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{Unusable, verdict};
 use crate::identification::{Identification, Part, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Step};
+use crate::plan::{Phase, Plan, PlanFault, Step};
 use jointbench_instrument::{Kind, Meta, RunTable};
 use part::table_of;
 use serde_json::{Map, Value, json};
@@ -141,7 +142,7 @@ impl Procedure for IdentifyJoint {
             let mut part = procedure.plan(&given.as_object().cloned().unwrap_or_default(), bench)?;
             let steps = std::mem::take(&mut part.steps);
             let whole = whole.get_or_insert_with(|| Plan {
-                procedure: self.id(),
+                procedure: self.id().to_owned(),
                 parameters: values.to_json(),
                 kind: self.kind(),
                 meta: Meta { other: Map::new(), ..part.meta.clone() },
@@ -166,7 +167,7 @@ impl Procedure for IdentifyJoint {
         }
         let cure = "report it";
         let mut plan = whole.ok_or(PlanFault::Contradiction { what: "a campaign without parts".into(), cure })?;
-        plan.lesson = learn::lesson(&facts);
+        plan.deferred = deferred::deferred_plan(&facts);
         plan.meta.other.insert(PARTS.into(), Value::Array(facts));
         Ok(plan)
     }
@@ -183,8 +184,8 @@ impl Procedure for IdentifyJoint {
         verdict(identify(run))
     }
 
-    fn learn(&self, run: &RunTable, bench: &BenchFacts) -> Result<Learnt, String> {
-        learn::compensation(run, bench)
+    fn plan_deferred(&self, run: &RunTable, bench: &BenchFacts) -> Result<PlannedSteps, String> {
+        deferred::compensation(run, bench)
     }
 }
 
@@ -208,7 +209,7 @@ fn waits(procedure: &dyn Procedure) -> bool {
 }
 
 const FOREIGN: Unusable =
-    Unusable::TooLittle("The parts of the campaign are not stored with the run.", "Run identify_joint.");
+    Unusable::InsufficientData("The parts of the campaign are not stored with the run.", "Run identify_joint.");
 
 fn parts_of(run: &RunTable) -> Result<&[Value], Unusable> {
     Ok(run.meta().other.get(PARTS).and_then(Value::as_array).ok_or(FOREIGN)?)
@@ -238,12 +239,12 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         if found.verdict != Verdict::Identified && whole.verdict != Verdict::Failed {
             whole.verdict = found.verdict;
         }
-        let said = match found.verdict {
+        let conclusion = match found.verdict {
             Verdict::Identified => words(&found.summary),
             Verdict::Inconclusive => format!("{} (inconclusive): {}", procedure.title(), found.summary),
             Verdict::Failed => format!("{} (failed): {}", procedure.title(), found.summary),
         };
-        whole.summary = below(&whole.summary, said);
+        whole.summary = below(&whole.summary, conclusion);
         whole.parts.push(Part {
             id: id.to_owned(),
             title: procedure.title().to_owned(),
@@ -310,14 +311,15 @@ mod tests {
     #[test]
     fn compensation_waits_for_friction_and_is_left_out_where_the_drive_cannot() {
         let plan = IdentifyJoint.plan(&Map::new(), &joint_a()).unwrap();
-        let lesson = plan.lesson.unwrap();
-        assert_eq!(lesson.to.end as usize, plan.steps.len());
+        let deferred = plan.deferred.unwrap();
+        assert_eq!(deferred.to.end as usize, plan.steps.len());
         assert!(
-            lesson.from.end < lesson.to.start && plan.steps[lesson.from.start as usize].label.starts_with("friction:")
+            deferred.from.end < deferred.to.start
+                && plan.steps[deferred.from.start as usize].label.starts_with("friction:")
         );
         let cannot = BenchFacts { feeds_forward: false, ..joint_a() };
         let shorter = IdentifyJoint.plan(&Map::new(), &cannot).unwrap();
-        assert!(shorter.lesson.is_none() && shorter.steps.len() == lesson.to.start as usize);
+        assert!(shorter.deferred.is_none() && shorter.steps.len() == deferred.to.start as usize);
         assert!(shorter.preview(&cannot).is_allowed());
     }
 

@@ -1,10 +1,11 @@
 //! Shared functions of the joint procedures: numbered steps, legs of constant speed, the facts of a friction run.
 
 use super::Procedure;
+use crate::bench_facts::BenchFacts;
 use crate::parameter::{Parameter, Values};
-use crate::place::Place;
-use crate::plan::{Before, BenchFacts, Drive, Phase, Plan, Step};
+use crate::plan::{Drive, InitialState, Phase, Plan, Step};
 use crate::profile::Profile;
+use crate::stage_pose::StagePose;
 use jointbench_instrument::{Kind, Meta};
 use std::f64::consts::TAU;
 
@@ -78,7 +79,7 @@ impl Legs {
         let velocity = Profile::plateau(speed_rad_s, self.acceleration_rad_s2, brake.duration_s() - turning_s + LAG_S);
         self.push(label, velocity, brake);
         let last = self.steps.len() - 1;
-        self.steps[last].before = Before::Demagnetised;
+        self.steps[last].before = InitialState::Demagnetised;
     }
 
     /// The rated current, then zero over `turns` of the link, so that no pole keeps its history.
@@ -120,7 +121,7 @@ impl Legs {
     pub fn plan(self, procedure: &dyn Procedure, values: &Values, meta: Meta, rate_hz: f64) -> Plan {
         let measures_torque = matches!(procedure.kind(), Kind::Stiffness | Kind::Brake);
         Plan {
-            procedure: procedure.id(),
+            procedure: procedure.id().to_owned(),
             parameters: values.to_json(),
             kind: procedure.kind(),
             meta,
@@ -130,7 +131,7 @@ impl Legs {
             steady: None,
             both_ranges: false,
             torque_period_s: (measures_torque && rate_hz * TORQUE_PERIOD_S <= 0.5).then_some(TORQUE_PERIOD_S),
-            lesson: None,
+            deferred: None,
             begins_rad: 0.0,
         }
     }
@@ -148,7 +149,7 @@ impl Legs {
 
     pub fn push(&mut self, label: String, velocity: Profile, brake: Profile) {
         let segment = self.steps.len() as u32;
-        let (phase, repeat, before) = (self.phase, self.repeat, Before::AsLeft);
+        let (phase, repeat, before) = (self.phase, self.repeat, InitialState::AsLeft);
         self.steps.push(Step {
             label,
             phase,
@@ -158,7 +159,7 @@ impl Legs {
             velocity,
             brake,
             drive: Drive::Velocity,
-            place: Place::AsLeft,
+            place: StagePose::AsLeft,
         });
     }
 }
@@ -203,7 +204,7 @@ pub(super) fn friction_meta(bench: &BenchFacts, rate_hz: f64) -> Meta {
 
 #[cfg(test)]
 pub(super) mod testing {
-    use crate::plan::BenchFacts;
+    use crate::bench_facts::BenchFacts;
     use jointbench_instrument::Limits;
     use jointbench_instrument::bench::JointConstants;
     use std::f64::consts::TAU;

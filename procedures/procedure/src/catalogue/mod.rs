@@ -16,29 +16,30 @@ mod identify_joint;
 mod legs;
 mod presliding;
 mod puma_friction;
-mod rest;
+mod remaining;
 mod stiffness;
 mod strokes;
 mod torque_sensor_zero;
 mod warm_up;
 
-pub use brake_hysteresis::{BrakeModel, brake_model};
+pub use brake_hysteresis::brake_model;
 pub use findable::Findable;
 use findable::findable;
 
+use crate::bench_facts::BenchFacts;
 use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault, Step};
+use crate::plan::{Plan, PlanFault, Step};
 use jointbench_instrument::{Kind, RunTable};
 use serde_json::{Map, Value};
 
 /// Steps that were planned during their run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Learnt {
-    /// The dependent steps ([`crate::plan::Lesson::to`]), planned anew.
+pub struct PlannedSteps {
+    /// The dependent steps ([`crate::deferred_plan::DeferredPlan::to`]), planned anew.
     pub steps: Vec<Step>,
     /// The values that were used, in a sentence for the journal.
-    pub said: String,
+    pub message: String,
 }
 
 /// A measurement method: it plans the steps of a run, and the engine performs them. Pure and deterministic: the same
@@ -69,9 +70,9 @@ pub trait Procedure: Sync {
         None
     }
 
-    /// Plans the steps that depend on results of the run ([`Plan::lesson`]) from the rows so far. `Err` states why
+    /// Plans the steps that depend on results of the run ([`Plan::deferred`]) from the rows so far. `Err` states why
     /// they are omitted.
-    fn learn(&self, _run: &RunTable, _bench: &BenchFacts) -> Result<Learnt, String> {
+    fn plan_deferred(&self, _run: &RunTable, _bench: &BenchFacts) -> Result<PlannedSteps, String> {
         Err(format!("{} has no steps that are planned during the run", self.title()))
     }
 
@@ -87,7 +88,7 @@ pub trait Procedure: Sync {
 
     /// Whether the rest of an incomplete run may be measured in a later one. `Err` states which part of the history
     /// cannot be restored.
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Ok(())
     }
 

@@ -6,10 +6,11 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Drive, Plan, PlanFault, Until};
+use crate::plan::{Drive, EndCondition, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
 
@@ -35,7 +36,7 @@ const FURTHER: f64 = 1e-3;
 /// Rest without torque after the stroke (s).
 const REST_S: f64 = 0.4;
 /// Limits of a breakaway: this number of consecutive increases, or this motor speed.
-const UNTIL: Until = Until { increases: 50, speed_rad_s: 10.0 };
+const UNTIL: EndCondition = EndCondition { increases: 50, speed_rad_s: 10.0 };
 
 impl Procedure for Presliding {
     fn id(&self) -> &'static str {

@@ -13,11 +13,13 @@
 
 use super::legs::{ACCELERATION, Legs, friction_meta, stroke};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Drive, Phase, Plan, PlanFault, Steady, Until};
+use crate::plan::{Drive, EndCondition, Phase, Plan, PlanFault};
 use crate::profile::Profile;
+use crate::steady::SteadyCriterion;
 use jointbench_instrument::{Kind, RunTable};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -72,7 +74,7 @@ impl Procedure for PumaFriction {
         Kind::Friction
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("its arc is centred on the initial pose: set the link upright and repeat the run")
     }
 
@@ -114,7 +116,11 @@ impl Procedure for PumaFriction {
         meta.other.insert("segments".into(), legs.steps.len().into());
         meta.other.insert("amperes_per_volt".into(), amperes_per_volt.into());
         Ok(Plan {
-            steady: Some(Steady { cycle_steps: CYCLE_STEPS, temperature_c_per_min: 0.3, current_share_per_min: 0.05 }),
+            steady: Some(SteadyCriterion {
+                cycle_steps: CYCLE_STEPS,
+                temperature_c_per_min: 0.3,
+                current_share_per_min: 0.05,
+            }),
             ..legs.plan(self, values, meta, rate_hz)
         })
     }
@@ -184,7 +190,7 @@ fn measure(legs: &mut Legs, values: &Values, gear: f64, arc_rad: f64, mut speeds
 fn break_away(legs: &mut Legs, values: &Values, bench: &BenchFacts) {
     let top_a = values.number("top_torque_nm") / bench.constants.torque_constant_nm_per_a;
     let ramp_s = values.number("top_torque_nm") / values.number("ramp_nm_s");
-    let until = Until { increases: values.count("increases"), speed_rad_s: RUNAWAY_RAD_S };
+    let until = EndCondition { increases: values.count("increases"), speed_rad_s: RUNAWAY_RAD_S };
     let back_rad = BACK_OFF_RAD * bench.constants.gear_ratio;
     let count = values.count("breakaways");
     for (repeat, sign) in [(0, 1.0), (1, -1.0)] {

@@ -5,12 +5,13 @@
 
 use super::legs::{Legs, sample_rate};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{
-    Line, Plateau, Unusable, curve, keep, legs, plateaus, quantity, scatter, settled, solve, t95, verdict,
+    Line, Plateau, Unusable, curve, legs, plateaus, quantity, scatter, select_legs, settled, solve, t95, verdict,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::preprocess::Prepared;
 use jointbench_model::signal::Signal;
@@ -130,7 +131,7 @@ struct Lines {
 fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
     let legs = legs(run);
     let heaviest = legs.iter().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
-    let prepared = settled(&keep(run, legs.iter().filter(|leg| leg.brake_nm == Some(heaviest)))?)?;
+    let prepared = settled(&select_legs(run, legs.iter().filter(|leg| leg.brake_nm == Some(heaviest)))?)?;
     let planned = values.number("top_speed_rad_s");
     let is_stroke = |p: &Plateau| p.velocity_rad_s.abs() < FASTER * planned;
     let points: Vec<Plateau> = plateaus(&prepared).into_iter().filter(is_stroke).collect();
@@ -239,7 +240,7 @@ impl Lines {
         quantities
     }
 
-    fn said(&self) -> Vec<String> {
+    fn sentences(&self) -> Vec<String> {
         let line = |(suffix, _, line): (&str, &str, &Line)| {
             let [offset, slope] =
                 [(line.offset, "Nm"), (line.slope, "Nm·s/rad")].map(|(v, unit)| words::figure(v, unit));
@@ -301,10 +302,10 @@ impl Lines {
 fn identification(points: &[Plateau], lines: &Lines, planned_rad_s: f64) -> Identification {
     let top_rad_s = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let advice = lines.advice(top_rad_s, planned_rad_s);
-    let said = lines.said().join(" ");
+    let sentences = lines.sentences().join(" ");
     Identification {
         verdict: if advice.is_none() { Verdict::Identified } else { Verdict::Inconclusive },
-        summary: format!("{} strokes up to {top_rad_s:.1} rad/s (motor). {said}", points.len()),
+        summary: format!("{} strokes up to {top_rad_s:.1} rad/s (motor). {sentences}", points.len()),
         advice,
         quantities: lines.quantities(),
         figures: vec![lines.figure(top_rad_s)],
@@ -371,12 +372,12 @@ mod tests {
 
     #[test]
     fn what_cannot_be_held_is_refused_with_a_cure() {
-        for (given, said) in [
+        for (given, message) in [
             (json!({"low_speed_rad_s": 200.0}), "low_speed_rad_s = 200 must be below"),
             (json!({"travel_rad": 0.1}), "increase travel_rad"),
         ] {
             let fault = plan(given).unwrap_err().to_string();
-            assert!(fault.contains(said), "{fault}");
+            assert!(fault.contains(message), "{fault}");
         }
         let bare = BenchFacts { has_brake: false, ..joint_a() };
         let fault = Strokes.plan(json!({"load": 0.3}).as_object().unwrap(), &bare).unwrap_err();

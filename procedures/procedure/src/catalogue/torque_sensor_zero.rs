@@ -7,11 +7,12 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
-use crate::columns::OTHER_RANGE;
+use crate::bench_facts::BenchFacts;
+use crate::column_names::OTHER_RANGE;
 use crate::findings::{Hold, Line, Mean, Unusable, curve, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 
 pub(super) struct TorqueSensorZero;
@@ -59,7 +60,7 @@ impl Procedure for TorqueSensorZero {
         SCHEMA
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the drift of the sensor is one history")
     }
 
@@ -130,7 +131,7 @@ impl Zero {
         let end = &points[points.len() - (points.len() as f64 * END).ceil() as usize..];
         let at_end: Vec<f64> = end.iter().map(|p| p.1).collect();
         let (Some(value), Some(drift), Some(drag)) = (Mean::of(&at_end), Line::through(end), Mean::of(&drags)) else {
-            return Err(Unusable::TooLittle("Too few strokes.", "Increase duration_s."));
+            return Err(Unusable::InsufficientData("Too few strokes.", "Increase duration_s."));
         };
         Ok(Self { points, value, drift, drag })
     }
@@ -198,7 +199,8 @@ fn overlap(
 ) -> Result<(), Unusable> {
     let pairs: Vec<(f64, f64)> =
         held.iter().map(|hold| (hold.mean(used, SETTLED), hold.mean(other, SETTLED))).collect();
-    let line = Line::through(&pairs).ok_or(Unusable::TooLittle("All torques are equal.", "Increase top_torque_nm."))?;
+    let line =
+        Line::through(&pairs).ok_or(Unusable::InsufficientData("All torques are equal.", "Increase top_torque_nm."))?;
     let apart: Vec<(f64, f64)> = pairs.iter().map(|(used, other)| (*used, other - used)).collect();
     let widest = apart.iter().map(|(_, apart)| apart.abs()).fold(0.0, f64::max);
     let (low, high) =

@@ -2,11 +2,13 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::{Findable, Procedure, findable};
+use crate::bench_facts::BenchFacts;
 use crate::findings::{Plateau, Unusable, curve, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Steady};
-use crate::steady::{Drift, SteadyWatch};
+use crate::plan::{Phase, Plan, PlanFault};
+use crate::steady::SteadyCriterion;
+use crate::steady::{Drift, SteadyDetector};
 use jointbench_instrument::{Kind, RunTable};
 
 pub(super) struct WarmUp;
@@ -58,7 +60,7 @@ impl Procedure for WarmUp {
         SCHEMA
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("a warm-up is one history")
     }
 
@@ -78,8 +80,8 @@ impl Procedure for WarmUp {
     }
 }
 
-fn rule(values: &Values) -> Steady {
-    Steady {
+fn rule(values: &Values) -> SteadyCriterion {
+    SteadyCriterion {
         cycle_steps: CYCLE_STEPS,
         temperature_c_per_min: values.number("steady_c_per_min"),
         current_share_per_min: values.number("steady_share_per_min"),
@@ -95,9 +97,9 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let fast: Vec<Plateau> = points.into_iter().filter(|p| p.velocity_rad_s.abs() > 0.9 * top).collect();
     let rule = rule(values);
     // The same rule ends a warm-up: one that ended by itself has just fallen below the bound.
-    let watch = SteadyWatch::of(rule, run);
+    let watch = SteadyDetector::of(rule, run);
     let Some((watch, drift)) = watch.and_then(|watch| watch.drift().map(|drift| (watch, drift))) else {
-        return Err(Unusable::TooLittle(
+        return Err(Unusable::InsufficientData(
             "The warm-up ended before three cycles were completed.",
             "Increase longest_s.",
         ));
@@ -109,9 +111,9 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         ..Identification::default()
     };
     let judged = judged(&rule, &drift, has_temperature);
-    let over: Vec<&str> = judged.iter().filter(|(is_steady, _)| !is_steady).map(|(_, said)| said.as_str()).collect();
+    let over: Vec<&str> = judged.iter().filter(|(is_steady, _)| !is_steady).map(|(_, text)| text.as_str()).collect();
     Ok(if over.is_empty() {
-        let all: Vec<&str> = judged.iter().map(|(_, said)| said.as_str()).collect();
+        let all: Vec<&str> = judged.iter().map(|(_, text)| text.as_str()).collect();
         let summary = format!("Steady state reached: {}.", all.join(", "));
         Identification { verdict: Verdict::Identified, summary, ..found }
     } else {
@@ -122,7 +124,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
 }
 
 /// Whether current and temperature are steady, each drift with its limit in words.
-fn judged(rule: &Steady, drift: &Drift, has_temperature: bool) -> Vec<(bool, String)> {
+fn judged(rule: &SteadyCriterion, drift: &Drift, has_temperature: bool) -> Vec<(bool, String)> {
     let current = format!(
         "current drift {:.2} %/min (limit {:.2} %/min, steady_share_per_min)",
         100.0 * drift.current_share_per_min,
@@ -153,7 +155,7 @@ fn quantities(fast: &[Plateau], drift: &Drift, has_temperature: bool) -> Vec<Qua
     quantities
 }
 
-fn figures(fast: &[Plateau], watch: &SteadyWatch, rule: &Steady, has_temperature: bool) -> Vec<Figure> {
+fn figures(fast: &[Plateau], watch: &SteadyDetector, rule: &SteadyCriterion, has_temperature: bool) -> Vec<Figure> {
     let torque = |p: &Plateau| (p.time_s / 60.0, p.target.abs());
     let mut figures = vec![
         over_time("torque", "Motor torque of the fast legs", "motor torque", "Nm", fast, torque),
@@ -202,7 +204,7 @@ fn over_minutes([name, title, label, unit]: [&str; 4], series: Vec<Series>) -> F
 
 /// Drift at the end of each cycle, and the bounds within which the joint is warm. `words`: name, title, label and
 /// unit.
-fn until_steady(words: [&str; 4], watch: &SteadyWatch, bound: f64, of: fn(&Drift) -> f64) -> Figure {
+fn until_steady(words: [&str; 4], watch: &SteadyDetector, bound: f64, of: fn(&Drift) -> f64) -> Figure {
     let points: Vec<(f64, f64)> = watch.drifts().map(|(time_s, drift)| (time_s / 60.0, of(&drift))).collect();
     let ends = [points.first().map_or(0.0, |p| p.0), points.last().map_or(1.0, |p| p.0)];
     let series = vec![

@@ -2,9 +2,9 @@
 
 use super::ending::Ending;
 use super::session::{Session, reported};
+use crate::bench_facts::BenchFacts;
 use crate::columns::Columns;
 use crate::event::EventKind;
-use crate::plan::BenchFacts;
 use jointbench_instrument::roles::JointReading;
 use jointbench_instrument::units::{Amperes, RadPerSec, Volts};
 
@@ -18,7 +18,7 @@ impl Session<'_> {
         }
         self.check_plan()?;
         self.identify()?;
-        self.meet_encoders()?;
+        self.identify_encoders()?;
         let health = self.ask_joint(|joint| joint.health())?;
         if !health.errors.is_empty() {
             let what = format!("{}; clear the error before the run", health.errors.join(", "));
@@ -40,20 +40,21 @@ impl Session<'_> {
             return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
         }
 
-        self.feel_warmth()?;
+        self.read_thermometer()?;
         self.start_torque_stream()?;
-        let (placed, streams, felt) = (self.pose.is_some(), self.streaming.is_some(), self.felt_c.len());
-        let columns = Columns::of(self.plan, placed, streams, self.bench, &reading, &health, felt);
-        self.learning.set_columns(columns.empty_trace());
+        let (moves_stage, streams, thermometers) =
+            (self.pose.is_some(), self.torque_stream.is_some(), self.thermometer_c.len());
+        let columns = Columns::of(self.plan, moves_stage, streams, self.bench, &reading, &health, thermometers);
+        self.deferred.set_columns(columns.empty_trace());
         self.journal.set_columns(columns.empty_trace());
         self.columns = Some(columns);
-        if health.temperature.is_none() && self.felt_c.is_empty() {
+        if health.temperature.is_none() && self.thermometer_c.is_empty() {
             self.note("No temperature signal: the temperature limit is not monitored.");
         }
         if self.bench.torque_sensor.is_none() {
             self.note("No torque sensor: limits of link torque and brake power are not monitored.");
         }
-        self.beat.next_s = self.bench.clock.now_s();
+        self.period.next_s = self.bench.clock.now_s();
         Ok(())
     }
 
@@ -81,8 +82,10 @@ impl Session<'_> {
             found.extend(brake.map(|brake| (brake.name().to_owned(), brake.port().to_owned(), identity)));
         }
         if let Some(identity) = self.ask_thermometer(|thermometer| thermometer.identify())? {
-            let felt = self.bench.thermometer.as_ref();
-            found.extend(felt.map(|felt| (felt.name().to_owned(), felt.port().to_owned(), identity)));
+            let thermometer = self.bench.thermometer.as_ref();
+            found.extend(
+                thermometer.map(|thermometer| (thermometer.name().to_owned(), thermometer.port().to_owned(), identity)),
+            );
         }
         let now_s = self.bench.clock.now_s();
         for (instrument, port, identity) in found {

@@ -5,7 +5,7 @@ use jointbench_instrument::Fault;
 use jointbench_instrument::roles::Instrument;
 
 /// A failed or repeated request.
-pub(super) struct Trouble {
+pub(super) struct RequestFault {
     pub fault: Fault,
     pub recovered: bool,
 }
@@ -15,7 +15,7 @@ pub(super) struct Trouble {
 pub(super) fn ask<I: Instrument + ?Sized, T>(
     instrument: &mut I,
     mut request: impl FnMut(&mut I) -> Result<T, Fault>,
-    mut log: impl FnMut(Trouble),
+    mut log: impl FnMut(RequestFault),
 ) -> Result<T, Fault> {
     let fault = match request(instrument) {
         Ok(reply) => return Ok(reply),
@@ -25,7 +25,7 @@ pub(super) fn ask<I: Instrument + ?Sized, T>(
         if fault.is_retryable() { instrument.recover().and_then(|_| request(instrument)) } else { Err(fault.clone()) };
     tracing::warn!(instrument = instrument.name(), recovered = reply.is_ok(), "{fault}");
     let exchanged = reply.as_ref().err().filter(|found| found.is_wrong_instrument() && **found != fault).cloned();
-    log(Trouble { fault, recovered: reply.is_ok() });
-    exchanged.into_iter().for_each(|fault| log(Trouble { fault, recovered: false }));
+    log(RequestFault { fault, recovered: reply.is_ok() });
+    exchanged.into_iter().for_each(|fault| log(RequestFault { fault, recovered: false }));
     reply
 }

@@ -1,26 +1,26 @@
 //! The command to the drive in a tick: a velocity with feedforward, or a motor current alone.
 
-use super::session::{Asked, Session};
-use crate::plan::{Drive, Feed, Step, Until};
+use super::session::{DriveCommand, Session};
+use crate::plan::{Drive, EndCondition, Feedforward, Step};
 use jointbench_instrument::roles::JointReading;
 use std::f64::consts::TAU;
 
 /// Measured friction, low-pass filtered, during a step.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct FeltFriction {
+pub(super) struct MeasuredFriction {
     current_a: f64,
 }
 
-/// Number of consecutive increases of the motor position.
+/// Detects a breakaway: counts consecutive increases of the motor position.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Moved {
+pub(super) struct BreakawayDetector {
     at_rad: Option<f64>,
     times: u32,
 }
 
-impl Moved {
+impl BreakawayDetector {
     /// Whether the joint has broken away in the direction of the current.
-    pub fn is_enough(&mut self, until: Until, current_a: f64, joint: Option<JointReading>) -> bool {
+    pub fn is_detected(&mut self, until: EndCondition, current_a: f64, joint: Option<JointReading>) -> bool {
         let Some(joint) = joint else { return false };
         let position_rad = joint.motor_position.0;
         let before_rad = self.at_rad.replace(position_rad).unwrap_or(position_rad);
@@ -30,19 +30,21 @@ impl Moved {
 }
 
 impl Session<'_> {
-    pub(super) fn asked(&self, step: &Step, t_s: f64, friction: &mut FeltFriction) -> Asked {
+    pub(super) fn drive_command(&self, step: &Step, t_s: f64, friction: &mut MeasuredFriction) -> DriveCommand {
         let rad_s = step.velocity.at(t_s);
         match &step.drive {
             Drive::Current { from_s, current_a, .. } if t_s >= *from_s => {
-                Asked::Current { a: current_a.at(t_s - from_s) }
+                DriveCommand::Current { a: current_a.at(t_s - from_s) }
             }
-            Drive::Velocity | Drive::Current { .. } => Asked::Velocity { rad_s, fed_a: 0.0 },
-            Drive::Fed(Feed::Planned(current_a)) => Asked::Velocity { rad_s, fed_a: current_a.at(t_s) },
-            Drive::Fed(Feed::Observed { share, corner_hz, ramp_rad_s }) => {
-                let gain = 1.0 - (-TAU * corner_hz * self.beat.period_s).exp();
+            Drive::Velocity | Drive::Current { .. } => DriveCommand::Velocity { rad_s, feedforward_a: 0.0 },
+            Drive::Fed(Feedforward::Planned(current_a)) => {
+                DriveCommand::Velocity { rad_s, feedforward_a: current_a.at(t_s) }
+            }
+            Drive::Fed(Feedforward::Observed { share, corner_hz, ramp_rad_s }) => {
+                let gain = 1.0 - (-TAU * corner_hz * self.period.duration_s).exp();
                 friction.current_a += gain * (self.friction_a() - friction.current_a);
                 let side = (rad_s / ramp_rad_s).clamp(-1.0, 1.0);
-                Asked::Velocity { rad_s, fed_a: share * friction.current_a * side }
+                DriveCommand::Velocity { rad_s, feedforward_a: share * friction.current_a * side }
             }
         }
     }

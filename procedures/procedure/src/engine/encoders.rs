@@ -2,14 +2,15 @@
 
 use super::ask::ask;
 use super::ending::Ending;
-use super::session::{Asked, Session, Wish, log, reported};
-use super::steps::Left;
+use super::pose_deviation::PoseDeviation;
+use super::session::{DriveCommand, PendingRequest, Session, log, reported};
+use super::steps::StepEnd;
 use crate::encoder_columns::Encoders;
 use crate::event::EventKind;
-use crate::place::{Edge, EdgeSearch, Place};
 use crate::plan::Step;
 use crate::profile::Profile;
-use jointbench_instrument::clock::{Timed, timed};
+use crate::stage_pose::{Edge, EdgeSearch, StagePose};
+use jointbench_instrument::clock::timed;
 use jointbench_instrument::roles::{AlignmentStage, Pose, PositionCounter};
 use jointbench_instrument::{Fault, FaultKind, Kind};
 use std::sync::Arc;
@@ -21,46 +22,10 @@ const ARRIVED_EVERY_S: f64 = 0.05;
 /// Longest move, and longest search for the zeros of the axes.
 const LONGEST_MOVE_S: f64 = 60.0;
 
-/// Deviation of the stage from its commanded pose over all readings.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct PoseDeviation {
-    readings: u32,
-    off_m: f64,
-    off_rad: f64,
-    uncertainty_s: f64,
-}
-
-impl PoseDeviation {
-    fn add(before: Option<Self>, commanded: Pose, reached: &Timed<Pose>) -> Self {
-        let before = before.unwrap_or_default();
-        let off = |commanded: [f64; 3], reached: [f64; 3]| {
-            commanded.iter().zip(reached).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-        };
-        Self {
-            readings: before.readings + 1,
-            off_m: before.off_m.max(off(commanded.shift_m, reached.value.shift_m)),
-            off_rad: before.off_rad.max(off(commanded.rotation_rad, reached.value.rotation_rad)),
-            uncertainty_s: before.uncertainty_s.max(reached.uncertainty_s),
-        }
-    }
-
-    /// Text for users.
-    pub fn note(self) -> String {
-        format!(
-            "Stage position after settling ({} readings, time uncertainty ±{:.2} ms): within {:.2} µm and {:.1} µrad \
-             of the target.",
-            self.readings,
-            1e3 * self.uncertainty_s,
-            1e6 * self.off_m,
-            1e6 * self.off_rad
-        )
-    }
-}
-
 impl Session<'_> {
     /// Reads both encoders in a run of encoders.
-    pub(super) fn feel_encoders(&mut self) -> Result<Option<Encoders>, Ending> {
-        if self.plan.kind != Kind::Encoder || self.lost.sensor {
+    pub(super) fn read_encoders(&mut self) -> Result<Option<Encoders>, Ending> {
+        if self.plan.kind != Kind::Encoder || self.failed.sensor {
             return Ok(None);
         }
         let reference = self.ask_encoder(false, |encoder| encoder.read())?;
@@ -77,13 +42,13 @@ impl Session<'_> {
         request: impl FnMut(&mut (dyn PositionCounter + 'static)) -> Result<T, Fault>,
     ) -> Result<T, Ending> {
         let now_s = self.bench.clock.now_s();
-        let Self { bench, journal, recoveries, lost, .. } = self;
+        let Self { bench, journal, recoveries, failed, .. } = self;
         let encoder = if under_test { &mut bench.test_encoder } else { &mut bench.reference_encoder };
         let Some(encoder) = encoder else {
             return Err(Ending::NotReady("the bench needs a reference encoder and a test encoder".into()));
         };
-        ask(encoder.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map_err(|fault| {
-            lost.sensor = true;
+        ask(encoder.as_mut(), request, |fault| log(journal, recoveries, now_s, fault)).map_err(|fault| {
+            failed.sensor = true;
             Ending::OtherFault(fault)
         })
     }
@@ -95,11 +60,11 @@ impl Session<'_> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, .. } = self;
         let Some(stage) = &mut bench.stage else { return Err(Ending::NotReady("the bench has no stage".into())) };
-        ask(stage.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map_err(Ending::OtherFault)
+        ask(stage.as_mut(), request, |fault| log(journal, recoveries, now_s, fault)).map_err(Ending::OtherFault)
     }
 
     /// Before arming: identity of the encoders, and a stage that knows its zeros if the plan needs it.
-    pub(super) fn meet_encoders(&mut self) -> Result<(), Ending> {
+    pub(super) fn identify_encoders(&mut self) -> Result<(), Ending> {
         if self.plan.kind == Kind::Encoder {
             for under_test in [false, true] {
                 let identity = self.ask_encoder(under_test, |encoder| encoder.identify())?;
@@ -111,7 +76,7 @@ impl Session<'_> {
                 }
             }
         }
-        if self.plan.steps.iter().all(|step| step.place == Place::AsLeft) {
+        if self.plan.steps.iter().all(|step| step.place == StagePose::AsLeft) {
             return Ok(());
         }
         self.ask_stage(|stage| stage.identify())?;
@@ -123,7 +88,7 @@ impl Session<'_> {
                 |stage| stage.is_referenced(),
                 |session| {
                     session.bench.clock.sleep_until_s(session.bench.clock.now_s() + ARRIVED_EVERY_S);
-                    session.obey(session.bench.clock.now_s())
+                    session.poll_controls(session.bench.clock.now_s())
                 },
             )?;
         }
@@ -132,7 +97,7 @@ impl Session<'_> {
     }
 
     /// Moves to a pose while the shaft follows its set-points, and waits until the stage is settled.
-    pub(super) fn place(&mut self, pose: Pose) -> Result<(), Ending> {
+    pub(super) fn move_stage(&mut self, pose: Pose) -> Result<(), Ending> {
         if self.pose == Some(pose) {
             return Ok(());
         }
@@ -174,8 +139,8 @@ impl Session<'_> {
     }
 
     /// One edge search: the rows of every try are kept, those of the moves between are not.
-    pub(super) fn search_edge(&mut self, step: &Step, segment: u32, edge: &Edge) -> Result<Left, Ending> {
-        self.place(edge.from)?;
+    pub(super) fn search_edge(&mut self, step: &Step, segment: u32, edge: &Edge) -> Result<StepEnd, Ending> {
+        self.move_stage(edge.from)?;
         let speed_rad_s =
             step.velocity.knots().iter().map(|(_, v)| *v).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
         let brake = Profile::constant(self.commanded.brake_a);
@@ -183,30 +148,30 @@ impl Session<'_> {
         let mut search_edge = EdgeSearch::new(*edge);
         loop {
             self.consistent = true;
-            let start_s = self.beat.next_s.max(self.bench.clock.now_s());
+            let start_s = self.period.next_s.max(self.bench.clock.now_s());
             loop {
                 let now_s = self.wait();
                 if now_s - start_s >= edge.dwell_s {
                     break;
                 }
-                let asked = Asked::Velocity { rad_s: speed_rad_s, fed_a: 0.0 };
-                self.tick_asking(now_s, asked, self.commanded.brake_a, Some((segment, step.repeat)))?;
+                let command = DriveCommand::Velocity { rad_s: speed_rad_s, feedforward_a: 0.0 };
+                self.tick_with(now_s, command, self.commanded.brake_a, Some((segment, step.repeat)))?;
             }
-            self.beat.next_s -= self.beat.period_s;
-            if self.wish.take() == Some(Wish::Pause) {
-                return Ok(Left::Paused);
+            self.period.next_s -= self.period.duration_s;
+            if self.pending_request.take() == Some(PendingRequest::Pause) {
+                return Ok(StepEnd::Paused);
             }
             let next = search_edge.next(self.consistent);
             if search_edge.is_beyond() || next.is_none() {
-                self.place(edge.pose(search_edge.good))?;
+                self.move_stage(edge.pose(search_edge.good))?;
             }
             match next {
-                Some(next) => self.place(edge.pose(next))?,
+                Some(next) => self.move_stage(edge.pose(next))?,
                 None => break,
             }
         }
-        self.place(edge.from)?;
+        self.move_stage(edge.from)?;
         self.drive(&self.ramp_to(0.0), &brake)?;
-        Ok(Left::Done)
+        Ok(StepEnd::Done)
     }
 }

@@ -2,14 +2,17 @@
 
 mod arm;
 mod ask;
+mod deferred_steps;
 mod drive;
 mod encoders;
 mod ending;
 mod journal;
-mod learning;
-mod pace;
 mod pause;
+mod plan_deferred;
+mod pose_deviation;
 mod power;
+mod remaining_time;
+mod rewarm;
 mod safe_state;
 mod securing;
 mod session;
@@ -18,19 +21,18 @@ mod skew;
 mod steps;
 mod tick;
 mod torque;
-mod warmth;
 
 use crate::event::{Demand, EventKind, Safe};
 use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
 use crate::state::{RunState, Transition};
-use encoders::PoseDeviation;
 use ending::Ending;
 use jointbench_instrument::Bench;
+use pose_deviation::PoseDeviation;
 pub use safe_state::{Secured, secure};
 use serde::{Deserialize, Serialize};
 use session::Session;
-use skew::Skews;
+use skew::SkewRange;
 use std::sync::mpsc::Receiver;
 pub use tick::SLOW_EVERY_S;
 
@@ -86,12 +88,12 @@ impl Session<'_> {
         {
             ending = unkept;
         }
-        let notes = [self.skews.and_then(Skews::note), self.pose_deviation.map(PoseDeviation::note)];
+        let notes = [self.skews.and_then(SkewRange::note), self.pose_deviation.map(PoseDeviation::note)];
         notes.into_iter().flatten().for_each(|note| self.note(note));
         let safe = self.make_safe(&ending);
         std::mem::take(&mut self.shaft).notes().into_iter().for_each(|note| self.note(note));
         let _stopped = self.caught(Session::stop_torque_stream);
-        self.look_behind(&mut ending);
+        self.check_for_exchange(&mut ending);
         self.identify_again(&mut ending);
         let now_s = self.bench.clock.now_s();
         self.journal.log(now_s, Some(EventKind::Safe { safe }));

@@ -1,8 +1,8 @@
 //! A pause: ramp to rest, hold, return to the start of the interrupted step; after a long pause, warm up again.
 
 use super::ending::Ending;
-use super::session::{Session, Wish};
-use crate::plan::{Before, Step};
+use super::session::{PendingRequest, Session};
+use crate::plan::{InitialState, Step};
 use crate::profile::Profile;
 use crate::state::Transition;
 
@@ -23,21 +23,21 @@ impl Session<'_> {
             self.enter(Transition::Pause)?;
             let since_s = self.bench.clock.now_s();
             self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))?;
-            while self.wish.take() != Some(Wish::Resume) {
+            while self.pending_request.take() != Some(PendingRequest::Resume) {
                 let now_s = self.wait();
                 self.tick(now_s, 0.0, brake_a)?;
             }
             self.enter(Transition::Resume)?;
             rested_s += self.bench.clock.now_s() - since_s;
-            if self.warm_after(rested_s, step)? {
+            if self.rewarm_after(rested_s, step)? {
                 brake_a = self.commanded.brake_a;
-            } else if step.before == Before::Demagnetised {
+            } else if step.before == InitialState::Demagnetised {
                 self.unload()?;
                 brake_a = self.commanded.brake_a;
             }
             let speed_rad_s = step.velocity.largest().max(0.25 * self.plan.top_speed_rad_s());
             self.go_back(speed_rad_s, start_rad, brake_a)?;
-            if self.wish.take() != Some(Wish::Pause) {
+            if self.pending_request.take() != Some(PendingRequest::Pause) {
                 return Ok(brake_a);
             }
         }
@@ -45,7 +45,7 @@ impl Session<'_> {
 
     /// Follows set-points over time; the rows are shown, but not kept.
     pub(super) fn drive(&mut self, velocity: &Profile, brake: &Profile) -> Result<(), Ending> {
-        let start_s = self.beat.next_s.max(self.bench.clock.now_s());
+        let start_s = self.period.next_s.max(self.bench.clock.now_s());
         let duration_s = velocity.duration_s().max(brake.duration_s());
         loop {
             let now_s = self.wait();
@@ -69,8 +69,8 @@ impl Session<'_> {
         let Some(start_rad) = start_rad else { return Ok(()) };
         let away_rad = |session: &Self| session.joint.map_or(0.0, |reading| start_rad - reading.motor_position.0);
         let give_up_s = self.bench.clock.now_s() + 2.0 * away_rad(self).abs() / speed_rad_s + RETURN_GRACE_S;
-        let change_rad_s = self.plan.acceleration_rad_s2 * self.beat.period_s;
-        while away_rad(self).abs() > RETURNED_RAD && self.wish != Some(Wish::Pause) {
+        let change_rad_s = self.plan.acceleration_rad_s2 * self.period.duration_s;
+        while away_rad(self).abs() > RETURNED_RAD && self.pending_request != Some(PendingRequest::Pause) {
             let now_s = self.wait();
             if now_s > give_up_s {
                 let left_rad = away_rad(self);

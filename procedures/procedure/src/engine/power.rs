@@ -1,7 +1,7 @@
 //! A power cycle of an encoder: by a switch of the bench, or by a person while the run waits.
 
 use super::ending::Ending;
-use super::session::{Session, Wish, reported};
+use super::session::{PendingRequest, Session, reported};
 use crate::event::EventKind;
 use crate::profile::Profile;
 use crate::state::Transition;
@@ -10,24 +10,24 @@ use std::f64::consts::TAU;
 
 /// Longest boot time of a counter after power-up.
 const BOOT_S: f64 = 20.0;
-const LOOK_EVERY_S: f64 = 0.2;
+const POLL_S: f64 = 0.2;
 /// Motor speed and largest distance of the search for an index.
 const SEEK_RAD_S: f64 = TAU;
 const SEEK_TURNS: f64 = 2.5;
 
 impl Session<'_> {
     /// Ends with the encoder under test switched on, and counting from its index.
-    pub(super) fn power_anew(&mut self) -> Result<(), Ending> {
+    pub(super) fn power_cycle(&mut self) -> Result<(), Ending> {
         self.drive(&self.ramp_to(0.0), &Profile::constant(self.commanded.brake_a))?;
         // An instrument without power is not read.
-        self.lost.sensor = true;
+        self.failed.sensor = true;
         loop {
             let name = self.bench.test_encoder.as_ref().map_or("", |encoder| encoder.name()).to_owned();
             let by_hand = match &mut self.bench.power {
                 Some(switch) => switch.cycle(&name).map(|()| false).map_err(Ending::OtherFault)?,
-                None => self.ask_for_hand(&name).map(|()| true)?,
+                None => self.wait_for_manual_power_cycle(&name).map(|()| true)?,
             };
-            if self.meet_again()? {
+            if self.identify_after_power_up()? {
                 break;
             }
             let what = "it was not switched off";
@@ -36,15 +36,15 @@ impl Session<'_> {
                 _ => self.note(format!("{name}: {what}")),
             }
         }
-        self.lost.sensor = false;
+        self.failed.sensor = false;
         self.seek_index()
     }
 
     /// Waits at standstill until a person confirms.
-    fn ask_for_hand(&mut self, name: &str) -> Result<(), Ending> {
+    fn wait_for_manual_power_cycle(&mut self, name: &str) -> Result<(), Ending> {
         self.note(format!("Switch {name} and its counter off and on, then resume the run."));
         self.enter(Transition::Pause)?;
-        while self.wish.take() != Some(Wish::Resume) {
+        while self.pending_request.take() != Some(PendingRequest::Resume) {
             let now_s = self.wait();
             self.tick(now_s, 0.0, self.commanded.brake_a)?;
         }
@@ -52,7 +52,7 @@ impl Session<'_> {
     }
 
     /// Polls the identity of the encoder under test until it answers. Returns whether it reported a lost state.
-    fn meet_again(&mut self) -> Result<bool, Ending> {
+    fn identify_after_power_up(&mut self) -> Result<bool, Ending> {
         let give_up_s = self.bench.clock.now_s() + BOOT_S;
         let mut lost = false;
         loop {
@@ -68,7 +68,7 @@ impl Session<'_> {
                 Err(fault) if self.bench.clock.now_s() > give_up_s => return Err(Ending::OtherFault(fault)),
                 Err(_) => {}
             }
-            let here = Profile::from(0.0).hold(LOOK_EVERY_S);
+            let here = Profile::from(0.0).hold(POLL_S);
             self.drive(&here, &Profile::constant(self.commanded.brake_a))?;
         }
     }

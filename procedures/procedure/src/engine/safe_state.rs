@@ -38,24 +38,24 @@ pub fn secure(bench: &mut Bench) -> Secured {
     let rated_a = bench.constants.brake_rated_current_a;
     let mut notes = Vec::new();
     // Both are commanded before either is verified, because the brake must not wait until the shaft has stopped.
-    let disarmed = survive(&mut notes, |notes| disarm(bench.joint.as_mut(), notes)).unwrap_or(false);
+    let disarmed = catch_panic(&mut notes, |notes| disarm(bench.joint.as_mut(), notes)).unwrap_or(false);
     let unloaded = bench.brake.as_mut().map(|brake| {
-        survive(&mut notes, |notes| take_current_away(brake.as_mut(), &*clock, rated_a, notes)).unwrap_or(false)
+        catch_panic(&mut notes, |notes| remove_current(brake.as_mut(), &*clock, rated_a, notes)).unwrap_or(false)
     });
     if let Some(stage) = &mut bench.stage {
-        survive(&mut notes, |notes| hold_stage(stage.as_mut(), notes));
+        catch_panic(&mut notes, |notes| hold_stage(stage.as_mut(), notes));
     }
-    let mut safe = survive(&mut notes, |notes| verify_joint(bench.joint.as_mut(), &*clock, disarmed, notes))
+    let mut safe = catch_panic(&mut notes, |notes| verify_joint(bench.joint.as_mut(), &*clock, disarmed, notes))
         .unwrap_or(Safe::UnsafeUnknown);
     if let (Some(brake), Some(unloaded)) = (&mut bench.brake, unloaded) {
-        let brake = survive(&mut notes, |notes| verify_brake(brake.as_mut(), &*clock, rated_a, unloaded, notes));
+        let brake = catch_panic(&mut notes, |notes| verify_brake(brake.as_mut(), &*clock, rated_a, unloaded, notes));
         safe = safe.max(brake.unwrap_or(Safe::UnsafeUnknown));
     }
     tracing::info!(bench = bench.name, %safe, "bench secured");
     Secured { safe, notes }
 }
 
-fn survive<T>(notes: &mut Vec<String>, work: impl FnOnce(&mut Vec<String>) -> T) -> Option<T> {
+fn catch_panic<T>(notes: &mut Vec<String>, work: impl FnOnce(&mut Vec<String>) -> T) -> Option<T> {
     let worked = catch_unwind(AssertUnwindSafe(|| work(notes)));
     worked
         .map_err(|panic| {
@@ -74,7 +74,7 @@ fn disarm(joint: &mut dyn JointController, notes: &mut Vec<String>) -> bool {
 }
 
 /// Returns whether the commands were accepted.
-fn take_current_away(brake: &mut dyn CurrentSource, clock: &dyn Clock, rated_a: f64, notes: &mut Vec<String>) -> bool {
+fn remove_current(brake: &mut dyn CurrentSource, clock: &dyn Clock, rated_a: f64, notes: &mut Vec<String>) -> bool {
     let before = ask(brake, |brake| brake.read(), |_| {}).map(|reading| reading.current.0);
     if before.is_err() {
         notes.push(

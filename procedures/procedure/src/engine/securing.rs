@@ -21,7 +21,7 @@ const UNLOAD_LINK_RAD_S: f64 = TAU;
 const BRAKE_LAG_S: f64 = 0.5;
 /// Time until a reconnected plug is a port, and polling period.
 const PLUGGED_S: f64 = 1.0;
-const LOOK_EVERY_S: f64 = 0.2;
+const POLL_S: f64 = 0.2;
 /// Shortest ramp of an abort.
 const QUICK_S: f64 = 0.3;
 
@@ -39,13 +39,13 @@ impl Session<'_> {
             }
         }
         // A supply that no longer answers is switched off at once, while the shaft still turns.
-        if self.lost.brake
+        if self.failed.brake
             && let Some(Err(fault)) = self.bench.brake.as_mut().map(|brake| brake.command_off())
         {
             tracing::warn!("the brake was not switched off before the joint stopped: {fault}");
         }
         if urgency == Urgency::Quick
-            && let Err(hurry) = self.caught(Session::come_to_rest)
+            && let Err(hurry) = self.caught(Session::stop_shaft)
         {
             self.note(format!("Securing escalated to a faster stop: {hurry}"));
         }
@@ -55,7 +55,7 @@ impl Session<'_> {
     }
 
     /// A lost instrument may have been exchanged: another instrument that answers at its port becomes the reason.
-    pub(super) fn look_behind(&mut self, ending: &mut Ending) {
+    pub(super) fn check_for_exchange(&mut self, ending: &mut Ending) {
         let Some(gone) = ending.fault_mut().filter(|fault| fault.is_port_lost()) else { return };
         let clock = Arc::clone(&self.bench.clock);
         let Some(instrument) = self.bench.instrument(&gone.instrument) else { return };
@@ -63,7 +63,7 @@ impl Session<'_> {
         let found = loop {
             match instrument.recover() {
                 Err(fault) if fault.is_port_lost() && clock.now_s() < give_up_s => {
-                    clock.sleep_until_s(clock.now_s() + LOOK_EVERY_S);
+                    clock.sleep_until_s(clock.now_s() + POLL_S);
                 }
                 found => break found,
             }
@@ -127,7 +127,7 @@ impl Session<'_> {
     /// Stops the shaft without speeding up first. Securing removes the brake current, because no supply answers in
     /// time to keep the shaft turning until the current has fallen. Securing also reports the remanence of a fall at
     /// standstill, with the current that caused it.
-    fn come_to_rest(&mut self) -> Result<(), Ending> {
+    fn stop_shaft(&mut self) -> Result<(), Ending> {
         let velocity_rad_s = self.commanded.velocity_rad_s;
         let rest_s = QUICK_S.max(velocity_rad_s.abs() / self.plan.acceleration_rad_s2);
         let velocity = Profile::from(velocity_rad_s).to(0.0, rest_s);

@@ -1,24 +1,24 @@
 //! The state of one run.
 
-use super::ask::{Trouble, ask};
-use super::encoders::PoseDeviation;
+use super::ask::{RequestFault, ask};
+use super::deferred_steps::DeferredSteps;
 use super::ending::Ending;
 use super::journal::Journal;
-use super::learning::Learning;
-use super::pace::Pace;
+use super::pose_deviation::PoseDeviation;
+use super::remaining_time::RemainingTime;
 use super::shaft::Shaft;
-use super::skew::Skews;
-use super::torque::Streaming;
+use super::skew::SkewRange;
 use crate::columns::Columns;
 use crate::event::{Demand, EventKind};
 use crate::guard::Guard;
 use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
 use crate::state::Transition;
-use crate::steady::SteadyWatch;
+use crate::steady::SteadyDetector;
 use jointbench_instrument::roles::{
     CurrentSource, Instrument, JointController, JointReading, Pose, Thermometer, TorqueSensor,
 };
+use jointbench_instrument::units::Seconds;
 use jointbench_instrument::{Bench, Fault};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Receiver;
@@ -32,18 +32,18 @@ pub(super) struct Session<'a> {
     pub journal: Journal<'a>,
     pub controls: &'a Receiver<Demand>,
     pub guard: Guard,
-    pub pace: Pace,
-    pub warm: Option<SteadyWatch>,
+    pub remaining_time: RemainingTime,
+    pub warm: Option<SteadyDetector>,
     /// Set at arming, when the measurable quantities of the bench are known.
     pub columns: Option<Columns>,
     pub commanded: Commanded,
-    pub held: Held,
+    pub held: HeldReadings,
     /// Latest reading of the thermometer, in the channel order of the bench description; empty without one.
-    pub felt_c: Vec<f64>,
-    pub felt_at_s: f64,
-    pub felt_next_s: f64,
-    pub beat: Beat,
-    pub wish: Option<Wish>,
+    pub thermometer_c: Vec<f64>,
+    pub thermometer_at_s: f64,
+    pub thermometer_next_s: f64,
+    pub period: Period,
+    pub pending_request: Option<PendingRequest>,
     /// Whether the drive may apply torque, so that securing has to ramp it down.
     pub armed: bool,
     /// Latest reading of the joint.
@@ -52,19 +52,19 @@ pub(super) struct Session<'a> {
     pub warm_from_rad: Option<f64>,
     /// Latest reading of the torque sensor.
     pub link_torque_nm: Option<f64>,
-    pub skews: Option<Skews>,
+    pub skews: Option<SkewRange>,
     /// Positions of one shaft from several instruments.
     pub shaft: Shaft,
     /// Set while the torque sensor streams.
-    pub streaming: Option<Streaming>,
+    pub torque_stream: Option<TorqueStream>,
     /// Time of the latest row, which the next one has to exceed.
     pub row_s: f64,
     pub next_segment: u32,
-    pub lost: Lost,
+    pub failed: FailedInstruments,
     /// Commanded pose of the stage, for a plan that moves it.
     pub pose: Option<Pose>,
     pub pose_deviation: Option<PoseDeviation>,
-    pub learning: Learning,
+    pub deferred: DeferredSteps,
     /// Whether the encoder under test was consistent since this was last set.
     pub consistent: bool,
     /// Repeated requests in this step.
@@ -84,25 +84,25 @@ pub(super) struct Commanded {
 
 /// Command to the drive in one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Asked {
+pub(super) enum DriveCommand {
     /// A velocity with a feedforward of motor current.
-    Velocity { rad_s: f64, fed_a: f64 },
+    Velocity { rad_s: f64, feedforward_a: f64 },
     /// A motor current alone.
     Current { a: f64 },
 }
 
 /// The brake current with the time of its measurement.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct FeltCurrent {
+pub(super) struct BrakeCurrent {
     pub a: f64,
     pub at_s: f64,
 }
 
 /// Slow readings that are held between updates.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Held {
+pub(super) struct HeldReadings {
     pub temperature_c: Option<f64>,
-    pub brake: Option<FeltCurrent>,
+    pub brake: Option<BrakeCurrent>,
     pub next_s: f64,
     pub brake_next_s: f64,
     /// Time since which every reading found the supply unable to hold the commanded current.
@@ -111,23 +111,31 @@ pub(super) struct Held {
 
 /// The control period.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Beat {
-    pub period_s: f64,
+pub(super) struct Period {
+    pub duration_s: f64,
     pub next_s: f64,
     pub late_ticks: u64,
 }
 
 /// Instruments that failed permanently: they are not read while the joint stops.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Lost {
+pub(super) struct FailedInstruments {
     pub sensor: bool,
     pub brake: bool,
     pub thermometer: bool,
 }
 
+/// Statistics of the torque stream.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TorqueStream {
+    pub period: Seconds,
+    pub samples: u64,
+    pub missing: u64,
+}
+
 /// A request of a person that a step cannot perform by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Wish {
+pub(super) enum PendingRequest {
     Pause,
     Resume,
 }
@@ -146,29 +154,29 @@ impl<'a> Session<'a> {
             journal: Journal::new(run, now_s, recorder),
             controls,
             guard: Guard::new(bench.limits, bench.constants),
-            pace: Pace::new(plan),
-            warm: plan.steady.map(SteadyWatch::new),
+            remaining_time: RemainingTime::new(plan),
+            warm: plan.steady.map(SteadyDetector::new),
             columns: None,
             commanded: Commanded::default(),
-            held: Held::default(),
-            felt_c: Vec::new(),
-            felt_at_s: now_s,
-            felt_next_s: now_s,
-            beat: Beat { period_s: 1.0 / plan.rate_hz, next_s: now_s, late_ticks: 0 },
-            wish: None,
+            held: HeldReadings::default(),
+            thermometer_c: Vec::new(),
+            thermometer_at_s: now_s,
+            thermometer_next_s: now_s,
+            period: Period { duration_s: 1.0 / plan.rate_hz, next_s: now_s, late_ticks: 0 },
+            pending_request: None,
             armed: false,
             joint: None,
             warm_from_rad: None,
             link_torque_nm: None,
             skews: None,
             shaft: Shaft::default(),
-            streaming: None,
+            torque_stream: None,
             row_s: f64::NEG_INFINITY,
             next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),
-            lost: Lost::default(),
+            failed: FailedInstruments::default(),
             pose: None,
             pose_deviation: None,
-            learning: Learning::default(),
+            deferred: DeferredSteps::default(),
             consistent: true,
             recoveries: 0,
             bench,
@@ -206,8 +214,7 @@ impl<'a> Session<'a> {
     ) -> Result<T, Ending> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, .. } = self;
-        ask(bench.joint.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble))
-            .map_err(Ending::JointFault)
+        ask(bench.joint.as_mut(), request, |fault| log(journal, recoveries, now_s, fault)).map_err(Ending::JointFault)
     }
 
     /// `None` if the bench has no brake.
@@ -216,10 +223,10 @@ impl<'a> Session<'a> {
         request: impl FnMut(&mut (dyn CurrentSource + 'static)) -> Result<T, Fault>,
     ) -> Result<Option<T>, Ending> {
         let now_s = self.bench.clock.now_s();
-        let Self { bench, journal, recoveries, lost, .. } = self;
+        let Self { bench, journal, recoveries, failed, .. } = self;
         let Some(brake) = &mut bench.brake else { return Ok(None) };
-        ask(brake.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
-            lost.brake = true;
+        ask(brake.as_mut(), request, |fault| log(journal, recoveries, now_s, fault)).map(Some).map_err(|fault| {
+            failed.brake = true;
             Ending::OtherFault(fault)
         })
     }
@@ -230,10 +237,10 @@ impl<'a> Session<'a> {
         request: impl FnMut(&mut (dyn TorqueSensor + 'static)) -> Result<T, Fault>,
     ) -> Result<Option<T>, Ending> {
         let now_s = self.bench.clock.now_s();
-        let Self { bench, journal, recoveries, lost, .. } = self;
+        let Self { bench, journal, recoveries, failed, .. } = self;
         let Some(sensor) = &mut bench.torque_sensor else { return Ok(None) };
-        ask(sensor.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
-            lost.sensor = true;
+        ask(sensor.as_mut(), request, |fault| log(journal, recoveries, now_s, fault)).map(Some).map_err(|fault| {
+            failed.sensor = true;
             Ending::OtherFault(fault)
         })
     }
@@ -244,20 +251,18 @@ impl<'a> Session<'a> {
         request: impl FnMut(&mut (dyn Thermometer + 'static)) -> Result<T, Fault>,
     ) -> Result<Option<T>, Ending> {
         let now_s = self.bench.clock.now_s();
-        let Self { bench, journal, recoveries, lost, .. } = self;
+        let Self { bench, journal, recoveries, failed, .. } = self;
         let Some(thermometer) = &mut bench.thermometer else { return Ok(None) };
-        ask(thermometer.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map(Some).map_err(
-            |fault| {
-                lost.thermometer = true;
-                Ending::OtherFault(fault)
-            },
-        )
+        ask(thermometer.as_mut(), request, |fault| log(journal, recoveries, now_s, fault)).map(Some).map_err(|fault| {
+            failed.thermometer = true;
+            Ending::OtherFault(fault)
+        })
     }
 }
 
-pub(super) fn log(journal: &mut Journal<'_>, recoveries: &mut u32, now_s: f64, trouble: Trouble) {
-    *recoveries += u32::from(trouble.recovered);
-    journal.log(now_s, EventKind::Fault { fault: trouble.fault, recovered: trouble.recovered });
+pub(super) fn log(journal: &mut Journal<'_>, recoveries: &mut u32, now_s: f64, fault: RequestFault) {
+    *recoveries += u32::from(fault.recovered);
+    journal.log(now_s, EventKind::Fault { fault: fault.fault, recovered: fault.recovered });
 }
 
 pub(super) fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {

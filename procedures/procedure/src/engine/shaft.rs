@@ -3,7 +3,7 @@
 //! Only instruments on one shaft are compared. Torque and current of one motion differ by friction, compliance and
 //! the drive's control, so that a lag between them is physical.
 
-use super::skew::Skews;
+use super::skew::SkewRange;
 use crate::encoder_columns::Encoders;
 use crate::findings::{Lag, ReadingPair, lag};
 use jointbench_instrument::roles::JointReading;
@@ -16,7 +16,7 @@ const MOST_ROWS: usize = 50_000;
 #[derive(Debug, Clone, Default)]
 struct Pair {
     readings: Vec<ReadingPair>,
-    skews: Option<Skews>,
+    skews: Option<SkewRange>,
 }
 
 #[derive(Debug, Clone, Default)]
@@ -35,7 +35,7 @@ impl Shaft {
                 continue;
             }
             let skew = Skew { s: at_s - reference.at_s, uncertainty_s: uncertainty_s + reference.uncertainty_s };
-            pair.skews = Some(Skews::add(pair.skews, skew));
+            pair.skews = Some(SkewRange::add(pair.skews, skew));
             let (first_s, first_rad) = (reference.at_s, reference.position.0);
             pair.readings.push(ReadingPair { stretch, first_s, first_rad, second_s: at_s, second_rad: rad });
         }
@@ -55,7 +55,7 @@ impl Shaft {
 const UNKNOWN: &str = "Unrecorded latency: check filters, buffers and adapters";
 const OWN: &str = "Cause: delay of this encoder (measure it with encoder_delay) or an unrecorded latency";
 
-fn note(name: &str, skews: Skews, lag: Option<Lag>, beyond: &str) -> String {
+fn note(name: &str, skews: SkewRange, lag: Option<Lag>, beyond: &str) -> String {
     let by_clock = format!("Skew of {name} by time stamps: {} than the reference encoder.", skews.span());
     let Some(Lag { s, reach_s }) = lag else {
         return format!("{by_clock} The signals do not determine it, because the motion is too small or too uniform.");

@@ -7,17 +7,17 @@ use jointbench_instrument::skew::Skew;
 
 /// Range of all delays of a run.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Skews {
+pub(super) struct SkewRange {
     least_s: f64,
     most_s: f64,
     pub uncertainty_s: f64,
 }
 
-pub(super) fn of<T>(joint: &JointReading, felt: &Timed<T>) -> Skew {
-    Skew { s: felt.at_s - joint.at_s, uncertainty_s: felt.uncertainty_s + joint.uncertainty_s }
+pub(super) fn of<T>(joint: &JointReading, reading: &Timed<T>) -> Skew {
+    Skew { s: reading.at_s - joint.at_s, uncertainty_s: reading.uncertainty_s + joint.uncertainty_s }
 }
 
-impl Skews {
+impl SkewRange {
     pub fn add(before: Option<Self>, Skew { s, uncertainty_s }: Skew) -> Self {
         let before = before.unwrap_or(Self { least_s: s, most_s: s, uncertainty_s });
         Self {
@@ -63,16 +63,16 @@ mod tests {
             motor_current: Amperes(0.0),
             link_position: None,
         };
-        let felt = |at_s: f64, uncertainty_s: f64| of(&joint, &Timed { value: (), at_s, uncertainty_s });
-        let first = felt(10.0015, 0.5e-3);
+        let delayed = |at_s: f64, uncertainty_s: f64| of(&joint, &Timed { value: (), at_s, uncertainty_s });
+        let first = delayed(10.0015, 0.5e-3);
         assert!((first.s - 1.5e-3).abs() < 1e-9 && (first.uncertainty_s - 1e-3).abs() < 1e-9, "{first:?}");
-        let skews = Skews::add(Some(Skews::add(None, first)), felt(10.003, 2e-3));
+        let skews = SkewRange::add(Some(SkewRange::add(None, first)), delayed(10.003, 2e-3));
         let note = skews.note().unwrap();
         assert!(note.contains("1.50 to 3.00 ms") && note.contains("±2.50 ms"), "{note}");
         let still = JointReading { uncertainty_s: 0.0, ..joint };
         let now = Timed { value: (), at_s: 10.0, uncertainty_s: 0.0 };
-        assert_eq!(Skews::add(None, of(&still, &now)).note(), None);
-        let streamed = Skews::add(Some(Skews::add(None, felt(9.997, 1e-4))), felt(9.998, 1e-4));
+        assert_eq!(SkewRange::add(None, of(&still, &now)).note(), None);
+        let streamed = SkewRange::add(Some(SkewRange::add(None, delayed(9.997, 1e-4))), delayed(9.998, 1e-4));
         assert!(streamed.note().unwrap().contains("2.00 to 3.00 ms (±0.60 ms) earlier"), "{streamed:?}");
     }
 }

@@ -1,14 +1,14 @@
 //! Runs the steps of a plan in order. The end of a step is a checkpoint.
 
-use super::drive::{FeltFriction, Moved};
+use super::drive::{BreakawayDetector, MeasuredFriction};
 use super::ending::Ending;
-use super::session::{Asked, Session, Wish};
+use super::session::{DriveCommand, PendingRequest, Session};
 use crate::event::EventKind;
-use crate::place::Place;
-use crate::plan::{Before, Drive, Phase, Step};
+use crate::plan::{Drive, InitialState, Phase, Step};
+use crate::stage_pose::StagePose;
 
 /// How a step ended.
-pub(super) enum Left {
+pub(super) enum StepEnd {
     Done,
     Paused,
 }
@@ -18,16 +18,16 @@ impl Session<'_> {
         let plan = self.plan;
         for (index, step) in plan.steps.iter().enumerate() {
             if step.phase == Phase::WarmUp && self.warm.as_ref().is_some_and(|watch| watch.is_steady()) {
-                self.pace.step_skipped();
+                self.remaining_time.step_skipped();
                 continue;
             }
-            let Some(step) = self.learnt(index, step)? else {
-                self.pace.step_skipped();
+            let Some(step) = self.planned_step(index, step)? else {
+                self.remaining_time.step_skipped();
                 continue;
             };
             self.run_step(index, &step)?;
             if step.phase == Phase::WarmUp {
-                self.note_warmth(index);
+                self.note_warm_up(index);
             }
         }
         Ok(())
@@ -43,7 +43,7 @@ impl Session<'_> {
         // The brake keeps its current from the pause until the repeated step needs more, because a current is
         // approached from below.
         let mut least_brake_a = 0.0;
-        while let Left::Paused = self.attempt(index, step, segment, least_brake_a)? {
+        while let StepEnd::Paused = self.attempt(index, step, segment, least_brake_a)? {
             least_brake_a = self.pause(step, start_rad)?;
             // A segment is one uninterrupted section of the run table.
             segment = self.next_segment;
@@ -52,40 +52,40 @@ impl Session<'_> {
         Ok(())
     }
 
-    fn attempt(&mut self, index: usize, step: &Step, segment: u32, mut least_brake_a: f64) -> Result<Left, Ending> {
-        if step.before == Before::PoweredAnew {
-            self.power_anew()?;
+    fn attempt(&mut self, index: usize, step: &Step, segment: u32, mut least_brake_a: f64) -> Result<StepEnd, Ending> {
+        if step.before == InitialState::PoweredAnew {
+            self.power_cycle()?;
         }
-        if let Place::At(pose) = step.place {
-            self.place(pose)?;
+        if let StagePose::At(pose) = step.place {
+            self.move_stage(pose)?;
         }
-        let start_s = self.beat.next_s.max(self.bench.clock.now_s());
-        (self.beat.late_ticks, self.recoveries) = (0, 0);
+        let start_s = self.period.next_s.max(self.bench.clock.now_s());
+        (self.period.late_ticks, self.recoveries) = (0, 0);
         let rows_before = self.journal.rows();
-        self.pace.step_started(index, &step.label, start_s);
+        self.remaining_time.step_started(index, &step.label, start_s);
         let label = step.label.clone();
         self.journal.log(start_s, EventKind::StepStarted { step: index, segment, repeat: step.repeat, label });
-        if let Place::Edge(edge) = &step.place {
+        if let StagePose::Edge(edge) = &step.place {
             return match self.search_edge(step, segment, edge)? {
-                Left::Done => self.checkpoint(index, segment, rows_before),
+                StepEnd::Done => self.checkpoint(index, segment, rows_before),
                 paused => Ok(paused),
             };
         }
         let (duration_s, plateau_rad_s) = (step.duration_s(), step.velocity.largest());
-        let (mut friction, mut moved) = (FeltFriction::default(), Moved::default());
+        let (mut friction, mut breakaway) = (MeasuredFriction::default(), BreakawayDetector::default());
         loop {
             let now_s = self.wait();
             let t_s = now_s - start_s;
-            if t_s >= duration_s - 0.5 * self.beat.period_s {
+            if t_s >= duration_s - 0.5 * self.period.duration_s {
                 break;
             }
             let planned_a = step.brake.at(t_s);
             least_brake_a = if planned_a >= least_brake_a { 0.0 } else { least_brake_a };
             let velocity_rad_s = step.velocity.at(t_s);
-            let asked = self.asked(step, t_s, &mut friction);
-            self.tick_asking(now_s, asked, planned_a.max(least_brake_a), Some((segment, step.repeat)))?;
-            if let (Drive::Current { until, .. }, Asked::Current { a }) = (&step.drive, asked)
-                && moved.is_enough(*until, a, self.joint)
+            let command = self.drive_command(step, t_s, &mut friction);
+            self.tick_with(now_s, command, planned_a.max(least_brake_a), Some((segment, step.repeat)))?;
+            if let (Drive::Current { until, .. }, DriveCommand::Current { a }) = (&step.drive, command)
+                && breakaway.is_detected(*until, a, self.joint)
             {
                 break;
             }
@@ -95,25 +95,25 @@ impl Session<'_> {
             {
                 watch.sample(now_s, joint.motor_current.0, self.held.temperature_c);
             }
-            if self.wish.take() == Some(Wish::Pause) {
-                return Ok(Left::Paused);
+            if self.pending_request.take() == Some(PendingRequest::Pause) {
+                return Ok(StepEnd::Paused);
             }
         }
         // The last tick belongs to the next step.
-        self.beat.next_s -= self.beat.period_s;
+        self.period.next_s -= self.period.duration_s;
         self.checkpoint(index, segment, rows_before)
     }
 
-    fn checkpoint(&mut self, index: usize, segment: u32, rows_before: u64) -> Result<Left, Ending> {
+    fn checkpoint(&mut self, index: usize, segment: u32, rows_before: u64) -> Result<StepEnd, Ending> {
         let now_s = self.bench.clock.now_s();
-        self.pace.step_done(now_s);
-        let (rows, late_ticks) = (self.journal.rows() - rows_before, self.beat.late_ticks);
+        self.remaining_time.step_done(now_s);
+        let (rows, late_ticks) = (self.journal.rows() - rows_before, self.period.late_ticks);
         self.journal.log(now_s, EventKind::StepFinished { step: index, segment, rows, late_ticks });
         self.journal.commit(now_s)?;
-        Ok(Left::Done)
+        Ok(StepEnd::Done)
     }
 
-    fn note_warmth(&mut self, index: usize) {
+    fn note_warm_up(&mut self, index: usize) {
         let Some(watch) = &mut self.warm else { return };
         watch.step_done();
         let Some(drift) = watch.drift() else { return };

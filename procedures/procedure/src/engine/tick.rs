@@ -1,9 +1,9 @@
-//! One control period: obey controls, command, read, check, record.
+//! One control period: poll the controls, command, read, check, record.
 
 use super::arm::link_position_rad;
 use super::ending::Ending;
-use super::session::{Asked, FeltCurrent, RECOVERIES_PER_STEP, Session, Wish, reported};
-use crate::columns::{BrakeMoment, Moment, VELOCITY_STEP_RAD_S, to_time_step};
+use super::session::{BrakeCurrent, DriveCommand, PendingRequest, RECOVERIES_PER_STEP, Session, reported};
+use crate::columns::{TickBrake, TickValues, VELOCITY_STEP_RAD_S, to_time_step};
 use crate::event::{Control, Demand, EventKind};
 use crate::guard::Sample;
 use crate::state::{RunState, Transition};
@@ -26,7 +26,7 @@ const CHANGING_EVERY_S: f64 = 0.1;
 const CHANGES_FOR_S: f64 = 1.0;
 /// Reading period of the thermometer: a resistance thermometer in a housing has a time constant of 10 to 30 s, and
 /// its reply takes several ticks.
-const WARMTH_EVERY_S: f64 = 2.0;
+const THERMOMETER_EVERY_S: f64 = 2.0;
 /// Longest time without regulation of the supply. CV for more than 0.5 s at a commanded CC is a fault (bench-physics,
 /// section 5). A rising current needs the full voltage for a moment.
 const UNREGULATED_S: f64 = 1.0;
@@ -34,44 +34,44 @@ const UNREGULATED_S: f64 = 1.0;
 impl Session<'_> {
     /// Waits for the next tick and returns its time.
     pub(super) fn wait(&mut self) -> f64 {
-        self.bench.clock.sleep_until_s(self.beat.next_s);
+        self.bench.clock.sleep_until_s(self.period.next_s);
         let now_s = self.bench.clock.now_s();
-        if now_s > self.beat.next_s + self.beat.period_s {
-            self.beat.late_ticks += 1;
+        if now_s > self.period.next_s + self.period.duration_s {
+            self.period.late_ticks += 1;
         }
-        self.beat.next_s = (self.beat.next_s + self.beat.period_s).max(now_s);
+        self.period.next_s = (self.period.next_s + self.period.duration_s).max(now_s);
         now_s
     }
 
     /// A tick at a velocity, whose row is shown but not kept.
     pub(super) fn tick(&mut self, now_s: f64, velocity_rad_s: f64, brake_a: f64) -> Result<(), Ending> {
-        self.tick_asking(now_s, Asked::Velocity { rad_s: velocity_rad_s, fed_a: 0.0 }, brake_a, None)
+        self.tick_with(now_s, DriveCommand::Velocity { rad_s: velocity_rad_s, feedforward_a: 0.0 }, brake_a, None)
     }
 
     /// `keep` has segment and repeat of the row; without it the row is shown but not kept.
-    pub(super) fn tick_asking(
+    pub(super) fn tick_with(
         &mut self,
         now_s: f64,
-        asked: Asked,
+        command: DriveCommand,
         brake_a: f64,
         keep: Option<(u32, u32)>,
     ) -> Result<(), Ending> {
-        self.obey(now_s)?;
+        self.poll_controls(now_s)?;
         self.command_brake(now_s, brake_a)?;
-        match asked {
-            Asked::Velocity { rad_s, fed_a } => self.command_velocity(rad_s, fed_a)?,
-            Asked::Current { a } => self.command_motor_current(a)?,
+        match command {
+            DriveCommand::Velocity { rad_s, feedforward_a } => self.command_velocity(rad_s, feedforward_a)?,
+            DriveCommand::Current { a } => self.command_motor_current(a)?,
         }
-        let moment = self.feel(now_s)?;
-        self.check(now_s, &moment)?;
-        self.keep(now_s, &moment, keep);
+        let values = self.read(now_s)?;
+        self.check(now_s, &values)?;
+        self.record(now_s, &values, keep);
         if self.journal.state() != RunState::Securing {
             self.journal.commit_if_due(now_s)?;
         }
         Ok(())
     }
 
-    pub(super) fn obey(&mut self, now_s: f64) -> Result<(), Ending> {
+    pub(super) fn poll_controls(&mut self, now_s: f64) -> Result<(), Ending> {
         loop {
             let Demand { control, by } = match self.controls.try_recv() {
                 Ok(demand) => demand,
@@ -87,33 +87,33 @@ impl Session<'_> {
                 Control::StorageLost => return Err(Ending::StorageLost),
                 Control::Stop if self.journal.state() == RunState::Securing => {}
                 Control::Stop => return Err(Ending::Stopped),
-                Control::Pause => self.wish_for(Wish::Pause, Transition::Pause),
-                Control::Resume => self.wish_for(Wish::Resume, Transition::Resume),
+                Control::Pause => self.request(PendingRequest::Pause, Transition::Pause),
+                Control::Resume => self.request(PendingRequest::Resume, Transition::Resume),
             }
         }
     }
 
     /// A request cancels an opposite one that is still pending. A request that the state does not permit is reported
     /// and dropped.
-    fn wish_for(&mut self, wish: Wish, transition: Transition) {
-        if self.wish.take_if(|pending| *pending != wish).is_some() {
+    fn request(&mut self, request: PendingRequest, transition: Transition) {
+        if self.pending_request.take_if(|pending| *pending != request).is_some() {
             return;
         }
         match self.journal.state().after(transition) {
-            Ok(_) => self.wish = Some(wish),
+            Ok(_) => self.pending_request = Some(request),
             Err(illegal) => self.note(illegal.to_string()),
         }
     }
 
-    fn command_velocity(&mut self, velocity_rad_s: f64, fed_a: f64) -> Result<(), Ending> {
+    fn command_velocity(&mut self, velocity_rad_s: f64, feedforward_a: f64) -> Result<(), Ending> {
         let velocity_rad_s = (velocity_rad_s / VELOCITY_STEP_RAD_S).round() * VELOCITY_STEP_RAD_S;
         self.guard.check_velocity(velocity_rad_s).map_err(Ending::CommandRefused)?;
-        self.guard.check_motor_current(fed_a).map_err(Ending::CommandRefused)?;
+        self.guard.check_motor_current(feedforward_a).map_err(Ending::CommandRefused)?;
         let recovered_before = self.recoveries;
         // Sent in every tick, because it feeds the drive's watchdog.
-        self.ask_joint(|joint| joint.set_velocity_fed(RadPerSec(velocity_rad_s), Amperes(fed_a)))?;
+        self.ask_joint(|joint| joint.set_velocity_fed(RadPerSec(velocity_rad_s), Amperes(feedforward_a)))?;
         self.commanded.velocity_rad_s = velocity_rad_s;
-        self.commanded.motor_current_a = fed_a;
+        self.commanded.motor_current_a = feedforward_a;
         self.trust_joint(recovered_before)
     }
 
@@ -127,7 +127,7 @@ impl Session<'_> {
     }
 
     fn command_brake(&mut self, now_s: f64, brake_a: f64) -> Result<(), Ending> {
-        let Some(brake) = self.bench.brake.as_ref().filter(|_| !self.lost.brake) else { return Ok(()) };
+        let Some(brake) = self.bench.brake.as_ref().filter(|_| !self.failed.brake) else { return Ok(()) };
         let brake_a = match brake.resolution() {
             Some(step) => (brake_a / step.0).round() * step.0,
             None => brake_a,
@@ -143,36 +143,36 @@ impl Session<'_> {
         Ok(())
     }
 
-    fn feel(&mut self, now_s: f64) -> Result<Moment, Ending> {
+    fn read(&mut self, now_s: f64) -> Result<TickValues, Ending> {
         let recovered_before = self.recoveries;
         let joint = self.ask_joint(|joint| joint.read())?;
         self.trust_joint(recovered_before)?;
         self.joint = Some(joint);
-        let torque = self.feel_torque(&joint)?;
+        let torque = self.read_torque(&joint)?;
         self.link_torque_nm = torque.map(|torque| torque.nm);
-        let encoders = self.feel_encoders()?;
+        let encoders = self.read_encoders()?;
         if now_s >= self.held.next_s {
             self.held.next_s = now_s + SLOW_EVERY_S;
             self.check_drive()?;
         }
-        if now_s >= self.held.brake_next_s && !self.lost.brake {
+        if now_s >= self.held.brake_next_s && !self.failed.brake {
             let changes = now_s < self.commanded.brake_at_s + CHANGES_FOR_S;
             self.held.brake_next_s = now_s + if changes { CHANGING_EVERY_S } else { SLOW_EVERY_S };
-            self.feel_brake()?;
+            self.read_brake()?;
         }
-        if now_s >= self.felt_next_s {
-            self.feel_warmth()?;
+        if now_s >= self.thermometer_next_s {
+            self.read_thermometer()?;
         }
         let row_s = encoders.map_or(joint.at_s, |both| both.test.at_s);
-        Ok(Moment {
+        Ok(TickValues {
             time_s: to_time_step(row_s - self.journal.started_s),
             joint,
             torque,
             temperature_c: self.held.temperature_c,
-            warmth_skew_s: self.felt_at_s - row_s,
-            brake: self.held.brake.map(|felt| BrakeMoment {
-                measured_a: felt.a,
-                skew_s: felt.at_s - joint.at_s,
+            thermometer_skew_s: self.thermometer_at_s - row_s,
+            brake: self.held.brake.map(|current| TickBrake {
+                measured_a: current.a,
+                skew_s: current.at_s - joint.at_s,
                 commanded_a: self.commanded.brake_a,
             }),
             velocity_setpoint_rad_s: self.commanded.velocity_rad_s,
@@ -184,24 +184,24 @@ impl Session<'_> {
 
     /// Reads the thermometer if there is one. The first channel replaces the joint's temperature if the joint has
     /// none.
-    pub(super) fn feel_warmth(&mut self) -> Result<(), Ending> {
-        if self.lost.thermometer {
+    pub(super) fn read_thermometer(&mut self) -> Result<(), Ending> {
+        if self.failed.thermometer {
             return Ok(());
         }
         let clock = Arc::clone(&self.bench.clock);
-        if let Some(felt) = self.ask_thermometer(|thermometer| timed(&*clock, || thermometer.read()))? {
-            self.felt_next_s = clock.now_s() + WARMTH_EVERY_S;
-            self.felt_at_s = felt.at_s;
-            self.felt_c = felt.value.iter().map(|felt| felt.0).collect();
+        if let Some(reading) = self.ask_thermometer(|thermometer| timed(&*clock, || thermometer.read()))? {
+            self.thermometer_next_s = clock.now_s() + THERMOMETER_EVERY_S;
+            self.thermometer_at_s = reading.at_s;
+            self.thermometer_c = reading.value.iter().map(|temperature| temperature.0).collect();
         }
         Ok(())
     }
 
-    fn feel_brake(&mut self) -> Result<(), Ending> {
+    fn read_brake(&mut self) -> Result<(), Ending> {
         let clock = Arc::clone(&self.bench.clock);
-        if let Some(felt) = self.ask_brake(|brake| timed(&*clock, || brake.read()))? {
-            let (reading, at_s) = (felt.value, felt.at_s);
-            self.held.brake = Some(FeltCurrent { a: reading.current.0, at_s });
+        if let Some(timed) = self.ask_brake(|brake| timed(&*clock, || brake.read()))? {
+            let (reading, at_s) = (timed.value, timed.at_s);
+            self.held.brake = Some(BrakeCurrent { a: reading.current.0, at_s });
             let loaded = self.commanded.brake_a > 0.02 * self.bench.constants.brake_rated_current_a;
             let holds = !loaded || reading.regulation == Regulation::ConstantCurrent;
             let since_s = (!holds).then(|| self.held.unregulated_since_s.unwrap_or(at_s));
@@ -228,7 +228,7 @@ impl Session<'_> {
             return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
         }
         let own_c = health.temperature.map(|temperature| temperature.0);
-        self.held.temperature_c = own_c.or(self.felt_c.first().copied());
+        self.held.temperature_c = own_c.or(self.thermometer_c.first().copied());
         Ok(())
     }
 
@@ -244,8 +244,8 @@ impl Session<'_> {
         self.check_drive()
     }
 
-    fn check(&mut self, now_s: f64, moment: &Moment) -> Result<(), Ending> {
-        let joint = &moment.joint;
+    fn check(&mut self, now_s: f64, values: &TickValues) -> Result<(), Ending> {
+        let joint = &values.joint;
         if !joint.motor_position.0.is_finite() || !joint.link_position.is_none_or(|position| position.0.is_finite()) {
             let kind = FaultKind::Garbled { what: "a position that is not a number".into() };
             return Err(Ending::JointFault(kind.at(self.bench.joint.name(), self.bench.joint.port())));
@@ -255,30 +255,30 @@ impl Session<'_> {
             motor_velocity_rad_s: joint.motor_velocity.0,
             motor_current_a: joint.motor_current.0,
             link_position_rad: link_position_rad(joint, self.bench.constants.gear_ratio),
-            link_torque_nm: moment.torque.map(|torque| torque.peak_nm),
-            temperature_c: moment.temperature_c,
-            brake_current_a: moment.brake.map(|brake| brake.measured_a),
+            link_torque_nm: values.torque.map(|torque| torque.peak_nm),
+            temperature_c: values.temperature_c,
+            brake_current_a: values.brake.map(|brake| brake.measured_a),
         };
         self.guard.check_sample(&sample).map_err(Ending::SampleRefused)
     }
 
-    fn keep(&mut self, now_s: f64, moment: &Moment, keep: Option<(u32, u32)>) {
+    fn record(&mut self, now_s: f64, values: &TickValues, keep: Option<(u32, u32)>) {
         // A reading that is not newer than the previous row is a duplicate. Without an instrument, or without its
         // reading, there is no row.
-        let felt = moment.torque.is_some() || self.bench.torque_sensor.is_none();
-        let is_row = moment.time_s > self.row_s && felt && !self.lost.sensor;
+        let has_torque = values.torque.is_some() || self.bench.torque_sensor.is_none();
+        let is_row = values.time_s > self.row_s && has_torque && !self.failed.sensor;
         let Some(columns) = self.columns.as_mut().filter(|_| is_row) else { return };
-        self.row_s = moment.time_s;
+        self.row_s = values.time_s;
         let (segment, repeat) = keep.unwrap_or_default();
-        let row = columns.row(moment, &self.felt_c, segment, repeat);
+        let row = columns.row(values, &self.thermometer_c, segment, repeat);
         if keep.is_some() {
             self.journal.keep(row);
-            self.learning.keep(self.plan.lesson.as_ref(), segment, row);
-            if let Some(encoders) = &moment.encoders {
-                self.shaft.add(segment, &moment.joint, encoders);
+            self.deferred.add_row(self.plan.deferred.as_ref(), segment, row);
+            if let Some(encoders) = &values.encoders {
+                self.shaft.add(segment, &values.joint, encoders);
             }
         }
-        let (pace, started_s) = (&self.pace, self.journal.started_s);
+        let (pace, started_s) = (&self.remaining_time, self.journal.started_s);
         self.journal.show(now_s, row, || pace.progress(started_s, now_s, keep.is_some()));
     }
 }

@@ -1,10 +1,10 @@
 //! The torque of a tick: one reading, or the mean of the stream since the previous tick.
 
-use super::ask::Trouble;
+use super::ask::RequestFault;
 use super::ending::Ending;
-use super::session::{RECOVERIES_PER_STEP, Session, log};
-use super::skew::{self, Skews};
-use crate::columns::TorqueMoment;
+use super::session::{RECOVERIES_PER_STEP, Session, TorqueStream, log};
+use super::skew::{self, SkewRange};
+use crate::columns::TickTorque;
 use jointbench_instrument::clock::{Timed, timed};
 use jointbench_instrument::roles::{JointReading, TorqueSample, TorqueSensor};
 use jointbench_instrument::units::Seconds;
@@ -14,17 +14,9 @@ use std::sync::Arc;
 /// Periods until the first sample of a stream, including its transmission.
 const FIRST_PERIODS: f64 = 2.0;
 
-/// Statistics of a stream.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Streaming {
-    period: Seconds,
-    samples: u64,
-    missing: u64,
-}
-
 /// Torque of one tick.
 #[derive(Debug, Clone, Copy)]
-struct Felt {
+struct TorqueReading {
     nm: f64,
     peak_nm: f64,
     other_nm: Option<f64>,
@@ -39,8 +31,8 @@ impl Session<'_> {
             Some(stream) => stream.start_stream(Seconds(period_s), Arc::clone(&clock)).map(Some),
             None => Ok(None),
         })?;
-        self.streaming = started.flatten().map(|period| Streaming { period, samples: 0, missing: 0 });
-        if let Some(Streaming { period, .. }) = self.streaming {
+        self.torque_stream = started.flatten().map(|period| TorqueStream { period, samples: 0, missing: 0 });
+        if let Some(TorqueStream { period, .. }) = self.torque_stream {
             clock.sleep_until_s(clock.now_s() + FIRST_PERIODS * period.0);
         }
         Ok(())
@@ -48,7 +40,7 @@ impl Session<'_> {
 
     /// Returns to single readings, and reports the statistics of the stream.
     pub(super) fn stop_torque_stream(&mut self) -> Result<(), Ending> {
-        let Some(Streaming { period, samples, missing }) = self.streaming.take() else { return Ok(()) };
+        let Some(TorqueStream { period, samples, missing }) = self.torque_stream.take() else { return Ok(()) };
         let rate_hz = 1.0 / period.0;
         self.note(format!("{samples} torque samples at {rate_hz:.0} Hz, averaged per row."));
         if missing > 0 {
@@ -62,32 +54,32 @@ impl Session<'_> {
     }
 
     /// `None`: no sensor, or no sample of its stream.
-    pub(super) fn feel_torque(&mut self, joint: &JointReading) -> Result<Option<TorqueMoment>, Ending> {
-        if self.lost.sensor {
+    pub(super) fn read_torque(&mut self, joint: &JointReading) -> Result<Option<TickTorque>, Ending> {
+        if self.failed.sensor {
             return Ok(None);
         }
-        let felt = if self.streaming.is_some() { self.collect_torque()? } else { self.read_torque()? };
-        let Some(felt) = felt else { return Ok(None) };
-        let skew = skew::of(joint, &felt);
-        self.skews = Some(Skews::add(self.skews, skew));
-        let Felt { nm, peak_nm, other_nm } = felt.value;
-        Ok(Some(TorqueMoment { nm, peak_nm, other_nm, skew_s: skew.s }))
+        let reading = if self.torque_stream.is_some() { self.average_torque()? } else { self.read_single_torque()? };
+        let Some(reading) = reading else { return Ok(None) };
+        let skew = skew::of(joint, &reading);
+        self.skews = Some(SkewRange::add(self.skews, skew));
+        let TorqueReading { nm, peak_nm, other_nm } = reading.value;
+        Ok(Some(TickTorque { nm, peak_nm, other_nm, skew_s: skew.s }))
     }
 
-    fn read_torque(&mut self) -> Result<Option<Timed<Felt>>, Ending> {
+    fn read_single_torque(&mut self) -> Result<Option<Timed<TorqueReading>>, Ending> {
         let clock = Arc::clone(&self.bench.clock);
         let both = self.plan.both_ranges;
         let read = |sensor: &mut (dyn TorqueSensor + 'static)| {
             let (torque, other) = if both { sensor.read_both()? } else { (sensor.read()?, None) };
-            Ok(Felt { nm: torque.0, peak_nm: torque.0, other_nm: other.map(|other| other.0) })
+            Ok(TorqueReading { nm: torque.0, peak_nm: torque.0, other_nm: other.map(|other| other.0) })
         };
         self.ask_torque_sensor(|sensor| timed(&*clock, || read(sensor)))
     }
 
     /// The mean of the samples of one period of the run, at the mean of their times.
-    fn collect_torque(&mut self) -> Result<Option<Timed<Felt>>, Ending> {
+    fn average_torque(&mut self) -> Result<Option<Timed<TorqueReading>>, Ending> {
         let clock = Arc::clone(&self.bench.clock);
-        let Some(period) = self.streaming.map(|streaming| streaming.period) else { return Ok(None) };
+        let Some(period) = self.torque_stream.map(|streaming| streaming.period) else { return Ok(None) };
         let both = self.plan.both_ranges;
         let mut samples = loop {
             let mut ended = false;
@@ -102,18 +94,18 @@ impl Session<'_> {
                 None => return Ok(None),
             }
         };
-        if let Some(streaming) = &mut self.streaming {
+        if let Some(streaming) = &mut self.torque_stream {
             streaming.samples += samples.len() as u64;
         }
         let Some(newest_s) = samples.last().map(|sample| sample.at_s) else { return Ok(None) };
         // Older samples belong to a tick that was skipped.
-        samples.retain(|sample| sample.at_s > newest_s - self.beat.period_s);
+        samples.retain(|sample| sample.at_s > newest_s - self.period.duration_s);
         let count = samples.len() as f64;
         let mean = |of: fn(&TorqueSample) -> f64| samples.iter().map(of).sum::<f64>() / count;
         let in_use = |sample: &TorqueSample| sample.torque.map_or(0.0, |torque| torque.0);
         let peak_nm =
             samples.iter().map(in_use).fold(0.0, |peak: f64, nm| if nm.abs() > peak.abs() { nm } else { peak });
-        let value = Felt {
+        let value = TorqueReading {
             nm: mean(in_use),
             peak_nm,
             other_nm: both.then(|| mean(|sample| sample.other.map_or(0.0, |other| other.0))),
@@ -124,13 +116,13 @@ impl Session<'_> {
 
     /// A gap is not filled. The stream continues.
     fn pass_gap(&mut self, gap: Fault) -> Result<(), Ending> {
-        if let (FaultKind::StreamGap { count }, Some(streaming)) = (&gap.kind, &mut self.streaming) {
+        if let (FaultKind::StreamGap { count }, Some(streaming)) = (&gap.kind, &mut self.torque_stream) {
             streaming.missing += count;
         }
         let now_s = self.bench.clock.now_s();
-        log(&mut self.journal, &mut self.recoveries, now_s, Trouble { fault: gap.clone(), recovered: true });
+        log(&mut self.journal, &mut self.recoveries, now_s, RequestFault { fault: gap.clone(), recovered: true });
         if self.recoveries > RECOVERIES_PER_STEP {
-            self.lost.sensor = true;
+            self.failed.sensor = true;
             return Err(Ending::OtherFault(gap));
         }
         Ok(())

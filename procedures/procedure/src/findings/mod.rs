@@ -3,16 +3,16 @@
 
 mod holds;
 mod lag;
+mod legs;
 mod line;
-mod part;
 mod plateaus;
-mod say;
+mod quantities;
 mod solve;
 
 pub(crate) use holds::{Hold, holds};
 pub(crate) use lag::{Lag, ReadingPair, lag};
+pub(crate) use legs::{Leg, legs, select_legs, select_rows};
 pub(crate) use line::{Line, Mean};
-pub(crate) use part::{Leg, keep, keep_rows, legs};
 pub(crate) use plateaus::{Plateau, plateaus, settled};
-pub(crate) use say::{Unusable, combined, curve, interval_of, parameter, quantity, scatter, verdict};
+pub(crate) use quantities::{Unusable, combined, curve, interval_of, parameter, quantity, scatter, verdict};
 pub(crate) use solve::{solve, t95};

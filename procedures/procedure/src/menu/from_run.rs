@@ -1,6 +1,6 @@
 //! Facts of a bench that is only known from a run.
 
-use crate::plan::BenchFacts;
+use crate::bench_facts::BenchFacts;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::{Kind, Limits, RunTable};
 use std::f64::consts::{PI, TAU};

@@ -4,9 +4,9 @@ mod friction;
 mod from_run;
 mod segments;
 
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::procedure;
 use crate::parameter::Parameter;
-use crate::plan::BenchFacts;
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::Choice;
 use segments::choice;

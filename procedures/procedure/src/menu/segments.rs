@@ -1,6 +1,7 @@
 //! Steady-state stretches of a plan for the model.
 
-use crate::plan::{Before, BenchFacts, Phase, Plan, Step};
+use crate::bench_facts::BenchFacts;
+use crate::plan::{InitialState, Phase, Plan, Step};
 use jointbench_instrument::Kind;
 use jointbench_model::{Choice, Stretch};
 use serde_json::{Map, Value};
@@ -18,7 +19,7 @@ pub fn choice(
     let (mut start_s, mut at_rad, mut power_ups) = (0.0, 0.0, 0);
     let mut stretches = Vec::new();
     for step in &plan.steps {
-        power_ups += u32::from(step.before == Before::PoweredAnew);
+        power_ups += u32::from(step.before == InitialState::PoweredAnew);
         let way = step.velocity.integral();
         for (pair, from_rad) in step.velocity.knots().windows(2).zip(&way) {
             let [(held_s, velocity_rad_s), (to_s, end_rad_s)] = [pair[0], pair[1]];
@@ -44,7 +45,7 @@ pub fn choice(
         at_rad += way.last().unwrap_or(&0.0);
     }
     Choice {
-        procedure: plan.procedure.into(),
+        procedure: plan.procedure.clone(),
         parameters: parameters.clone(),
         duration_s: plan.duration_s(),
         stretches,

@@ -1,13 +1,13 @@
 //! Stop, abort and software stop at every step and at any time.
 
 use crate::fakes::Call;
-use crate::ledger::{Done, loaded_plan, middles_s, play_controlled, play_controlled_at};
+use crate::ledger::{FinishedRun, loaded_plan, middles_s, play_controlled, play_controlled_at};
 use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
 use proptest::prelude::*;
 
 /// Bench time from the control to the last non-zero set-point.
-fn moved_on_s(done: &Done, from_s: f64) -> f64 {
+fn moved_on_s(done: &FinishedRun, from_s: f64) -> f64 {
     let moving = done.world.commands(|call| matches!(call, Call::SetVelocity(v) if *v != 0.0));
     moving.last().map_or(0.0, |(at_s, _)| at_s - 100.0 - from_s)
 }
@@ -52,7 +52,7 @@ fn abort_comes_to_rest_within_its_ramp() {
 }
 
 #[test]
-fn a_daemon_that_is_terminated_aborts_and_says_so() {
+fn a_daemon_that_is_terminated_aborts_and_reports_it() {
     let at_s = middles_s(&loaded_plan())[2];
     let [reported, asked] = [Control::Quit, Control::Abort].map(|control| play_controlled(&[(at_s, control)]));
     reported.check_safe(RunState::Aborted).check_no_cogging();

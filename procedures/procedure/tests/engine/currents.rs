@@ -1,8 +1,8 @@
 //! Steps with a motor current: stopped after a breakaway, checked by the guard, and ended safely by every ending.
 
 use crate::fakes::{Call, FRICTION_A, Fakes};
-use crate::ledger::{Done, loaded_plan, play, play_with};
-use jointbench_procedure::plan::{Drive, Feed, Until};
+use crate::ledger::{FinishedRun, loaded_plan, play, play_with};
+use jointbench_procedure::plan::{Drive, EndCondition, Feedforward};
 use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
 use std::sync::mpsc::channel;
@@ -14,11 +14,11 @@ fn ramp_plan(top_a: f64) -> Plan {
     let step = &mut plan.steps[0];
     (step.velocity, step.brake) = (Profile::from(0.0).hold(0.5), Profile::constant(0.0));
     let current_a = Profile::from(0.0).to(top_a, top_a / 0.2);
-    step.drive = Drive::Current { from_s: 0.5, current_a, until: Until { increases: 5, speed_rad_s: 10.0 } };
+    step.drive = Drive::Current { from_s: 0.5, current_a, until: EndCondition { increases: 5, speed_rad_s: 10.0 } };
     plan
 }
 
-fn largest_a(done: &Done) -> f64 {
+fn largest_a(done: &FinishedRun) -> f64 {
     let currents = done.world.commands(|call| matches!(call, Call::SetMotorCurrent(_)));
     let value = |(_, call): &(f64, Call)| if let Call::SetMotorCurrent(a) = call { *a } else { 0.0 };
     currents.iter().map(value).fold(0.0, f64::max)
@@ -88,7 +88,7 @@ fn feedforward_current_is_recorded_with_the_velocity() {
     let mut plan = loaded_plan();
     plan.steps.truncate(1);
     plan.steps[0].brake = Profile::constant(0.0);
-    plan.steps[0].drive = Drive::Fed(Feed::Planned(Profile::from(0.0).to(0.8, 0.5)));
+    plan.steps[0].drive = Drive::Fed(Feedforward::Planned(Profile::from(0.0).to(0.8, 0.5)));
     let done = play(&fakes, &mut bench, &plan, |_| {});
     done.check_safe(RunState::Completed);
     let table = done.ledger.table();

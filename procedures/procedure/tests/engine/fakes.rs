@@ -144,7 +144,7 @@ impl Fakes {
     }
 
     /// Adds a thermometer to the bench.
-    pub fn feel_warmth(&self, bench: &mut Bench) {
+    pub fn connect_thermometer(&self, bench: &mut Bench) {
         bench.thermometer = Some(Box::new(FakeThermometer(self.clone())));
     }
 

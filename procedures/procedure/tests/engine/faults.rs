@@ -1,7 +1,7 @@
 //! Instruments that miss a reply, are lost or panic.
 
 use crate::fakes::{Call, Fakes, Role, World};
-use crate::ledger::{Done, loaded_plan, play};
+use crate::ledger::{FinishedRun, loaded_plan, play};
 use jointbench_instrument::FaultKind;
 use jointbench_procedure::*;
 
@@ -13,13 +13,13 @@ fn lost() -> FaultKind {
     FaultKind::Disconnected { what: "input/output error".into() }
 }
 
-fn scripted(script: impl FnMut(Call, &mut World) -> Result<(), FaultKind> + Send + 'static) -> Done {
+fn scripted(script: impl FnMut(Call, &mut World) -> Result<(), FaultKind> + Send + 'static) -> FinishedRun {
     let (fakes, mut bench) = Fakes::new(script);
     play(&fakes, &mut bench, &loaded_plan(), |_| {})
 }
 
 /// From two seconds into the run, while `when` returns true, the instrument of a role does not answer.
-fn failing(role: Role, kind: fn() -> FaultKind, when: fn(&Call) -> bool) -> Done {
+fn failing(role: Role, kind: fn() -> FaultKind, when: fn(&Call) -> bool) -> FinishedRun {
     scripted(
         move |call, world| {
             if world.now_s >= 102.0 && call.role() == role && when(&call) { Err(kind()) } else { Ok(()) }

@@ -48,7 +48,7 @@ fn a_whole_run_is_kept_once_and_in_order() {
 }
 
 #[test]
-fn the_commit_that_ends_a_run_says_why() {
+fn the_commit_that_ends_a_run_has_the_reason() {
     let done = play_controlled(&[(3.0, Control::Stop)]);
     let last = done.ledger.kept.last().and_then(|kept| kept.events.last()).expect("an end");
     let reason = done.end.reason.clone();

@@ -2,14 +2,14 @@
 
 use crate::fakes::{Fakes, World};
 use jointbench_instrument::{Bench, Kind, Meta, RunTable, Trace};
-use jointbench_procedure::place::Place;
-use jointbench_procedure::plan::{Before, Drive, Phase, Step};
+use jointbench_procedure::plan::{Drive, InitialState, Phase, Step};
 use jointbench_procedure::profile::Profile;
+use jointbench_procedure::stage_pose::StagePose;
 use jointbench_procedure::*;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 /// One acknowledged commit.
-pub struct Kept {
+pub struct Committed {
     pub state: RunState,
     pub events: Vec<Event>,
     pub rows: Trace,
@@ -18,7 +18,7 @@ pub struct Kept {
 
 pub struct Ledger {
     fakes: Fakes,
-    pub kept: Vec<Kept>,
+    pub kept: Vec<Committed>,
     pub live_rows: usize,
     pub progress: Vec<Progress>,
     pub blocked: Option<String>,
@@ -81,7 +81,7 @@ impl Recorder for Ledger {
             return Err(RecorderFault("no space left on device; free some and start the run again".into()));
         }
         let at_s = self.fakes.world().now_s;
-        self.kept.push(Kept { state: commit.state, events: commit.events.to_vec(), rows: commit.rows, at_s });
+        self.kept.push(Committed { state: commit.state, events: commit.events.to_vec(), rows: commit.rows, at_s });
         Ok(())
     }
 
@@ -98,14 +98,14 @@ pub fn loaded_plan() -> Plan {
         phase: Phase::Measure,
         segment,
         repeat: 0,
-        before: Before::AsLeft,
-        place: Place::AsLeft,
+        before: InitialState::AsLeft,
+        place: StagePose::AsLeft,
         velocity: Profile::plateau(speed, 400.0, dwell_s),
         brake,
         drive: Drive::Velocity,
     };
     Plan {
-        procedure: "test",
+        procedure: "test".into(),
         parameters: serde_json::Map::new(),
         kind: Kind::Friction,
         meta: Meta::default(),
@@ -121,7 +121,7 @@ pub fn loaded_plan() -> Plan {
         steady: None,
         both_ranges: false,
         torque_period_s: None,
-        lesson: None,
+        deferred: None,
         begins_rad: 0.0,
     }
 }
@@ -138,14 +138,14 @@ pub fn middles_s(plan: &Plan) -> Vec<f64> {
 }
 
 /// Results of a run.
-pub struct Done {
+pub struct FinishedRun {
     pub end: RunEnd,
     pub ledger: Ledger,
     pub world: World,
 }
 
 /// Runs a plan on a bench with a recorder that `prepare` may modify.
-pub fn play(fakes: &Fakes, bench: &mut Bench, plan: &Plan, prepare: impl FnOnce(&mut Ledger)) -> Done {
+pub fn play(fakes: &Fakes, bench: &mut Bench, plan: &Plan, prepare: impl FnOnce(&mut Ledger)) -> FinishedRun {
     let (_held, controls) = channel();
     play_with(fakes, bench, plan, &controls, prepare)
 }
@@ -156,19 +156,19 @@ pub fn play_with(
     plan: &Plan,
     controls: &Receiver<Demand>,
     prepare: impl FnOnce(&mut Ledger),
-) -> Done {
+) -> FinishedRun {
     let mut ledger = Ledger::new(fakes);
     prepare(&mut ledger);
     let end = run(bench, plan, 7, controls, &mut ledger);
-    Done { end, ledger, world: fakes.world() }
+    FinishedRun { end, ledger, world: fakes.world() }
 }
 
 /// Runs the loaded plan while a person gives controls at times after the start of the run.
-pub fn play_controlled(controls: &[(f64, Control)]) -> Done {
+pub fn play_controlled(controls: &[(f64, Control)]) -> FinishedRun {
     play_controlled_at(loaded_plan().rate_hz, controls)
 }
 
-pub fn play_controlled_at(rate_hz: f64, controls: &[(f64, Control)]) -> Done {
+pub fn play_controlled_at(rate_hz: f64, controls: &[(f64, Control)]) -> FinishedRun {
     let (sender, receiver): (Sender<Demand>, _) = channel();
     let mut due = controls.to_vec();
     due.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -183,7 +183,7 @@ pub fn play_controlled_at(rate_hz: f64, controls: &[(f64, Control)]) -> Done {
     play_with(&fakes, &mut bench, &Plan { rate_hz, ..loaded_plan() }, &receiver, |_| {})
 }
 
-impl Done {
+impl FinishedRun {
     /// Required final state of every run while the instruments answer.
     pub fn check_safe(&self, state: RunState) -> &Self {
         assert_eq!(self.end.state, state, "{:?}", self.end.reason);

@@ -8,7 +8,7 @@ use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
 
 /// Two seconds into the run the world shows a forbidden state.
-fn check_trips(what: &str, show: fn(&mut World)) -> crate::ledger::Done {
+fn check_trips(what: &str, show: fn(&mut World)) -> crate::ledger::FinishedRun {
     let (fakes, mut bench) = Fakes::new(move |_, world| {
         if (102.0..103.0).contains(&world.now_s) {
             show(world);
@@ -70,7 +70,7 @@ fn a_plan_beyond_a_limit_never_arms() {
     let too_strong = |plan: &mut Plan| plan.steps[1].brake = Profile::constant(0.61);
     let too_far = |plan: &mut Plan| plan.steps[3].velocity = Profile::plateau(150.0, 400.0, 11.0);
     let from_speed = |plan: &mut Plan| plan.steps[0].velocity = Profile::constant(10.0);
-    for (spoil, said) in [
+    for (spoil, text) in [
         (&too_fast as &dyn Fn(&mut Plan), "motor velocity 201 rad/s exceeds the limit of 200 rad/s"),
         (&too_strong, "brake current 0.61 A exceeds the limit of 0.6 A"),
         (&too_far, "link travel"),
@@ -82,7 +82,7 @@ fn a_plan_beyond_a_limit_never_arms() {
         let done = play(&fakes, &mut bench, &plan, |_| {});
         done.check_safe(RunState::Failed);
         let reason = done.end.reason.unwrap();
-        assert!(reason.starts_with("not started") && reason.contains(said), "{reason}");
+        assert!(reason.starts_with("not started") && reason.contains(text), "{reason}");
         assert!(done.world.commands(|call| matches!(call, Call::Arm)).is_empty());
     }
 }

@@ -9,5 +9,5 @@ mod ledger;
 mod limits;
 mod pauses;
 mod securing;
+mod thermometer;
 mod warm_up;
-mod warmth;

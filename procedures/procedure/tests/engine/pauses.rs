@@ -2,7 +2,7 @@
 
 use crate::fakes::{Call, Fakes, RATIO};
 use crate::ledger::{loaded_plan, middles_s, play_controlled, play_with};
-use jointbench_procedure::plan::Before;
+use jointbench_procedure::plan::InitialState;
 use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
 use std::sync::mpsc::channel;
@@ -102,7 +102,7 @@ fn a_resume_takes_back_a_pause_that_was_not_yet_granted() {
 fn a_sweep_begins_again_with_a_demagnetised_brake() {
     let mut plan = loaded_plan();
     plan.steps.truncate(1);
-    plan.steps[0].before = Before::Demagnetised;
+    plan.steps[0].before = InitialState::Demagnetised;
     plan.steps[0].velocity = Profile::plateau(100.0, 400.0, 5.0);
     plan.steps[0].brake = Profile::from(0.0).hold(0.3).to(0.5, 0.0).hold(1.5).to(0.2, 0.0).hold(1.5).to(0.0, 0.0);
     let (sender, controls) = channel();

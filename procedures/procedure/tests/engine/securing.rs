@@ -17,7 +17,7 @@ fn a_bench_left_behind_is_secured_without_moving() {
 }
 
 #[test]
-fn a_resting_bench_needs_nothing_said() {
+fn a_resting_bench_needs_no_note() {
     let (_, mut bench) = Fakes::quiet();
     assert_eq!(secure(&mut bench).notes, Vec::<String>::new());
 }

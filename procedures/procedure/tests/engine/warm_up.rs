@@ -1,13 +1,13 @@
 //! Procedures of the catalogue, run on the fakes.
 
 use crate::fakes::{Fakes, World};
-use crate::ledger::{Done, middles_s, play, play_with};
+use crate::ledger::{FinishedRun, middles_s, play, play_with};
 use jointbench_procedure::plan::Phase;
 use jointbench_procedure::*;
 use serde_json::json;
 use std::sync::mpsc::channel;
 
-fn carried_out(id: &str, parameters: serde_json::Value, heat: fn(&mut World)) -> (Plan, Done) {
+fn carried_out(id: &str, parameters: serde_json::Value, heat: fn(&mut World)) -> (Plan, FinishedRun) {
     let (fakes, mut bench) = Fakes::new(move |_, world| {
         heat(world);
         Ok(())
@@ -36,7 +36,7 @@ fn a_warm_up_ends_when_the_joint_is_steady() {
 }
 
 #[test]
-fn a_warm_up_that_was_too_short_says_so() {
+fn a_warm_up_that_was_too_short_is_reported() {
     let (_, done) = carried_out("warm_up", json!({"longest_s": 100.0}), warming);
     done.check_safe(RunState::Completed);
     assert!(done.ledger.notes().iter().any(|note| note.starts_with("not warmed up: ")), "{:?}", done.ledger.notes());
@@ -55,7 +55,7 @@ fn friction_runs_from_warm_up_to_the_last_leg() {
 }
 
 /// Friction with a pause in the middle of a loaded step: the plan, that step, and the result.
-fn paused_under_load(pause_s: f64) -> (Plan, usize, Done) {
+fn paused_under_load(pause_s: f64) -> (Plan, usize, FinishedRun) {
     let (sender, controls) = channel();
     let held = sender.clone();
     let mut due: Vec<(f64, Control)> = Vec::new();
@@ -82,7 +82,7 @@ fn paused_under_load(pause_s: f64) -> (Plan, usize, Done) {
 
 #[test]
 fn a_joint_that_rested_for_long_is_warmed_up_again() {
-    let warmed = |done: &Done| done.ledger.notes().iter().any(|note| note.ends_with("Warm-up is repeated."));
+    let warmed = |done: &FinishedRun| done.ledger.notes().iter().any(|note| note.ends_with("Warm-up is repeated."));
     let (plan, loaded, done) = paused_under_load(100.0);
     assert!(warmed(&done), "{:?}", done.ledger.notes());
     // None of it is kept: the table has the planned steps, the interrupted one twice.

@@ -4,7 +4,7 @@ use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::RunTable;
 use jointbench_model::preprocess::attention;
 use jointbench_model::{Diagnosis, ModelSpec, Open, Options, diagnose, discover, next_run};
-use jointbench_procedure::conduct::conduct;
+use jointbench_procedure::in_memory_run::run_in_memory;
 use jointbench_procedure::{BenchFacts, menu, procedure};
 use serde_json::{Map, Value, json};
 
@@ -18,7 +18,7 @@ fn seeded(seed: u64, joint: Joint, hidden: &[&str], id: &str, parameters: Value)
     settings.effects = hidden.iter().map(|effect| (*effect).to_owned()).collect();
     let mock = MockBench::start(settings).unwrap();
     let mut bench = mock.open_bench("mock").unwrap();
-    conduct(&mut bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap().table
+    run_in_memory(&mut bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap().table
 }
 
 /// The effects that the diagnosis adds to the baseline of a run.
@@ -93,8 +93,11 @@ fn a_joint_that_starts_from_rest_shows_its_contacts_and_no_substitute() {
         assert_eq!(shown(&run(joint, &["stribeck"], "presliding", json!({}))), ["presliding"], "{joint:?}");
         let breakaway = run(joint, &[], "breakaway", json!({}));
         assert_eq!(shown(&breakaway), ["presliding"], "{joint:?}");
-        let said = diagnosis(&breakaway).summary;
-        assert!(!said.contains("Attention"), "nothing contradicts the link's sensor, which bears no load: {said}");
+        let summary = diagnosis(&breakaway).summary;
+        assert!(
+            !summary.contains("Attention"),
+            "nothing contradicts the link's sensor, which bears no load: {summary}"
+        );
     }
 }
 

@@ -2,8 +2,8 @@
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::catalogue::brake_model;
-use jointbench_procedure::conduct::{conduct, conduct_knowing};
 use jointbench_procedure::identification::{Identification, Series, Verdict};
+use jointbench_procedure::in_memory_run::{run_in_memory, run_in_memory_with_facts};
 use jointbench_procedure::parameter::Values;
 use jointbench_procedure::{BenchFacts, procedure};
 use serde_json::{Value, json};
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 fn found(settings: MockSettings, id: &str, parameters: Value) -> (MockBench, Identification) {
     let mock = MockBench::start(settings).unwrap();
     let mut bench = mock.open_bench("mock").unwrap();
-    let done = conduct(&mut bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap();
+    let done = run_in_memory(&mut bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap();
     let found = done.identification.unwrap();
     let finds = procedure(id).unwrap().finds();
     for quantity in &found.quantities {
@@ -51,7 +51,7 @@ fn a_sensor_of_two_ranges_has_two_zeros_and_one_torque() {
     let mut bench = mock.open_bench("mock").unwrap();
     let procedure = procedure("torque_sensor_zero").unwrap();
     let given = json!({"duration_s": 45.0, "loads": 3, "speed_rad_s": 1.0, "dwell_s": 1.2});
-    let done = conduct(&mut bench, procedure, given.as_object().unwrap()).unwrap();
+    let done = run_in_memory(&mut bench, procedure, given.as_object().unwrap()).unwrap();
     let found = done.identification.unwrap();
     let value = |name: &str| found.quantity(name).unwrap().value;
     assert!((value("gain_ratio") - 1.0).abs() < 1e-3, "{}", found.summary);
@@ -99,9 +99,9 @@ fn torque_is_commanded_through_the_model_of_an_earlier_run() {
 
     let hysteresis = json!({"levels": 8, "loops": 1, "random_turns": 4, "speed_rad_s": 3.0});
     let measured =
-        conduct(&mut bench, procedure("brake_hysteresis").unwrap(), hysteresis.as_object().unwrap()).unwrap();
+        run_in_memory(&mut bench, procedure("brake_hysteresis").unwrap(), hysteresis.as_object().unwrap()).unwrap();
     facts.brake_model = brake_model(&measured.table);
-    let done = conduct_knowing(&mut bench, &facts, brake_torque, given).unwrap();
+    let done = run_in_memory_with_facts(&mut bench, &facts, brake_torque, given).unwrap();
     let found = done.identification.unwrap();
     // Eight levels are coarse; 20, the default, keep 1 %.
     assert!(found.quantity("error_max").unwrap().value < 0.03, "{}", found.summary);
@@ -228,7 +228,7 @@ fn the_full_model_halves_the_error_without_over_compensating() {
     });
     let mut bench = mock.open_bench("mock").unwrap();
     let procedure = procedure("compensation").unwrap();
-    let found = conduct(&mut bench, procedure, given.as_object().unwrap()).unwrap().identification.unwrap();
+    let found = run_in_memory(&mut bench, procedure, given.as_object().unwrap()).unwrap().identification.unwrap();
     assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
     let ratio = |way: &str| found.quantity(&format!("ratio_{way}")).unwrap().value;
     assert!(ratio("full") < 0.5 && ratio("full") < ratio("interpolated"), "{}", found.summary);

@@ -3,7 +3,7 @@
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable};
 use jointbench_model::{Diagnosis, Experiment, ModelSpec, Open, Options, diagnose, next_run};
-use jointbench_procedure::conduct::conduct;
+use jointbench_procedure::in_memory_run::run_in_memory;
 use jointbench_procedure::{BenchFacts, menu, procedure};
 use serde_json::{Map, Value, json};
 
@@ -40,7 +40,7 @@ impl Laboratory {
 }
 
 fn measured(bench: &mut Bench, id: &str, parameters: &Map<String, Value>) -> RunTable {
-    conduct(bench, procedure(id).unwrap(), parameters).unwrap().table
+    run_in_memory(bench, procedure(id).unwrap(), parameters).unwrap().table
 }
 
 #[test]

@@ -2,12 +2,12 @@
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
-use jointbench_procedure::catalogue::{BrakeModel, Procedure, brake_model};
-use jointbench_procedure::conduct::{conduct, conduct_knowing};
-use jointbench_procedure::continuing::{Continues, Done, joined};
+use jointbench_procedure::catalogue::brake_model;
+use jointbench_procedure::in_memory_run::{run_in_memory, run_in_memory_with_facts};
 use jointbench_procedure::parameter::Values;
-use jointbench_procedure::place::Place;
 use jointbench_procedure::plan::{Drive, Phase, Step};
+use jointbench_procedure::resume::{Continuation, FinishedSteps, joined};
+use jointbench_procedure::stage_pose::StagePose;
 use jointbench_procedure::*;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -22,7 +22,7 @@ const PARTS: usize = 16;
 type Due = BTreeMap<usize, (f64, Option<Control>)>;
 
 /// Rows, and their part of the plan.
-type Acknowledged = (Option<Trace>, Done);
+type Acknowledged = (Option<Trace>, FinishedSteps);
 
 /// Gives controls at some steps of a run, and resumes it soon after a pause.
 struct Steer {
@@ -31,19 +31,22 @@ struct Steer {
     step: (usize, f64),
     waited: u32,
     rows: Option<Trace>,
-    done: Done,
-    continues: Option<Continues>,
+    finished: FinishedSteps,
+    continuation: Option<Continuation>,
     /// Receives the acknowledged data when the process is killed.
     killed: Sender<Acknowledged>,
 }
 
 impl Steer {
     fn new(plan: &Plan, due: Due) -> (Self, Receiver<Demand>, Receiver<Acknowledged>) {
-        let ((controls, heard), (killed, left)) = (channel(), channel());
-        let continues = Continues::of(&plan.meta);
-        let done = Done { steps: continues.map_or(0, |continues| continues.from_step), ..Done::default() };
+        let ((controls, receiver), (killed, left)) = (channel(), channel());
+        let continuation = Continuation::of(&plan.meta);
+        let finished = FinishedSteps {
+            steps: continuation.map_or(0, |continuation| continuation.from_step),
+            ..FinishedSteps::default()
+        };
         let step = (usize::MAX, 0.0);
-        (Self { controls, due, step, waited: 0, rows: None, done, continues, killed }, heard, left)
+        (Self { controls, due, step, waited: 0, rows: None, finished, continuation, killed }, receiver, left)
     }
 }
 
@@ -55,8 +58,12 @@ impl Recorder for Steer {
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
         for event in commit.events {
             match event.kind {
-                EventKind::StepStarted { step, segment, .. } => self.done.take(self.continues, step, segment, false),
-                EventKind::StepFinished { step, segment, .. } => self.done.take(self.continues, step, segment, true),
+                EventKind::StepStarted { step, segment, .. } => {
+                    self.finished.add(self.continuation, step, segment, false)
+                }
+                EventKind::StepFinished { step, segment, .. } => {
+                    self.finished.add(self.continuation, step, segment, true)
+                }
                 _ => {}
             }
         }
@@ -85,7 +92,7 @@ impl Recorder for Steer {
             match control {
                 Some(control) => self.controls.send(control.into()).unwrap(),
                 None => {
-                    self.killed.send((self.rows.take(), self.done.clone())).unwrap();
+                    self.killed.send((self.rows.take(), self.finished.clone())).unwrap();
                     // The thread never acts again: no ramp, no securing.
                     loop {
                         park();
@@ -97,20 +104,20 @@ impl Recorder for Steer {
 }
 
 /// Runs a plan under these controls.
-fn steered(bench: &mut Bench, plan: &Plan, due: Due) -> (RunEnd, RunTable, Done) {
-    let (mut steer, heard, _left) = Steer::new(plan, due);
-    let end = run(bench, plan, 1, &heard, &mut steer);
+fn steered(bench: &mut Bench, plan: &Plan, due: Due) -> (RunEnd, RunTable, FinishedSteps) {
+    let (mut steer, receiver, _left) = Steer::new(plan, due);
+    let end = run(bench, plan, 1, &receiver, &mut steer);
     assert!(steer.due.is_empty(), "{}: not reached: {:?}", plan.procedure, steer.due);
-    (end, RunTable::new(plan.meta.clone(), steer.rows.unwrap()).unwrap(), steer.done)
+    (end, RunTable::new(plan.meta.clone(), steer.rows.unwrap()).unwrap(), steer.finished)
 }
 
 /// Runs a plan until its process is killed; the instruments keep their state.
-fn killed(mut bench: Bench, plan: &Plan, due: Due) -> (RunTable, Done) {
-    let (mut steer, heard, left) = Steer::new(plan, due);
+fn killed(mut bench: Bench, plan: &Plan, due: Due) -> (RunTable, FinishedSteps) {
+    let (mut steer, receiver, left) = Steer::new(plan, due);
     let whole = plan.clone();
-    spawn(move || run(&mut bench, &whole, 1, &heard, &mut steer));
-    let (rows, done) = left.recv().unwrap();
-    (RunTable::new(plan.meta.clone(), rows.unwrap()).unwrap(), done)
+    spawn(move || run(&mut bench, &whole, 1, &receiver, &mut steer));
+    let (rows, finished) = left.recv().unwrap();
+    (RunTable::new(plan.meta.clone(), rows.unwrap()).unwrap(), finished)
 }
 
 /// The first step of every kind, and a time within it.
@@ -124,7 +131,7 @@ fn one_of_each_kind(plan: &Plan) -> Due {
         // A current ramp ends with the breakaway, an edge search when the edge is found, so that both are left early.
         let within_s = match (&step.drive, step.place) {
             (Drive::Current { from_s, .. }, _) => from_s + 0.8,
-            (_, Place::Edge(_)) => 1.0,
+            (_, StagePose::Edge(_)) => 1.0,
             _ => 0.5 * step.duration_s(),
         };
         kinds.entry(kind).or_insert((index, (within_s, Some(Control::Pause))));
@@ -158,7 +165,7 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
     if procedure.brake_model(&values).is_some() {
         facts.brake_model = Some(measured_brake(&mut open().1));
     }
-    let unbroken = conduct_knowing(&mut bench, &facts, procedure, given).unwrap().identification.unwrap();
+    let unbroken = run_in_memory_with_facts(&mut bench, &facts, procedure, given).unwrap().identification.unwrap();
     let finds = procedure.finds();
     for quantity in &unbroken.quantities {
         let is_declared = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
@@ -180,20 +187,23 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
     let (_mock, mut bench) = open();
     let (end, _, _) = steered(&mut bench, &plan, [(middle, (within_s, Some(Control::Abort)))].into());
     assert_eq!((end.state, end.safe), (RunState::Aborted, Safe::SafeVerified), "{id}: {:?}", end.reason);
-    if procedure.goes_on().is_err() {
+    if procedure.can_resume().is_err() {
         return;
     }
 
     let (mock, bench) = open();
-    let (first, done) = killed(bench, &plan, [(middle, (within_s, None))].into());
+    let (first, finished) = killed(bench, &plan, [(middle, (within_s, None))].into());
     mock.orphan();
     let mut bench = mock.open_bench("mock").unwrap();
     let secured = secure(&mut bench);
     assert_eq!(secured.safe, Safe::SafeVerified, "{id}: {:?}", secured.notes);
-    let rest = plan.rest(1, done.steps, done.next_segment, &facts).unwrap().recalling(first.clone(), done.clone());
+    let rest = plan
+        .remaining(1, finished.steps, finished.next_segment, &facts)
+        .unwrap()
+        .with_earlier_measurement(first.clone(), finished.clone());
     let (end, second, _) = steered(&mut bench, &rest, Due::new());
     assert_eq!(end.state, RunState::Completed, "{id}: {:?}", end.reason);
-    let whole = joined(&first, &done, &second, 0.0).unwrap();
+    let whole = joined(&first, &finished, &second, 0.0).unwrap();
     same(&format!("{id}, gone on with"), &procedure.identify(&values, &whole).unwrap(), &unbroken);
 }
 
@@ -232,7 +242,7 @@ fn nulls(place: &str, json: &Value, places: &mut Vec<String>) {
 fn measured_brake(bench: &mut Bench) -> BrakeModel {
     let given = json!({"levels": 6, "loops": 1, "random_turns": 4, "dwell_s": 0.8, "speed_rad_s": 3.0});
     let hysteresis = procedure("brake_hysteresis").unwrap();
-    brake_model(&conduct(bench, hysteresis, given.as_object().unwrap()).unwrap().table).unwrap()
+    brake_model(&run_in_memory(bench, hysteresis, given.as_object().unwrap()).unwrap().table).unwrap()
 }
 
 #[test]
@@ -316,17 +326,17 @@ fn a_campaign_feeds_forward_the_friction_that_it_has_found() {
     let unbroken = identified(&table);
     let value = |name: &str| unbroken.quantity(name).unwrap_or_else(|| panic!("no {name}")).value;
     assert!(value("compensation.ratio_full") < 0.5 && value("compensation.over_full") <= 0.0, "{}", unbroken.summary);
-    let learnt = procedure("identify_joint").unwrap().learn(&table, &facts).unwrap();
-    let waits = plan.lesson.clone().unwrap().to;
-    assert_eq!(learnt.steps.iter().map(|step| step.segment).collect::<Vec<_>>(), waits.clone().collect::<Vec<_>>());
+    let planned = procedure("identify_joint").unwrap().plan_deferred(&table, &facts).unwrap();
+    let waits = plan.deferred.clone().unwrap().to;
+    assert_eq!(planned.steps.iter().map(|step| step.segment).collect::<Vec<_>>(), waits.clone().collect::<Vec<_>>());
     let fed = |table: &RunTable| -> Vec<f64> {
         let (segment, fed_a) = (table.column("segment").unwrap(), table.column("motor_current_setpoint_a").unwrap());
         let largest =
             |of: u32| segment.iter().zip(fed_a).filter(|(s, _)| **s as u32 == of).map(|(_, a)| *a).fold(0.0, f64::max);
-        learnt.steps[1..5].iter().map(|step| largest(step.segment)).collect()
+        planned.steps[1..5].iter().map(|step| largest(step.segment)).collect()
     };
     let tops = |steps: &[Step]| steps.iter().map(Step::top_motor_current_a).collect::<Vec<_>>();
-    let (learnt_a, planned_a) = (tops(&learnt.steps[1..5]), tops(&plan.steps[waits.start as usize + 1..][..4]));
+    let (learnt_a, planned_a) = (tops(&planned.steps[1..5]), tops(&plan.steps[waits.start as usize + 1..][..4]));
     assert!(
         fed(&table).iter().zip(&learnt_a).all(|(fed_a, a)| (fed_a - a).abs() < 1e-3 * a),
         "{:?} {learnt_a:?}",
@@ -336,14 +346,17 @@ fn a_campaign_feeds_forward_the_friction_that_it_has_found() {
 
     // Killed long after the friction part: the continued run uses the friction of the first.
     let (mock, bench, plan, facts) = campaign(&MockSettings::new(Joint::JointB, 4).hiding(&["stribeck"]));
-    let (first, done) = killed(bench, &plan, [(waits.start as usize + 2, (1.0, None))].into());
+    let (first, finished) = killed(bench, &plan, [(waits.start as usize + 2, (1.0, None))].into());
     mock.orphan();
     let mut bench = mock.open_bench("mock").unwrap();
     assert_eq!(secure(&mut bench).safe, Safe::SafeVerified);
-    let rest = plan.rest(1, done.steps, done.next_segment, &facts).unwrap().recalling(first.clone(), done.clone());
+    let rest = plan
+        .remaining(1, finished.steps, finished.next_segment, &facts)
+        .unwrap()
+        .with_earlier_measurement(first.clone(), finished.clone());
     let (end, second, _) = steered(&mut bench, &rest, Due::new());
     assert_eq!(end.state, RunState::Completed, "{:?}", end.reason);
-    let whole = joined(&first, &done, &second, 0.0).unwrap();
+    let whole = joined(&first, &finished, &second, 0.0).unwrap();
     assert_eq!(fed(&whole), fed(&table));
     same("gone on with in compensation", &identified(&whole), &unbroken);
 }
@@ -353,10 +366,10 @@ fn a_campaign_without_identified_friction_feeds_none_forward() {
     let settings = MockSettings::new(Joint::JointA, 1);
     let (_mock, mut bench, mut plan, _) = campaign(&settings);
     // Friction that was never measured.
-    let lesson = plan.lesson.clone().unwrap();
-    plan.steps.retain(|step| !lesson.from.contains(&step.segment));
+    let deferred = plan.deferred.clone().unwrap();
+    plan.steps.retain(|step| !deferred.from.contains(&step.segment));
     let (end, table, _) = steered(&mut bench, &plan, Due::new());
     assert_eq!(end.state, RunState::Completed, "{:?}", end.reason);
     let last = *table.column("segment").unwrap().last().unwrap() as u32;
-    assert!(last < lesson.to.start, "compensation was made");
+    assert!(last < deferred.to.start, "compensation was made");
 }

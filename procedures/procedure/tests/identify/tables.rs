@@ -153,7 +153,7 @@ fn strokes_draw_a_line_through_each_direction() {
 }
 
 #[test]
-fn a_run_that_says_nothing_gets_a_verdict_with_a_cure() {
+fn an_unusable_run_gets_a_verdict_with_a_cure() {
     let mut trace = Trace::new(
         ["time_s", "motor_position_rad", "motor_current_a", "segment"].map(Channel::new).into_iter().collect(),
     );

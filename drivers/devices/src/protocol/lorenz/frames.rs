@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn lost_frames_are_counted_with_the_one_that_nobody_can_vouch_for() {
+    fn lost_frames_are_counted_with_the_unverified_one() {
         let bytes = stream((0..100).chain(107..300));
         let believed = [upto(0..99), upto(107..298)].concat();
         check(&bytes, &believed, &[8]);

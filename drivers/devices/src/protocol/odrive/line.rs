@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_line_is_said() {
+    fn the_fault_of_a_line_is_reported() {
         for (line, why) in [
             (&b"24.087744\r\n"[..], "checksum"),
             (b"24.087745*32\r\n", "*33"),
@@ -69,8 +69,8 @@ mod tests {
             (b"24.087744*\r\n", "*32"),
             (b"\xff*255\r\n", "ASCII"),
         ] {
-            let said = text(line).unwrap_err();
-            assert!(matches!(&said, FaultKind::Garbled { what } if what.contains(why)), "{said}");
+            let fault = text(line).unwrap_err();
+            assert!(matches!(&fault, FaultKind::Garbled { what } if what.contains(why)), "{fault}");
         }
         let mut refusal = b"invalid property".to_vec();
         let sum = checksum(&refusal);

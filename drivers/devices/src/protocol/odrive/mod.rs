@@ -12,7 +12,7 @@ mod requests;
 pub use errors::{ErrorWord, Part, ReadErrors};
 pub use requests::{
     ClearErrors, FeedWatchdog, Feedback, ReadFeedback, ReadInfo, ReadNumber, RequestState, Set, SetTorque, SetVelocity,
-    StandDown,
+    TorqueOff,
 };
 
 /// Axis states (`axis0.current_state`).

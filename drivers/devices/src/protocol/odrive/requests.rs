@@ -235,12 +235,12 @@ impl Command for RequestState {
 ///
 /// Starts with a line end, so that the rest of an incomplete line does not absorb the first command.
 #[derive(Debug, Clone, Copy)]
-pub struct StandDown {
+pub struct TorqueOff {
     /// An incomplete line was sent before: end it first.
     pub after_broken_line: bool,
 }
 
-impl Command for StandDown {
+impl Command for TorqueOff {
     fn encode(&self, out: &mut Vec<u8>) {
         if self.after_broken_line {
             out.push(b'\n');

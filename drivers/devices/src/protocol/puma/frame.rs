@@ -141,8 +141,8 @@ mod tests {
             ([0x5A, 0x06, 0x01, 0xFF, 0xFE, 0x91, 0x1C], "another command"),
             ([0x5A, 0x07, 0x02, 0xFF, 0xFE, 0x60, 0xE0], "another command"),
         ] {
-            let said = READ.decode(&bytes).unwrap_err();
-            assert!(matches!(&said, FaultKind::Garbled { what } if what.contains(why)), "{said}");
+            let fault = READ.decode(&bytes).unwrap_err();
+            assert!(matches!(&fault, FaultKind::Garbled { what } if what.contains(why)), "{fault}");
         }
         let refused = [0x5A, 0x07, 0x81, 0x00, 0x02, 0xD0, 0xB9];
         assert!(matches!(READ.decode(&refused), Err(FaultKind::Refused { what }) if what.contains("arm power is off")));

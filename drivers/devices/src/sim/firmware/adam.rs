@@ -147,7 +147,7 @@ impl Firmware for Adam {
         }
     }
 
-    fn afflict(&mut self, trouble: Trouble) {
+    fn apply_trouble(&mut self, trouble: Trouble) {
         self.trouble = trouble;
     }
 

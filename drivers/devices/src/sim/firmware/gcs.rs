@@ -220,7 +220,7 @@ impl Firmware for Gcs {
         plant.hold_sensor([x, y, z].map(|mm| 1e-3 * mm), [u, v, w].map(f64::to_radians));
     }
 
-    fn afflict(&mut self, trouble: Trouble) {
+    fn apply_trouble(&mut self, trouble: Trouble) {
         self.trouble = trouble;
     }
 

@@ -45,7 +45,7 @@ impl<F: LineFirmware> Firmware for F {
         LineFirmware::step(self, plant);
     }
 
-    fn afflict(&mut self, trouble: Trouble) {
+    fn apply_trouble(&mut self, trouble: Trouble) {
         *self.trouble() = trouble;
     }
 

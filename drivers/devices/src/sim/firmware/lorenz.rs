@@ -310,7 +310,7 @@ impl Firmware for Lorenz {
         self.stream.is_some() || !self.pending.is_empty()
     }
 
-    fn afflict(&mut self, trouble: Trouble) {
+    fn apply_trouble(&mut self, trouble: Trouble) {
         self.trouble = trouble;
         if trouble == Trouble::Exchanged {
             // The stream was started on the original sensor, not on this one.

@@ -54,7 +54,7 @@ pub trait Firmware {
     }
 
     /// Sets the trouble of this instrument. Troubles of the cable and of the plant have no effect here.
-    fn afflict(&mut self, trouble: Trouble);
+    fn apply_trouble(&mut self, trouble: Trouble);
 
     /// The power was interrupted: volatile state is lost.
     fn power_cycle(&mut self, plant: &mut Plant);

@@ -355,7 +355,7 @@ impl Firmware for Odrive {
         plant.inputs.motor_current_a = if self.iq_setpoint.is_finite() { self.iq_setpoint.into() } else { 0.0 };
     }
 
-    fn afflict(&mut self, trouble: Trouble) {
+    fn apply_trouble(&mut self, trouble: Trouble) {
         self.trouble = trouble;
     }
 

@@ -74,8 +74,8 @@ fn answer(drive: &mut Odrive, line: &[u8], plant: &Plant, output: &mut Vec<u8>) 
     let star = uncommented.iter().position(|byte| *byte == b'*').filter(|star| star + 1 < uncommented.len());
     let body = &uncommented[..star.unwrap_or(uncommented.len())];
     if let Some(star) = star {
-        let told = String::from_utf8_lossy(&uncommented[star + 1..]).into_owned();
-        if unsigned(&told).map(|(told, _)| told) != Some(sum(body).into()) {
+        let checksum = String::from_utf8_lossy(&uncommented[star + 1..]).into_owned();
+        if unsigned(&checksum).map(|(checksum, _)| checksum) != Some(sum(body).into()) {
             return;
         }
     }

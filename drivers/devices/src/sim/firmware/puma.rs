@@ -166,7 +166,7 @@ impl Firmware for Puma {
         plant.inputs.holding_brake = !on;
     }
 
-    fn afflict(&mut self, trouble: Trouble) {
+    fn apply_trouble(&mut self, trouble: Trouble) {
         self.trouble = trouble;
     }
 

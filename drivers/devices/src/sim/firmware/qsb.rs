@@ -281,7 +281,7 @@ impl Firmware for Qsb {
         !self.streams.is_empty()
     }
 
-    fn afflict(&mut self, trouble: Trouble) {
+    fn apply_trouble(&mut self, trouble: Trouble) {
         self.trouble = trouble;
     }
 

@@ -1,7 +1,8 @@
 //! Identification of the model from a run of sweeps, validated on the random history.
 
 use super::super::demagnetise::rated_nm;
-use super::{Everett, History, Part};
+use super::Part;
+use crate::brake_model::{BrakeModel, CurrentHistory};
 use crate::findings::{Hold, Mean, Unusable, holds, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
@@ -17,9 +18,9 @@ struct Sweep {
     points: Vec<(f64, f64)>,
 }
 
-const LITTLE: Unusable = Unusable::TooLittle("The run ended before the last reversal curve.", "Repeat the run.");
+const LITTLE: Unusable = Unusable::InsufficientData("The run ended before the last reversal curve.", "Repeat the run.");
 
-pub(super) fn model(run: &RunTable) -> Result<Everett, Unusable> {
+pub(super) fn model(run: &RunTable) -> Result<BrakeModel, Unusable> {
     model_of(&sweeps(run))
 }
 
@@ -27,27 +28,27 @@ fn part(sweeps: &[Sweep], part: Part) -> impl Iterator<Item = &Sweep> {
     sweeps.iter().filter(move |sweep| sweep.part == part as i64)
 }
 
-fn model_of(sweeps: &[Sweep]) -> Result<Everett, Unusable> {
+fn model_of(sweeps: &[Sweep]) -> Result<BrakeModel, Unusable> {
     let major: Vec<&Sweep> = part(sweeps, Part::Major).collect();
     let first = major.first().ok_or(LITTLE)?;
     let top = first.points.iter().map(|p| p.0).fold(0.0, f64::max);
     let (grid, curves) = reversals(&major, part(sweeps, Part::Reversal), top).ok_or(LITTLE)?;
-    Everett::from_reversals(&grid, &curves).ok_or(LITTLE)
+    BrakeModel::from_reversals(&grid, &curves).ok_or(LITTLE)
 }
 
 pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let sweeps = sweeps(run);
-    let everett = model_of(&sweeps)?;
-    let top = everett.top_a();
-    let rated = rated_nm(run).unwrap_or_else(|| everett.torque_nm(&History::default().after(top)));
-    let validation = Validation::of(&sweeps, &everett).ok_or(LITTLE)?;
+    let model = model_of(&sweeps)?;
+    let top = model.top_a();
+    let rated = rated_nm(run).unwrap_or_else(|| model.torque_nm(&CurrentHistory::default().after(top)));
+    let validation = Validation::of(&sweeps, &model).ok_or(LITTLE)?;
     let (worst, rms) = validation.errors(rated);
     let middle = 0.5 * top;
-    let rising = everett.torque_nm(&History::default().after(middle));
-    let falling = everett.torque_nm(&History::default().after(top).after(middle));
+    let rising = model.torque_nm(&CurrentHistory::default().after(middle));
+    let falling = model.torque_nm(&CurrentHistory::default().after(top).after(middle));
     let major = part(&sweeps, Part::Major);
     let full: Vec<f64> = major.filter_map(|s| s.points.iter().find(|p| p.0 == top).map(|p| p.1)).collect();
-    let currents = everett.currents() as f64;
+    let currents = model.currents() as f64;
     let quantities = vec![
         quantity(
             ["model_currents", "N", "Currents of the Preisach model (Everett form), including 0", ""],
@@ -56,7 +57,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         ),
         quantity(["torque_top", "T_max", "Torque at maximum current", "Nm"], mean(&full), spread(&full)),
         quantity(["width", "ΔT", "Loop width at half of the maximum current", "Nm"], falling - rising, None),
-        quantity(["drag", "T₀", "Torque without current", "Nm"], everett.torque_nm(&History::default()), None),
+        quantity(["drag", "T₀", "Torque without current", "Nm"], model.torque_nm(&CurrentHistory::default()), None),
         quantity(["error_max", "e_max", "Maximum error, validation history, fraction of rated", ""], worst, None),
         quantity(["error_rms", "e_rms", "RMS error, validation history, fraction of rated", ""], rms, None),
         quantity(
@@ -83,7 +84,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         advice: (!good)
             .then(|| "Increase levels or dwell_s. The model error must be below 1 % of the rated torque.".into()),
         quantities,
-        figures: [loops(&sweeps, &everett), vec![judgement(&validation.torques_nm)]].concat(),
+        figures: [loops(&sweeps, &model), vec![judgement(&validation.torques_nm)]].concat(),
         ..Identification::default()
     })
 }
@@ -98,16 +99,16 @@ struct Validation {
 
 impl Validation {
     /// `None` without such sweeps.
-    fn of(sweeps: &[Sweep], everett: &Everett) -> Option<Self> {
+    fn of(sweeps: &[Sweep], model: &BrakeModel) -> Option<Self> {
         let (mut torques_nm, mut current_error_a) = (Vec::new(), 0.0_f64);
         for sweep in part(sweeps, Part::Random).chain(part(sweeps, Part::Minor)) {
-            let mut history = History::default();
+            let mut history = CurrentHistory::default();
             for (current, torque) in &sweep.points {
-                if let Some(found) = everett.current_a(&history, *torque) {
+                if let Some(found) = model.current_a(&history, *torque) {
                     current_error_a = current_error_a.max((found - current).abs());
                 }
                 history.go(*current);
-                torques_nm.push((*torque, everett.torque_nm(&history)));
+                torques_nm.push((*torque, model.torque_nm(&history)));
             }
         }
         (!torques_nm.is_empty()).then_some(Self { torques_nm, current_error_a })
@@ -184,7 +185,7 @@ const PLACES: u32 = 12;
 
 /// Major loop and reversal curves, from which the model is built, and the model's prediction for the minor loops and
 /// the random history.
-fn loops(sweeps: &[Sweep], everett: &Everett) -> Vec<Figure> {
+fn loops(sweeps: &[Sweep], model: &BrakeModel) -> Vec<Figure> {
     let measured = |label: &str, wanted: Part, mark: Mark| -> Vec<Series> {
         let series = |sweep: &Sweep| {
             let (x, y) = sweep.points.iter().copied().unzip();
@@ -193,7 +194,7 @@ fn loops(sweeps: &[Sweep], everett: &Everett) -> Vec<Figure> {
         part(sweeps, wanted).map(series).collect()
     };
     let modelled = |label: &str, wanted: Part| -> Vec<Series> {
-        part(sweeps, wanted).map(|sweep| course(label, sweep, everett)).collect()
+        part(sweeps, wanted).map(|sweep| course(label, sweep, model)).collect()
     };
     let figure = |name: &str, title: &str, series: Vec<Vec<Series>>| Figure {
         name: name.into(),
@@ -226,15 +227,15 @@ fn loops(sweeps: &[Sweep], everett: &Everett) -> Vec<Figure> {
 }
 
 /// Prediction of the model along a sweep, including points between its currents.
-fn course(label: &str, sweep: &Sweep, everett: &Everett) -> Series {
-    let mut history = History::default();
-    let (mut x, mut y) = (vec![0.0], vec![everett.torque_nm(&history)]);
+fn course(label: &str, sweep: &Sweep, model: &BrakeModel) -> Series {
+    let mut history = CurrentHistory::default();
+    let (mut x, mut y) = (vec![0.0], vec![model.torque_nm(&history)]);
     let mut from_a = 0.0;
     for (to_a, _) in &sweep.points {
         for place in 1..=PLACES {
             let at_a = from_a + (to_a - from_a) * (f64::from(place) / f64::from(PLACES));
             x.push(at_a);
-            y.push(everett.torque_nm(&history.after(at_a)));
+            y.push(model.torque_nm(&history.after(at_a)));
         }
         history.go(*to_a);
         from_a = *to_a;

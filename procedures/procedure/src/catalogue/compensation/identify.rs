@@ -4,7 +4,7 @@
 //! trajectory. Therefore the first period is omitted, and the reference begins where the motion is closest to rest,
 //! at the mean of the error.
 
-use super::Way;
+use super::Method;
 use crate::findings::{Unusable, quantity};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
@@ -25,7 +25,7 @@ pub(super) const FIGURES: [[&str; 4]; 5] = [
 
 /// One compensation method with its measured results.
 struct Followed {
-    way: Way,
+    method: Method,
     time_s: Vec<f64>,
     /// θ_d relative to the position of the first row (rad).
     reference_rad: Vec<f64>,
@@ -44,25 +44,25 @@ impl Followed {
 }
 
 pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
-    let followed: Vec<Followed> = Way::ALL.into_iter().filter_map(|way| follow(period_s, run, way)).collect();
-    if followed.len() < Way::ALL.len() {
-        return Err(Unusable::TooLittle("Not all compensation methods were completed.", "Repeat the run."));
+    let followed: Vec<Followed> = Method::ALL.into_iter().filter_map(|method| follow(period_s, run, method)).collect();
+    if followed.len() < Method::ALL.len() {
+        return Err(Unusable::InsufficientData("Not all compensation methods were completed.", "Repeat the run."));
     }
     let none = followed[0].rho()[0];
     let mut quantities = Vec::new();
     for one in &followed {
-        let [suffix, way] = one.way.words();
+        let [suffix, title_of_method] = one.method.words();
         let [rho_1, rho_2, rho_max] = one.rho();
         for ([name, symbol, title, unit], value) in
             FIGURES.into_iter().zip([rho_1, rho_2, rho_max, rho_1 / none, one.over_nm])
         {
-            let words = [&format!("{name}_{suffix}"), symbol, &format!("{title}, {way}"), unit];
+            let words = [&format!("{name}_{suffix}"), symbol, &format!("{title}, {title_of_method}"), unit];
             quantities.push(quantity(words, value, None));
         }
     }
     let best = followed.iter().min_by(|a, b| a.rho()[0].total_cmp(&b.rho()[0]));
-    let active: Vec<&str> = followed.iter().filter(|f| f.over_nm > 0.0).map(|f| f.way.words()[1]).collect();
-    let (title, gain) = best.map_or(("none", 0.0), |b| (b.way.words()[1], 100.0 * (1.0 - b.rho()[0] / none)));
+    let active: Vec<&str> = followed.iter().filter(|f| f.over_nm > 0.0).map(|f| f.method.words()[1]).collect();
+    let (title, gain) = best.map_or(("none", 0.0), |b| (b.method.words()[1], 100.0 * (1.0 - b.rho()[0] / none)));
     let summary = match &active[..] {
         [] => format!(
             "Best method: {title}. It reduces the sum of absolute errors by {gain:.0} %. No method over-compensates."
@@ -84,7 +84,7 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
 }
 
 /// The reference is the commanded velocity: each set-point holds until the next one.
-fn follow(period_s: f64, run: &RunTable, way: Way) -> Option<Followed> {
+fn follow(period_s: f64, run: &RunTable, method: Method) -> Option<Followed> {
     let column = |name: &str| run.column(name);
     let (time, setpoint) = (column("time_s")?, column("velocity_setpoint_rad_s")?);
     let (repeat, segment, motor) = (column("repeat")?, column("segment")?, column("motor_position_rad")?);
@@ -92,7 +92,7 @@ fn follow(period_s: f64, run: &RunTable, way: Way) -> Option<Followed> {
     let gear = run.meta().gear_ratio?;
     let km = run.meta().torque_constant_nm_per_a?;
     // Only the last attempt counts, if a pause caused a repetition.
-    let last = (0..run.len()).rev().find(|i| repeat[*i] == way as u32 as f64)?;
+    let last = (0..run.len()).rev().find(|i| repeat[*i] == method as u32 as f64)?;
     let first = (0..=last).rev().take_while(|i| segment[*i] == segment[last]).last()?;
     let first = (first..last).find(|i| time[*i] - time[first] >= period_s)?;
     let rows = first..last + 1;
@@ -121,11 +121,11 @@ fn follow(period_s: f64, run: &RunTable, way: Way) -> Option<Followed> {
     let doubt_a = 4.0 * noise_a / (window as f64).sqrt();
     let over_a = all.chunks_exact(window).filter(one_way).map(over).fold(f64::NEG_INFINITY, f64::max);
     Some(Followed {
-        way,
+        method,
         time_s: rows.map(|i| time[i] - time[first]).collect(),
         reference_rad,
         error_rad,
-        over_nm: if way == Way::None || over_a.is_infinite() { 0.0 } else { km * (over_a - doubt_a) },
+        over_nm: if method == Method::None || over_a.is_infinite() { 0.0 } else { km * (over_a - doubt_a) },
     })
 }
 
@@ -133,7 +133,7 @@ fn errors(followed: &[Followed]) -> Figure {
     let series = followed.iter().map(|one| {
         let every = one.time_s.len().div_ceil(SHOWN);
         let pick = |values: &[f64]| values.iter().copied().step_by(every).collect();
-        Series::new(one.way.words()[1], Mark::Line, pick(&one.time_s), pick(&one.error_rad))
+        Series::new(one.method.words()[1], Mark::Line, pick(&one.time_s), pick(&one.error_rad))
     });
     Figure {
         name: "error_over_time".into(),
@@ -158,7 +158,7 @@ fn bars(followed: &[Followed]) -> Figure {
         name: "ratio".into(),
         title: "Errors relative to no compensation".into(),
         form: Form::Cartesian,
-        x: Axis::names("compensation", followed.iter().map(|one| one.way.words()[1])),
+        x: Axis::names("compensation", followed.iter().map(|one| one.method.words()[1])),
         y: Axis::of("fraction of uncompensated", ""),
         series: vec![series(0), series(1), series(2)],
     }
@@ -178,7 +178,7 @@ fn trajectories(followed: &[Followed], period_s: f64) -> Figure {
     };
     let mut series = vec![shown("reference", none, &|i| none.reference_rad[i])];
     for one in [Some(none), followed.iter().min_by(by_error)].into_iter().flatten() {
-        let label = format!("{} (error × {larger})", one.way.words()[1]);
+        let label = format!("{} (error × {larger})", one.method.words()[1]);
         series.push(shown(&label, one, &|i| one.reference_rad[i] - larger * one.error_rad[i]));
     }
     Figure {

@@ -1,18 +1,19 @@
 //! Mounting tolerance of the sensor (table 4.4 of the thesis), and its best position.
 
-use super::edges::{Found, WAYS, Way, found};
-use super::say::{quantity, too_little};
+use super::edges::{DIRECTIONS, Direction, Found, found};
+use super::quantities::{insufficient_data, quantity};
 use super::sweeps::sweeps;
 use super::tolerance::{self, Judgement};
 use super::{ACCELERATION, EncoderLinearity, both_ways, counts, meta, radial, sample_rate, stage};
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
 use crate::identification::{Axis, Figure, FollowUp, Form, Identification, Mark, Quantity, Series};
 use crate::parameter::{Parameter, Values};
-use crate::place::{Edge, Place};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
 use crate::profile::Profile;
+use crate::stage_pose::{Edge, StagePose};
 use jointbench_instrument::roles::Pose;
 use jointbench_instrument::{Kind, RunTable};
 use std::f64::consts::TAU;
@@ -75,29 +76,29 @@ impl Procedure for EncoderAlignment {
         stage(bench)?;
         let (rate_hz, speed_rad_s) = (values.number("sample_rate_hz"), values.number("speed_rad_s"));
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
-        for way in &WAYS {
+        for direction in &DIRECTIONS {
             let edge = Edge {
                 from: Pose::default(),
-                to: way.pose(values.number(way.reach)),
+                to: direction.pose(values.number(direction.reach)),
                 strides: STRIDES,
                 halvings: values.count("halvings"),
                 dwell_s: TURNS_WATCHED * TAU / speed_rad_s,
             };
             let longest_s = f64::from(edge.tries()) * (edge.dwell_s + MOVE_S);
             let velocity = Profile::plateau(speed_rad_s, legs.acceleration_rad_s2, longest_s);
-            legs.push(way.title.into(), velocity, Profile::constant(0.0));
+            legs.push(direction.title.into(), velocity, Profile::constant(0.0));
             if let Some(step) = legs.steps.last_mut() {
-                step.place = Place::Edge(edge);
+                step.place = StagePose::Edge(edge);
             }
         }
         let (reach_m, positions) = (values.number("map_reach_m"), values.count("map_positions"));
         legs.repeat = 1;
         for position in 0..positions {
             let shift_m = reach_m * (2.0 * f64::from(position) / f64::from(positions - 1) - 1.0);
-            both_ways(&mut legs, speed_rad_s, values.number("map_turns"), Place::At(radial(shift_m)));
+            both_ways(&mut legs, speed_rad_s, values.number("map_turns"), StagePose::At(radial(shift_m)));
         }
         // The sensor is returned to its nominal position after the map.
-        both_ways(&mut legs, speed_rad_s, 1.0, Place::At(Pose::default()));
+        both_ways(&mut legs, speed_rad_s, 1.0, StagePose::At(Pose::default()));
         Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
     }
 
@@ -112,15 +113,17 @@ impl Procedure for EncoderAlignment {
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
-        let found: Vec<(&Way, Found)> = WAYS.iter().filter_map(|way| Some((way, found(run, way)?))).collect();
+        let found: Vec<(&Direction, Found)> =
+            DIRECTIONS.iter().filter_map(|direction| Some((direction, found(run, direction)?))).collect();
         if found.is_empty() {
             let what = "The periods were not consistent at any position away from the stage zero.";
-            return too_little(what, "Align the stage zero with the sensor position, and let the run finish.");
+            return insufficient_data(what, "Align the stage zero with the sensor position, and let the run finish.");
         }
-        let mut quantities: Vec<Quantity> = found.iter().filter_map(|(way, found)| way.quantity(found)).collect();
+        let mut quantities: Vec<Quantity> =
+            found.iter().filter_map(|(direction, found)| direction.quantity(found)).collect();
         let map = Map::of(run);
         let judged = Judgement::of(&found);
-        let mut summary = format!("{} {}", judged.said, description(&found));
+        let mut summary = format!("{} {}", judged.text, description(&found));
         if let Some(best) = map.as_ref().and_then(Map::best) {
             summary.push_str(&format!(
                 " The eccentricity error has its minimum of {:.0} µrad at a radial shift of {:.3} mm.",
@@ -157,9 +160,11 @@ impl Procedure for EncoderAlignment {
     }
 }
 
-fn description(found: &[(&Way, Found)]) -> String {
+fn description(found: &[(&Direction, Found)]) -> String {
     let (lost, kept): (Vec<_>, Vec<_>) = found.iter().partition(|(_, found)| found.bad.is_some());
-    let names = |ways: &[&(&Way, Found)]| ways.iter().map(|(way, _)| way.title).collect::<Vec<_>>().join(", ");
+    let names = |directions: &[&(&Direction, Found)]| {
+        directions.iter().map(|(direction, _)| direction.title).collect::<Vec<_>>().join(", ")
+    };
     match (lost.len(), kept.len()) {
         (0, _) => "Period count is not lost within the travel in any direction.".into(),
         (edges, 0) => format!("Period count is lost in all {edges} directions."),

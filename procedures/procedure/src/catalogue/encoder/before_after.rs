@@ -1,6 +1,6 @@
 //! The error over the turn before and after the look-up table, as figures.
 
-use super::say::histogram;
+use super::quantities::histogram;
 use super::spectrum::{ORDERS, PolePairs, Waves};
 use super::sweeps::Sweep;
 use super::table::{Table, means};
@@ -17,12 +17,12 @@ pub type Left<'a> = &'a dyn Fn(&Sweep, usize) -> f64;
 pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [(&str, Left); 2]) -> Vec<Figure> {
     let slow_rad_s = sweeps.iter().map(|sweep| sweep.speed_rad_s.abs()).fold(f64::INFINITY, f64::min);
     let slow: Vec<&Sweep> = sweeps.iter().filter(|sweep| sweep.speed_rad_s.abs() < 1.1 * slow_rad_s).collect();
-    let ways = |closed: bool| {
-        let way = |(stage, left): (&str, Left), way: &str, sign: f64| {
-            let way_only = slow.iter().copied().filter(|sweep| sweep.speed_rad_s * sign > 0.0);
-            around(&format!("{way}, {stage}"), way_only, left, closed)
+    let both_directions = |closed: bool| {
+        let one = |(stage, left): (&str, Left), direction: &str, sign: f64| {
+            let sweeps = slow.iter().copied().filter(|sweep| sweep.speed_rad_s * sign > 0.0);
+            around(&format!("{direction}, {stage}"), sweeps, left, closed)
         };
-        stages.map(|stage| [way(stage, "CCW", 1.0), way(stage, "CW", -1.0)]).concat()
+        stages.map(|stage| [one(stage, "CCW", 1.0), one(stage, "CW", -1.0)]).concat()
     };
     let figure = |name: &str, title: String, x: Axis, y: Axis, series: Vec<Series>| Figure {
         name: name.into(),
@@ -34,7 +34,7 @@ pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [(&st
     };
     let error = || Axis::of("Test − reference", "rad");
     let title = |what: &str| format!("{what} at {slow_rad_s:.0} rad/s, CCW and CW");
-    let mut over_angle = ways(false);
+    let mut over_angle = both_directions(false);
     over_angle.push(table.series("look-up table"));
     let all = |left: Left| -> Vec<f64> {
         sweeps.iter().flat_map(|sweep| (0..sweep.error_rad.len()).map(move |i| left(sweep, i))).collect()
@@ -42,7 +42,7 @@ pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [(&st
     let mut figures = vec![
         Figure {
             form: Form::Polar,
-            ..figure("polar", title("Error over the turn"), Axis::of("Angle", "rad"), error(), ways(true))
+            ..figure("polar", title("Error over the turn"), Axis::of("Angle", "rad"), error(), both_directions(true))
         },
         figure("shape", title("Error over angle"), Axis::of("Angle", "rad"), error(), over_angle),
     ];

@@ -1,16 +1,17 @@
 //! Delay of the encoder under test: its difference to the reference over the speed (eq. 4.4 and 4.5, tables 4.2 and
 //! 4.3 of the thesis).
 
-use super::say::{quantity, too_little};
+use super::quantities::{insufficient_data, quantity};
 use super::sweeps::sweeps;
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::place::Place;
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
+use crate::stage_pose::StagePose;
 use jointbench_instrument::{Kind, RunTable};
 
 pub struct EncoderDelay;
@@ -47,7 +48,7 @@ impl Procedure for EncoderDelay {
         }
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the zero of the encoders is lost when an instrument is switched off")
     }
 
@@ -61,7 +62,7 @@ impl Procedure for EncoderDelay {
             for speed in 1..=speeds {
                 let speed_rad_s = values.number("top_speed_rad_s") * f64::from(speed) / f64::from(speeds);
                 let turns = (values.number("dwell_s") * speed_rad_s / std::f64::consts::TAU).max(2.0);
-                both_ways(&mut legs, speed_rad_s, turns, Place::AsLeft);
+                both_ways(&mut legs, speed_rad_s, turns, StagePose::AsLeft);
             }
         }
         Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
@@ -80,7 +81,7 @@ impl Procedure for EncoderDelay {
         let Some(solved) = solve(&rows, &means) else {
             let what = "Delay and offset cannot be distinguished, because fewer than two speeds were measured in both \
                         directions.";
-            return too_little(what, "Let the run finish, with at least two speeds.");
+            return insufficient_data(what, "Let the run finish, with at least two speeds.");
         };
         let [offset_rad, hysteresis_rad, delay_s] = solved.values;
         let mut quantities = vec![

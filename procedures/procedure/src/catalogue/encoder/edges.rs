@@ -1,7 +1,7 @@
 //! The directions along the axes of the stage, and the limits of consistent periods.
 
-use super::say::quantity;
-use crate::encoder_columns::POSE;
+use super::quantities::quantity;
+use crate::column_names::POSE;
 use crate::identification::Quantity;
 use jointbench_instrument::RunTable;
 use jointbench_instrument::roles::Pose;
@@ -9,7 +9,7 @@ use jointbench_model::words;
 
 /// One axis of the stage in one direction.
 #[derive(Debug)]
-pub struct Way {
+pub struct Direction {
     /// Index among the shifts, then the rotations.
     axis: usize,
     sign: f64,
@@ -23,28 +23,28 @@ pub struct Way {
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-const fn way(
+const fn direction(
     axis: usize,
     sign: f64,
     reach: &'static str,
     name: &'static str,
     title: &'static str,
     manufacturing: f64,
-) -> Way {
-    Way { axis, sign, reach, name, title, manufacturing }
+) -> Direction {
+    Direction { axis, sign, reach, name, title, manufacturing }
 }
 
 /// The axial shift towards the ring is omitted, because the ring is in the way.
-pub const WAYS: [Way; 9] = [
-    way(0, -1.0, "radial_reach_m", "radial_negative", "Radial shift −", 0.15e-3),
-    way(0, 1.0, "radial_reach_m", "radial_positive", "Radial shift +", 0.15e-3),
-    way(2, 1.0, "axial_reach_m", "axial_positive", "Axial shift +", 0.15e-3),
-    way(5, -1.0, "rotation_reach_rad", "rotation_negative", "Rotation −", 0.5 * DEGREE),
-    way(5, 1.0, "rotation_reach_rad", "rotation_positive", "Rotation +", 0.5 * DEGREE),
-    way(3, -1.0, "tilt_reach_rad", "tilt_negative", "Tilt −", 0.5 * DEGREE),
-    way(3, 1.0, "tilt_reach_rad", "tilt_positive", "Tilt +", 0.5 * DEGREE),
-    way(1, -1.0, "vertical_reach_m", "vertical_negative", "Vertical shift −", 0.5e-3),
-    way(1, 1.0, "vertical_reach_m", "vertical_positive", "Vertical shift +", 0.5e-3),
+pub const DIRECTIONS: [Direction; 9] = [
+    direction(0, -1.0, "radial_reach_m", "radial_negative", "Radial shift −", 0.15e-3),
+    direction(0, 1.0, "radial_reach_m", "radial_positive", "Radial shift +", 0.15e-3),
+    direction(2, 1.0, "axial_reach_m", "axial_positive", "Axial shift +", 0.15e-3),
+    direction(5, -1.0, "rotation_reach_rad", "rotation_negative", "Rotation −", 0.5 * DEGREE),
+    direction(5, 1.0, "rotation_reach_rad", "rotation_positive", "Rotation +", 0.5 * DEGREE),
+    direction(3, -1.0, "tilt_reach_rad", "tilt_negative", "Tilt −", 0.5 * DEGREE),
+    direction(3, 1.0, "tilt_reach_rad", "tilt_positive", "Tilt +", 0.5 * DEGREE),
+    direction(1, -1.0, "vertical_reach_m", "vertical_negative", "Vertical shift −", 0.5e-3),
+    direction(1, 1.0, "vertical_reach_m", "vertical_positive", "Vertical shift +", 0.5e-3),
 ];
 
 /// The farthest consistent position, and the nearest inconsistent one.
@@ -54,7 +54,7 @@ pub struct Found {
     pub bad: Option<f64>,
 }
 
-impl Way {
+impl Direction {
     pub fn pose(&self, reach: f64) -> Pose {
         let mut pose = Pose::default();
         let axes = pose.shift_m.iter_mut().chain(&mut pose.rotation_rad);
@@ -98,20 +98,19 @@ impl Way {
 }
 
 /// `None` if the run did not search this direction, or was inconsistent from the start.
-pub fn found(run: &RunTable, way: &Way) -> Option<Found> {
+pub fn found(run: &RunTable, direction: &Direction) -> Option<Found> {
     let consistent = run.column("encoder_consistent")?;
     let poses: Vec<&[f64]> = POSE.iter().map(|name| run.column(name)).collect::<Option<_>>()?;
     let repeat = run.column("repeat")?;
     let mut found: Option<Found> = None;
     for row in (0..run.len()).filter(|row| repeat[*row] == 0.0) {
-        let on_the_way = poses
-            .iter()
-            .enumerate()
-            .all(|(axis, pose)| if axis == way.axis { way.sign * pose[row] > 0.0 } else { pose[row] == 0.0 });
+        let on_the_way = poses.iter().enumerate().all(|(axis, pose)| {
+            if axis == direction.axis { direction.sign * pose[row] > 0.0 } else { pose[row] == 0.0 }
+        });
         if !on_the_way {
             continue;
         }
-        let at = way.sign * poses[way.axis][row];
+        let at = direction.sign * poses[direction.axis][row];
         let Found { good, bad } = found.get_or_insert(Found { good: 0.0, bad: None });
         if consistent[row] == 0.0 {
             *bad = Some(bad.map_or(at, |bad: f64| bad.min(at)));
@@ -121,13 +120,14 @@ pub fn found(run: &RunTable, way: &Way) -> Option<Found> {
     }
     // A position at which the periods were inconsistent for a part of the turn counts as inconsistent.
     let found = found?;
-    let good =
-        found.bad.map_or(found.good, |bad| if found.good < bad { found.good } else { last_before(run, way, bad) });
-    Some(Found { good: way.sign * good, bad: found.bad.map(|bad| way.sign * bad) })
+    let good = found
+        .bad
+        .map_or(found.good, |bad| if found.good < bad { found.good } else { last_before(run, direction, bad) });
+    Some(Found { good: direction.sign * good, bad: found.bad.map(|bad| direction.sign * bad) })
 }
 
 /// The farthest position before `bad`.
-fn last_before(run: &RunTable, way: &Way, bad: f64) -> f64 {
-    let axis = run.column(POSE[way.axis]).unwrap_or_default();
-    axis.iter().map(|at| way.sign * at).filter(|at| *at < bad).fold(0.0, f64::max)
+fn last_before(run: &RunTable, direction: &Direction, bad: f64) -> f64 {
+    let axis = run.column(POSE[direction.axis]).unwrap_or_default();
+    axis.iter().map(|at| direction.sign * at).filter(|at| *at < bad).fold(0.0, f64::max)
 }

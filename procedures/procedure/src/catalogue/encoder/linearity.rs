@@ -1,18 +1,19 @@
 //! Shape of the error over the turn, the look-up table for it, and the remaining precision (figs 4.4 to 4.11).
 
 use super::before_after::{Left, figures};
-use super::say::{quantity, too_little};
+use super::quantities::{insufficient_data, quantity};
 use super::spectrum::PolePairs;
 use super::sweeps::{Sweep, sweeps};
 use super::table::{Class, Table, Terms, means};
 use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
 use crate::identification::{Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::place::Place;
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
+use crate::stage_pose::StagePose;
 use jointbench_instrument::{Kind, RunTable};
 use std::f64::consts::TAU;
 
@@ -54,7 +55,7 @@ impl Procedure for EncoderLinearity {
         }
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the zero of the encoders is lost when an instrument is switched off")
     }
 
@@ -64,10 +65,10 @@ impl Procedure for EncoderLinearity {
         let shift_m = values.number("radial_shift_m");
         // With a stage, the position 0 is also commanded, because an earlier run may have moved the sensor.
         let place = if shift_m == 0.0 && !bench.has_stage {
-            Place::AsLeft
+            StagePose::AsLeft
         } else {
             stage(bench)?;
-            Place::At(radial(shift_m))
+            StagePose::At(radial(shift_m))
         };
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
         for repeat in 0..values.count("repeats") {
@@ -95,14 +96,17 @@ impl Procedure for EncoderLinearity {
         if known.len() < 4 || unseen.len() < 2 {
             let what =
                 "The run lacks two speeds in both directions for the estimation, or further turns for the validation.";
-            return too_little(what, "Let the run finish, with at least two repeats.");
+            return insufficient_data(what, "Let the run finish, with at least two repeats.");
         }
         let Some(terms) = Terms::of(&known) else {
-            return too_little("Offset, hysteresis and delay cannot be distinguished.", "Choose two different speeds.");
+            return insufficient_data(
+                "Offset, hysteresis and delay cannot be distinguished.",
+                "Choose two different speeds.",
+            );
         };
         let Some(table) = Table::of(&known, &terms, values.count("table_size") as usize) else {
             let what = "More than 10 % of the table entries contain no data.";
-            return too_little(what, "Choose more turns, a higher sample rate or a smaller table.");
+            return insufficient_data(what, "Choose more turns, a higher sample rate or a smaller table.");
         };
         let before = |sweep: &Sweep, i: usize| sweep.error_rad[i] - terms.offset_rad;
         let direct = |sweep: &Sweep, i: usize| before(sweep, i) - table.at(sweep.angle_rad[i] + sweep.error_rad[i]);
@@ -173,7 +177,7 @@ fn summary([before, table, velocity, direction]: [f64; 4], entries: usize, poles
         "Usable resolution: {before:.1} bits uncompensated, {table:.1} with a look-up table of {entries} entries, \
          {velocity:.1} with the velocity term added, {direction:.1} with the direction term added. {} {}",
         what_it_takes(velocity, direction),
-        poles.said()
+        poles.text()
     )
 }
 

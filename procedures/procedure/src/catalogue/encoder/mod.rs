@@ -6,7 +6,7 @@ mod delay;
 mod edges;
 mod linearity;
 mod offset;
-mod say;
+mod quantities;
 mod spectrum;
 mod startup;
 mod sweeps;
@@ -20,9 +20,10 @@ pub(super) use offset::EncoderOffset;
 pub(super) use startup::EncoderStartup;
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
-use crate::place::Place;
-use crate::plan::{BenchFacts, PlanFault};
+use crate::bench_facts::BenchFacts;
+use crate::plan::PlanFault;
 use crate::profile::Profile;
+use crate::stage_pose::StagePose;
 use jointbench_instrument::roles::Pose;
 use jointbench_instrument::{Kind, Meta};
 use std::f64::consts::TAU;
@@ -60,7 +61,7 @@ fn meta(counts: [f64; 2], rate_hz: f64) -> Meta {
 }
 
 /// One speed, forwards and backwards, for whole turns each.
-fn both_ways(legs: &mut Legs, speed_rad_s: f64, turns: f64, place: Place) {
+fn both_ways(legs: &mut Legs, speed_rad_s: f64, turns: f64, place: StagePose) {
     for speed_rad_s in [speed_rad_s, -speed_rad_s] {
         let dwell_s = SETTLE_S + turns * TAU / speed_rad_s.abs();
         let velocity = Profile::plateau(speed_rad_s, legs.acceleration_rad_s2, dwell_s);

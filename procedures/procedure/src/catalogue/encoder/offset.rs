@@ -1,15 +1,16 @@
 //! Zero offset of the encoder under test relative to the reference (eq. 4.1 to 4.3 of the thesis).
 
-use super::say::{histogram, quantity, scatter, too_little};
+use super::quantities::{histogram, insufficient_data, quantity, scatter};
 use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::t95;
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::place::Place;
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{Plan, PlanFault};
+use crate::stage_pose::StagePose;
 use jointbench_instrument::{Kind, RunTable};
 use std::f64::consts::TAU;
 
@@ -45,7 +46,7 @@ impl Procedure for EncoderOffset {
         }
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the zero of the encoders is lost when an instrument is switched off")
     }
 
@@ -55,7 +56,7 @@ impl Procedure for EncoderOffset {
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
         for repeat in 0..values.count("repeats") {
             legs.repeat = repeat;
-            both_ways(&mut legs, values.number("speed_rad_s"), values.number("turns"), Place::AsLeft);
+            both_ways(&mut legs, values.number("speed_rad_s"), values.number("turns"), StagePose::AsLeft);
         }
         Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
     }
@@ -74,7 +75,7 @@ impl Procedure for EncoderOffset {
             .collect();
         if pairs.len() < 2 {
             let what = "The scatter is unknown, because fewer than two turns in each direction were measured.";
-            return too_little(what, "Let the run finish, with at least two repeats.");
+            return insufficient_data(what, "Let the run finish, with at least two repeats.");
         }
         let (offset_rad, offset_reach) = mean(pairs.iter().map(|[up, down]| 0.5 * (up + down)));
         let (apart_rad, apart_reach) = mean(pairs.iter().map(|[up, down]| up - down));

@@ -38,7 +38,7 @@ impl PolePairs {
         Some(Self { order, amplitude_rad, or })
     }
 
-    pub fn said(&self) -> String {
+    pub fn text(&self) -> String {
         match self.or {
             None => format!("{} pole pairs detected.", self.order),
             Some(or) => format!("Number of pole pairs uncertain: {} or {or}.", self.order),
@@ -112,7 +112,7 @@ mod tests {
             let sweeps = sweeps(other_rad);
             let table = Table::of(&sweeps, &Terms::of(&sweeps).unwrap(), 1024).unwrap();
             let poles = PolePairs::of(&table).unwrap();
-            assert_eq!((poles.order, poles.or), (64, or), "{}", poles.said());
+            assert_eq!((poles.order, poles.or), (64, or), "{}", poles.text());
         }
     }
 

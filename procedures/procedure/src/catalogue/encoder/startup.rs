@@ -1,16 +1,17 @@
 //! Change of the zero of the encoder under test between power-ups (start-up initialisation error).
 
 use super::offset::step_rad;
-use super::say::{histogram, quantity, too_little};
+use super::quantities::{histogram, insufficient_data, quantity};
 use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::{Mean, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::place::Place;
-use crate::plan::{Before, BenchFacts, Plan, PlanFault};
+use crate::plan::{InitialState, Plan, PlanFault};
+use crate::stage_pose::StagePose;
 use jointbench_instrument::{Kind, RunTable};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -51,7 +52,7 @@ impl Procedure for EncoderStartup {
         }
     }
 
-    fn goes_on(&self) -> Result<(), &'static str> {
+    fn can_resume(&self) -> Result<(), &'static str> {
         Err("the zero of the reference is lost when an instrument is switched off")
     }
 
@@ -63,9 +64,9 @@ impl Procedure for EncoderStartup {
             legs.repeat = power_up;
             let first = legs.steps.len();
             for _ in 0..PAIRS {
-                both_ways(&mut legs, values.number("speed_rad_s"), values.number("turns"), Place::AsLeft);
+                both_ways(&mut legs, values.number("speed_rad_s"), values.number("turns"), StagePose::AsLeft);
             }
-            legs.steps[first].before = Before::PoweredAnew;
+            legs.steps[first].before = InitialState::PoweredAnew;
         }
         Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
     }
@@ -90,7 +91,7 @@ impl Procedure for EncoderStartup {
         }
         let (Some(offset), true) = (Mean::of(&zeros), zeros.len() >= 3 && pairs > 0.0) else {
             let what = "The variation is unknown, because fewer than three power-ups were completed.";
-            return too_little(what, "Let the run finish.");
+            return insufficient_data(what, "Let the run finish.");
         };
         let freedom = zeros.len() as f64 - 1.0;
         let spread = (zeros.iter().map(|zero| (zero - offset.value).powi(2)).sum::<f64>() / freedom).sqrt();

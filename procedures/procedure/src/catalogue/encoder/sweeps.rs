@@ -1,7 +1,7 @@
 //! The parts of a run at constant speed, as differences of both encoders over the angle.
 
 use super::SETTLE_S;
-use crate::encoder_columns::POSE;
+use crate::column_names::POSE;
 use crate::findings::solve;
 use jointbench_instrument::RunTable;
 use std::f64::consts::{PI, TAU};

@@ -1,6 +1,6 @@
 //! Whether the sensor tolerates the mounting errors of the data sheet, and advice if it does not.
 
-use super::edges::{Found, Way};
+use super::edges::{Direction, Found};
 use crate::identification::{Axis, Figure, Form, Mark, Series, Verdict};
 
 /// PASS, OUT OF TOLERANCE or NOT SURE, with the directions that cause it.
@@ -8,89 +8,96 @@ pub struct Judgement {
     pub verdict: Verdict,
     /// `None` if the range of the stage does not decide it.
     pub passes: Option<bool>,
-    pub said: String,
+    pub text: String,
     pub advice: Option<String>,
 }
 
 impl Judgement {
-    pub fn of(found: &[(&Way, Found)]) -> Self {
-        let those = |holds: Option<bool>| -> Vec<&(&Way, Found)> {
-            found.iter().filter(|(way, found)| way.holds(found) == holds).collect()
+    pub fn of(found: &[(&Direction, Found)]) -> Self {
+        let those = |holds: Option<bool>| -> Vec<&(&Direction, Found)> {
+            found.iter().filter(|(direction, found)| direction.holds(found) == holds).collect()
         };
         let (out, unsure) = (those(Some(false)), those(None));
-        let each = |ways: &[&(&Way, Found)], say: &dyn Fn(&(&Way, Found)) -> String| {
-            ways.iter().map(|one| say(one)).collect::<Vec<_>>().join("; ")
+        let each = |directions: &[&(&Direction, Found)], describe: &dyn Fn(&(&Direction, Found)) -> String| {
+            directions.iter().map(|one| describe(one)).collect::<Vec<_>>().join("; ")
         };
-        let allowed = |way: &Way| format!("tolerance {}", way.length(way.manufacturing));
+        let allowed = |direction: &Direction| format!("tolerance {}", direction.length(direction.manufacturing));
         if !out.is_empty() {
-            let lost = |(way, found): &(&Way, Found)| {
-                let bad = way.length(found.bad.unwrap_or(found.good));
-                format!("{}: period count lost at {bad} ({})", way.title, allowed(way))
+            let lost = |(direction, found): &(&Direction, Found)| {
+                let bad = direction.length(found.bad.unwrap_or(found.good));
+                format!("{}: period count lost at {bad} ({})", direction.title, allowed(direction))
             };
-            let cure = each(&out, &|(way, Found { good, .. })| {
-                let other = found.iter().find(|(other, _)| other.is_opposite(way)).map(|(_, other)| other.good);
+            let cure = each(&out, &|(direction, Found { good, .. })| {
+                let other = found.iter().find(|(other, _)| other.is_opposite(direction)).map(|(_, other)| other.good);
                 match other {
-                    Some(other) if (other - good).abs() >= 2.0 * way.manufacturing => {
+                    Some(other) if (other - good).abs() >= 2.0 * direction.manufacturing => {
                         format!(
                             "{}: move the sensor by {} in the opposite direction, to the centre of the range",
-                            way.title,
-                            way.length(0.5 * (other + good))
+                            direction.title,
+                            direction.length(0.5 * (other + good))
                         )
                     }
                     Some(other) => format!(
                         "{}: the range is only {}. Check air gap, ring and mounting",
-                        way.title,
-                        way.length(other - good)
+                        direction.title,
+                        direction.length(other - good)
                     ),
-                    None => format!("{}: mount the sensor closer to the ring", way.title),
+                    None => format!("{}: mount the sensor closer to the ring", direction.title),
                 }
             });
-            let said = format!("OUT OF TOLERANCE: {}.", each(&out, &lost));
+            let text = format!("OUT OF TOLERANCE: {}.", each(&out, &lost));
             return Self {
                 verdict: Verdict::Identified,
                 passes: Some(false),
-                said,
+                text,
                 advice: Some(format!("{cure}. Then align and repeat the run.")),
             };
         }
         if !unsure.is_empty() {
-            let far = |(way, found): &(&Way, Found)| {
-                format!("{}: consistent up to {} ({})", way.title, way.length(found.good), allowed(way))
+            let far = |(direction, found): &(&Direction, Found)| {
+                format!(
+                    "{}: consistent up to {} ({})",
+                    direction.title,
+                    direction.length(found.good),
+                    allowed(direction)
+                )
             };
-            let further = each(&unsure, &|(way, _)| format!("--set {}={:.2e}", way.reach, 1.2 * way.manufacturing));
+            let further = each(&unsure, &|(direction, _)| {
+                format!("--set {}={:.2e}", direction.reach, 1.2 * direction.manufacturing)
+            });
             return Self {
                 verdict: Verdict::Inconclusive,
                 passes: None,
-                said: format!("UNDECIDED: {}.", each(&unsure, &far)),
+                text: format!("UNDECIDED: {}.", each(&unsure, &far)),
                 advice: Some(format!("Increase the travel and the bisection steps: {further} --set halvings=6.")),
             };
         }
-        let said = "PASS: consistent within the data sheet tolerance in all directions.".into();
-        Self { verdict: Verdict::Identified, passes: Some(true), said, advice: None }
+        let text = "PASS: consistent within the data sheet tolerance in all directions.".into();
+        Self { verdict: Verdict::Identified, passes: Some(true), text, advice: None }
     }
 }
 
 /// The last consistent position of each direction relative to the data sheet's tolerance, and the positions where the
 /// periods are lost.
-pub fn figure(found: &[(&Way, Found)]) -> Figure {
-    let share = |way: &Way, at: f64| at.abs() / way.manufacturing;
+pub fn figure(found: &[(&Direction, Found)]) -> Figure {
+    let share = |direction: &Direction, at: f64| at.abs() / direction.manufacturing;
     let places: Vec<f64> = (0..found.len()).map(|i| i as f64).collect();
     let [mut lost, mut kept] = [
         Series::new("range until period loss", Mark::Bars, Vec::new(), Vec::new()),
         Series::new("no period loss within the travel", Mark::Points, Vec::new(), Vec::new()),
     ];
-    for (place, (way, found)) in places.iter().zip(found) {
-        let last = share(way, found.good);
+    for (place, (direction, found)) in places.iter().zip(found) {
+        let last = share(direction, found.good);
         let of = if found.bad.is_some() { &mut lost } else { &mut kept };
         of.x.push(*place);
         of.y.push(last);
-        lost.band.extend(found.bad.map(|bad| [last, share(way, bad)]));
+        lost.band.extend(found.bad.map(|bad| [last, share(direction, bad)]));
     }
     Figure {
         name: "tolerance".into(),
         title: "Usable range / data sheet tolerance (whisker: period loss)".into(),
         form: Form::Cartesian,
-        x: Axis::names("Direction", found.iter().map(|(way, _)| way.title)),
+        x: Axis::names("Direction", found.iter().map(|(direction, _)| direction.title)),
         y: Axis::of("Fraction of the manufacturing tolerance", ""),
         series: [lost, kept]
             .into_iter()
@@ -102,14 +109,14 @@ pub fn figure(found: &[(&Way, Found)]) -> Figure {
 
 #[cfg(test)]
 mod tests {
-    use super::super::edges::WAYS;
+    use super::super::edges::DIRECTIONS;
     use super::*;
 
     /// The directions of the radial shift, consistent up to and lost at these positions, in millimetres.
     fn judged(places_mm: [(f64, Option<f64>); 2]) -> Judgement {
         let found = |i: usize| {
             let (good, bad) = places_mm[i];
-            (&WAYS[i], Found { good: 1e-3 * good, bad: bad.map(|bad| 1e-3 * bad) })
+            (&DIRECTIONS[i], Found { good: 1e-3 * good, bad: bad.map(|bad| 1e-3 * bad) })
         };
         Judgement::of(&[found(0), found(1)])
     }
@@ -117,13 +124,13 @@ mod tests {
     #[test]
     fn a_sensor_is_held_against_its_data_sheet() {
         let pass = judged([(-0.24, Some(-0.26)), (0.3, None)]);
-        assert!(pass.said.starts_with("PASS") && pass.advice.is_none(), "{}", pass.said);
+        assert!(pass.text.starts_with("PASS") && pass.advice.is_none(), "{}", pass.text);
 
         let aside = judged([(-0.40, Some(-0.42)), (0.10, Some(0.12))]);
         assert!(
-            aside.said.starts_with("OUT OF TOLERANCE: Radial shift +") && aside.said.contains("120 µm"),
+            aside.text.starts_with("OUT OF TOLERANCE: Radial shift +") && aside.text.contains("120 µm"),
             "{}",
-            aside.said
+            aside.text
         );
         assert!(aside.advice.unwrap().contains("move the sensor by 150 µm in the opposite direction"));
 
@@ -136,7 +143,7 @@ mod tests {
         for radial in [(0.10, None), (0.14, Some(0.16))] {
             let short = judged([(-0.24, Some(-0.26)), radial]);
             assert_eq!(short.verdict, Verdict::Inconclusive);
-            assert!(short.said.starts_with("UNDECIDED: Radial shift +"), "{}", short.said);
+            assert!(short.text.starts_with("UNDECIDED: Radial shift +"), "{}", short.text);
             assert!(short.advice.unwrap().contains("--set radial_reach_m=1.80e-4"));
         }
     }

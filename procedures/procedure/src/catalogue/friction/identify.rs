@@ -1,82 +1,17 @@
 //! Coulomb, viscous and Stribeck friction of the joint without load, for each direction (seed-facts, tables 4.5 and
 //! 4.6).
 
+use super::free_friction::{Figured, FreeFriction, fit_with, friction_nm};
 use super::inconclusive::{Side, hidden_rise_nm, is_small, rest};
 use crate::findings::{
-    Leg, Line, Plateau, Unusable, combined, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter,
-    settled,
+    Leg, Line, Plateau, Unusable, combined, curve, legs, parameter, plateaus, quantity, scatter, select_legs, settled,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
 use jointbench_instrument::RunTable;
 use jointbench_model::preprocess::Prepared;
-use jointbench_model::signal::Signal;
-use jointbench_model::{Fit, ModelError, ModelSpec, Options, fit_prepared, words};
+use jointbench_model::words;
 use std::panic::resume_unwind;
 use std::thread;
-
-/// A figure with its 95 % interval.
-type Figured = (f64, [f64; 2]);
-
-/// Static friction over speed, motor side.
-pub(crate) struct FreeFriction {
-    pub coulomb: Figured,
-    pub viscous: Figured,
-    /// `None`: no significant rise at low speed.
-    pub stribeck: Option<Stribeck>,
-}
-
-/// Rise of Coulomb friction, the motor speed at which it decays, and the exponent.
-pub(crate) struct Stribeck {
-    pub rise: Figured,
-    pub speed: Figured,
-    pub exponent: Figured,
-}
-
-impl FreeFriction {
-    /// Fits the legs without load, with a Stribeck part if the run identifies it and its validation error is smaller.
-    fn of(run: &Prepared) -> Result<Self, Unusable> {
-        let (rich, plain) = (fit_with(run, &["stribeck"]), fit_with(run, &[])?);
-        if let Ok(rich) = rich
-            && rich.validation_rms < plain.validation_rms
-            && let Some(rise) = parameter(&rich, "stribeck", "tau_s")
-            && let Some(speed) = parameter(&rich, "stribeck", "omega_s")
-            && let Some(exponent) = rich.parameters.iter().find(|p| p.effect == "stribeck" && p.name == "delta")
-        {
-            let [rise, speed, exponent] = [rise, speed, exponent].map(|p| interval_of(p, 1.0));
-            return Self::from(&rich, Some(Stribeck { rise, speed, exponent }));
-        }
-        Self::from(&plain, None)
-    }
-
-    fn from(fit: &Fit, stribeck: Option<Stribeck>) -> Result<Self, Unusable> {
-        let figure = |effect, name| parameter(fit, effect, name).map(|p| interval_of(p, 1.0));
-        let coulomb = figure("coulomb", "tau_c");
-        let viscous = figure("viscous", "c_v");
-        match (coulomb, viscous) {
-            (Some(coulomb), Some(viscous)) => Ok(Self { coulomb, viscous, stribeck }),
-            _ => Err(Unusable::Scattered { rest_nm: fit.rms }),
-        }
-    }
-
-    /// Friction at a motor speed above 0.
-    pub fn at(&self, speed_rad_s: f64) -> f64 {
-        let rise =
-            self.stribeck.as_ref().map_or(0.0, |s| s.rise.0 * (-(speed_rad_s / s.speed.0).powf(s.exponent.0)).exp());
-        self.coulomb.0 + self.viscous.0 * speed_rad_s + rise
-    }
-
-    /// Breakaway torque at rest.
-    pub fn breakaway(&self) -> Option<Figured> {
-        self.stribeck.as_ref().map(|s| combined(self.coulomb, s.rise, 1.0))
-    }
-}
-
-/// Fits Coulomb and viscous friction with further effects.
-fn fit_with(run: &Prepared, more: &[&str]) -> Result<Fit, ModelError> {
-    let load = run.main.view.find(Signal::Load).map(|_| "load_transmission");
-    let effects = load.into_iter().chain(["coulomb", "viscous"]).chain(more.iter().copied());
-    fit_prepared(run, &ModelSpec::new(run.kind, effects)?, &Options::default())
-}
 
 /// Share by which Coulomb friction changes if a quadratic drag replaces the Stribeck part: a Stribeck part that
 /// decays slowly looks like both.
@@ -110,11 +45,11 @@ struct Fits {
 impl Fits {
     /// A run of hours takes seconds, so that the directions are fitted in parallel.
     fn of(run: &RunTable, free: &[Leg]) -> Result<Self, Unusable> {
-        let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
+        let part = |sign: f64| select_legs(run, free.iter().filter(|leg| leg.direction == sign));
         let (both, sides) = thread::scope(|scope| {
             let sides = scope.spawn(|| [1.0, -1.0].map(|sign| FreeFriction::of(&settled(&part(sign)?)?)));
             let both = || -> Result<_, Unusable> {
-                let both = settled(&keep(run, free)?)?;
+                let both = settled(&select_legs(run, free)?)?;
                 let whole = FreeFriction::of(&both)?;
                 let with_drag_nm = coulomb_with_quadratic_drag(&both, &whole);
                 Ok((whole, with_drag_nm, plateaus(&both)))
@@ -202,7 +137,7 @@ fn advice(is_drag_possible: bool, is_explained: bool, is_decided: bool) -> Optio
 pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
     let free = free(run);
     if ![1.0, -1.0].iter().all(|sign| free.iter().any(|leg| leg.direction == *sign)) {
-        return Err(Unusable::TooLittle("One unloaded step in each direction is required.", "Repeat the run."));
+        return Err(Unusable::InsufficientData("One unloaded step in each direction is required.", "Repeat the run."));
     }
     let fits = Fits::of(run, &free)?;
     let (whole, points) = (&fits.whole, &fits.points);
@@ -273,10 +208,6 @@ fn named(suffix: &str, mark: &str, words: &str, of: &FreeFriction, gear: f64) ->
 
 fn quantity_of(words: [&str; 4], figure: Figured) -> Quantity {
     quantity(words, figure.0, Some(figure.1))
-}
-
-pub(super) fn friction_nm(point: &Plateau) -> f64 {
-    point.target - point.load_nm
 }
 
 /// The line starts at most at this share of the highest speed, so that it spans several speeds.

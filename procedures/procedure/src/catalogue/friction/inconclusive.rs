@@ -1,7 +1,7 @@
 //! Open questions of a friction run: a Stribeck rise below the detection limit, and scatter that speed does not
 //! explain.
 
-use super::identify::{FreeFriction, friction_nm};
+use super::free_friction::{FreeFriction, friction_nm};
 use crate::findings::{Plateau, solve};
 use jointbench_model::words;
 

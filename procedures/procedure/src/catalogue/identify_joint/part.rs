@@ -1,13 +1,13 @@
 //! The rows of one part of a campaign, as a run of its own procedure.
 
-use crate::findings::{Unusable, keep_rows};
+use crate::findings::{Unusable, select_rows};
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use serde_json::Value;
 
 /// The table of one part. A step that was repeated after a pause has a new number: it belongs to the part of the rows
 /// before it.
 pub(super) fn table_of(run: &RunTable, facts: &[Value], number: usize) -> Result<RunTable, Unusable> {
-    const NONE: Unusable = Unusable::TooLittle("The run ended before this part.", "Repeat the run.");
+    const NONE: Unusable = Unusable::InsufficientData("The run ended before this part.", "Repeat the run.");
     let ranges: Vec<_> = facts
         .iter()
         .map(|fact| {
@@ -25,7 +25,7 @@ pub(super) fn table_of(run: &RunTable, facts: &[Value], number: usize) -> Result
         }
     }
     let rows = first.ok_or(NONE)?..last + 1;
-    let (_, trace) = keep_rows(run, &[rows])?.into_parts();
+    let (_, trace) = select_rows(run, &[rows])?.into_parts();
     let meta: Meta = serde_json::from_value(facts[number]["meta"].clone()).map_err(|_| NONE)?;
     let trace = match meta.kind {
         Some(Kind::Stiffness) => of_link(trace, &meta, "link_velocity_rad_s"),

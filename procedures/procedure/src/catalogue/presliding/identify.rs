@@ -46,7 +46,7 @@ impl Dahl {
 pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
     let torque_constant = run.meta().torque_constant_nm_per_a.unwrap_or(1.0);
     let Some(all) = swings(run, torque_constant) else {
-        return Err(Unusable::TooLittle(
+        return Err(Unusable::InsufficientData(
             "The run has no motor current set-point, so it belongs to another procedure.",
             "Run presliding.",
         ));
@@ -55,11 +55,11 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
     let held: Vec<&Swings> = all.iter().filter(|swings| !swings.broke_away).collect();
     let Some(dahl) = fit(&held) else {
         return Err(match broke_away {
-            0 => Unusable::TooLittle(
+            0 => Unusable::InsufficientData(
                 "The motor encoder hardly moved.",
                 "Increase repeats, or increase top_torque_nm towards breakaway.",
             ),
-            _ => Unusable::TooLittle("The joint broke away during the cycles.", "Reduce top_torque_nm."),
+            _ => Unusable::InsufficientData("The joint broke away during the cycles.", "Reduce top_torque_nm."),
         });
     };
     // Delete-one-step jackknife, because a step has one position and one initial state.

@@ -39,7 +39,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
         run.column("motor_current_a"),
         run.column("motor_current_setpoint_a"),
     ) else {
-        return Err(Unusable::TooLittle("The run belongs to another procedure.", "Run puma_friction."));
+        return Err(Unusable::InsufficientData("The run belongs to another procedure.", "Run puma_friction."));
     };
     let gear = meta.gear_ratio.unwrap_or(1.0);
     let km = meta.torque_constant_nm_per_a.unwrap_or(1.0);
@@ -171,11 +171,11 @@ impl Stiction {
         figures: &Figures<'_>,
     ) -> Self {
         let top_a = values.number("top_torque_nm") / km;
-        let (broke, held) = onsets(run, setpoint_a, values.count("increases") as usize, top_a);
+        let (onsets, held) = onsets(run, setpoint_a, values.count("increases") as usize, top_a);
         // Gravity acts outside the upright pose and is corrected.
         let volts = |onset: &Onset| onset.current_a / scale - lines.weight.value * figures.link_rad[onset.row].sin();
         let stiction = |sign: f64| -> Option<Mean> {
-            let of_side = broke.iter().filter(|o| o.current_a * sign > 0.0).map(volts).collect::<Vec<_>>();
+            let of_side = onsets.iter().filter(|o| o.current_a * sign > 0.0).map(volts).collect::<Vec<_>>();
             Mean::of(&of_side).map(|mean| with_resolution(mean, ramp_step_nm(values) / km / scale))
         };
         Self { positive: stiction(1.0), negative: stiction(-1.0), held }
@@ -197,7 +197,7 @@ impl Stiction {
     }
 }
 
-const FEW: Unusable = Unusable::TooLittle("Too few speeds were measured.", "Repeat the run.");
+const FEW: Unusable = Unusable::InsufficientData("Too few speeds were measured.", "Repeat the run.");
 
 /// The uninterrupted holds of constant speed after the work-out.
 fn measured(run: &RunTable, first: i64, count: i64, planned: i64) -> Vec<Hold> {
@@ -210,8 +210,8 @@ fn measured(run: &RunTable, first: i64, count: i64, planned: i64) -> Vec<Hold> {
             if hold.segment < planned {
                 belongs = (first..first + count).contains(&hold.segment);
             }
-            let goes_on = segment.get(hold.rows.end).is_some_and(|next| *next as i64 == hold.segment);
-            belongs && goes_on && hold.velocity_rad_s != 0.0
+            let is_continued = segment.get(hold.rows.end).is_some_and(|next| *next as i64 == hold.segment);
+            belongs && is_continued && hold.velocity_rad_s != 0.0
         })
         .collect()
 }
@@ -234,7 +234,7 @@ impl Figures<'_> {
         };
         let arc_rad = holds.iter().map(reach).fold(f64::INFINITY, f64::min);
         if !(arc_rad > 0.0 && arc_rad.is_finite()) {
-            return Err(Unusable::TooLittle(
+            return Err(Unusable::InsufficientData(
                 "The link did not pass its upright pose.",
                 "Set it upright (encoder at 0) and repeat the run.",
             ));

@@ -1,7 +1,7 @@
 //! A line of torsion over torque with an offset for each direction, and a test for nonlinear stiffness.
 
 use super::zones::zones;
-use crate::findings::{Unusable, holds, interval_of, keep_rows, parameter, quantity, scatter};
+use crate::findings::{Unusable, holds, interval_of, parameter, quantity, scatter, select_rows};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use jointbench_instrument::RunTable;
 use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit, residuals};
@@ -145,21 +145,21 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let held: Vec<_> = holds(run, 0.4).into_iter().filter(|hold| hold.velocity_rad_s != 0.0).collect();
     let rows: Vec<_> = held.iter().map(|hold| hold.tail(SETTLED)).collect();
     if rows.len() < 6 {
-        return Err(Unusable::TooLittle("The run contains too few loads.", "Repeat the run."));
+        return Err(Unusable::InsufficientData("The run contains too few loads.", "Repeat the run."));
     }
-    let settled = keep_rows(run, &rows)?;
+    let settled = select_rows(run, &rows)?;
     let fits = Fits::of(&settled)?;
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let points: Vec<Point> = rows.iter().map(|rows| point(run, rows, gear)).collect();
     let Some(compliance) = fits.compliance() else {
-        return Err(Unusable::TooLittle(
+        return Err(Unusable::InsufficientData(
             "The loads do not determine the stiffness.",
             "Increase top_load or load_levels.",
         ));
     };
     let bearing = run.meta().bearing_stiffness_nm_per_rad.map_or(0.0, f64::recip);
     if compliance.1[0] <= bearing {
-        return Err(Unusable::TooLittle(
+        return Err(Unusable::InsufficientData(
             "bearing_stiffness_nm_rad is below the measured stiffness of bearing and joint.",
             "Enter it in Nm/rad, or 0 if unknown.",
         ));

@@ -12,7 +12,7 @@ impl Supply {
         Self(Dp800::new(), Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default()))
     }
 
-    fn say(&mut self, text: &str) -> String {
+    fn exchange(&mut self, text: &str) -> String {
         let mut output = Vec::new();
         self.0.receive(&mut text.as_bytes().to_vec(), &mut self.1, &mut output);
         String::from_utf8(output).unwrap()
@@ -45,38 +45,38 @@ fn published_conversation() {
         (":OUTP:CVCC? CH1\n", "CC\n"),
         (":STAT:QUES:INST:ISUM1:COND?\n", "1\n"),
     ] {
-        assert_eq!(supply.say(request), reply, "{request}");
+        assert_eq!(supply.exchange(request), reply, "{request}");
     }
-    assert_eq!(supply.say("*ESR?\n"), "128\n", "power came on, no error");
+    assert_eq!(supply.exchange("*ESR?\n"), "128\n", "power came on, no error");
 }
 
 #[test]
 fn mistakes_are_queued_and_unknown_queries_stay_unanswered() {
     let mut supply = Supply::new();
-    assert_eq!(supply.say(":SOUR1:CURR 0.1\n:SOUR1:CURR 1.2\n:SOUR1:CURR?\n"), "0.1000\n", "the old value holds");
-    assert_eq!(supply.say(":WHAT?\n"), "");
-    assert_eq!(supply.say(":SYST:ERR?\n"), "-222,\"Data out of range\"\n");
-    assert_eq!(supply.say(":SYST:ERR?\n"), "-113,\"Undefined header\"\n");
-    assert_eq!(supply.say(":SYST:ERR?\n"), "0,\"No error\"\n");
+    assert_eq!(supply.exchange(":SOUR1:CURR 0.1\n:SOUR1:CURR 1.2\n:SOUR1:CURR?\n"), "0.1000\n", "the old value holds");
+    assert_eq!(supply.exchange(":WHAT?\n"), "");
+    assert_eq!(supply.exchange(":SYST:ERR?\n"), "-222,\"Data out of range\"\n");
+    assert_eq!(supply.exchange(":SYST:ERR?\n"), "-113,\"Undefined header\"\n");
+    assert_eq!(supply.exchange(":SYST:ERR?\n"), "0,\"No error\"\n");
     for _ in 0..25 {
-        supply.say(":WHAT\n");
+        supply.exchange(":WHAT\n");
     }
-    let last = (0..20).map(|_| supply.say(":SYST:ERR?\n")).last().unwrap();
+    let last = (0..20).map(|_| supply.exchange(":SYST:ERR?\n")).last().unwrap();
     assert_eq!(last, "-350,\"Queue overflow\"\n");
 }
 
 #[test]
 fn a_trip_latches_until_cleared_and_switched_on_again() {
     let mut supply = Supply::new();
-    supply.say(":APPL CH1,45,0.3;:OUTP:OVP:VAL CH1,10;:OUTP:OVP CH1,ON;:OUTP CH1,ON\n");
+    supply.exchange(":APPL CH1,45,0.3;:OUTP:OVP:VAL CH1,10;:OUTP:OVP CH1,ON;:OUTP CH1,ON\n");
     supply.wait(0.5);
-    assert_eq!(supply.say(":OUTP:OVP:QUES? CH1;:OUTP? CH1\n"), "YES;OFF\n");
-    assert_eq!(supply.say(":STAT:QUES:INST:ISUM1:COND?\n"), "4\n");
-    supply.say(":OUTP CH1,ON\n");
-    assert_eq!(supply.say(":OUTP? CH1\n"), "OFF\n", "not before it is cleared");
-    supply.say(":OUTP:OVP CH1,OFF;:OUTP:OVP:CLEAR CH1;:OUTP CH1,ON\n");
+    assert_eq!(supply.exchange(":OUTP:OVP:QUES? CH1;:OUTP? CH1\n"), "YES;OFF\n");
+    assert_eq!(supply.exchange(":STAT:QUES:INST:ISUM1:COND?\n"), "4\n");
+    supply.exchange(":OUTP CH1,ON\n");
+    assert_eq!(supply.exchange(":OUTP? CH1\n"), "OFF\n", "not before it is cleared");
+    supply.exchange(":OUTP:OVP CH1,OFF;:OUTP:OVP:CLEAR CH1;:OUTP CH1,ON\n");
     supply.wait(1.0);
-    assert_eq!(supply.say(":OUTP? CH1\n"), "ON\n");
-    let amperes: f64 = supply.say(":MEAS:CURR? CH1\n").trim().parse().unwrap();
+    assert_eq!(supply.exchange(":OUTP? CH1\n"), "ON\n");
+    let amperes: f64 = supply.exchange(":MEAS:CURR? CH1\n").trim().parse().unwrap();
     assert!((amperes - 0.3).abs() < 2e-3, "{amperes}");
 }

@@ -12,7 +12,7 @@ impl Stage {
         Self(Gcs::new(), Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default()))
     }
 
-    fn say(&mut self, bytes: &[u8]) -> Vec<u8> {
+    fn exchange(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut output = Vec::new();
         self.0.receive(&mut bytes.to_vec(), &mut self.1, &mut output);
         output
@@ -26,8 +26,8 @@ impl Stage {
     }
 
     fn check(&mut self, request: &str, reply: &str) {
-        let said = String::from_utf8(self.say(format!("{request}\n").as_bytes())).unwrap();
-        assert_eq!(said, reply, "{request}");
+        let answer = String::from_utf8(self.exchange(format!("{request}\n").as_bytes())).unwrap();
+        assert_eq!(answer, reply, "{request}");
     }
 }
 
@@ -41,10 +41,10 @@ fn published_conversation() {
     stage.check("ERR?", "5\n");
     stage.check("ERR?", "0\n");
     stage.check("FRF", "");
-    assert_eq!(stage.say(&[7]), [0xB0, b'\n']);
+    assert_eq!(stage.exchange(&[7]), [0xB0, b'\n']);
     stage.check("MOV X 0.5\nERR?", "1005\n");
     stage.wait(8.5);
-    assert_eq!(stage.say(&[7]), [0xB1, b'\n']);
+    assert_eq!(stage.exchange(&[7]), [0xB1, b'\n']);
     stage.check("FRF?", "X=1 \nY=1 \nZ=1 \nU=1 \nV=1 \nW=1\n");
     stage.check("MOV X 0.5 U 0.2", "");
     stage.check("MOV? X", "X=0.500000\n");
@@ -54,10 +54,10 @@ fn published_conversation() {
     stage.check("VMO? X 1 U 0.5", "1\n");
     stage.check("ONT? X", "X=0\n");
     stage.check("CST? X", "X=NOSTAGE\n");
-    assert_eq!(stage.say(&[5]), b"3F\n");
+    assert_eq!(stage.exchange(&[5]), b"3F\n");
     stage.wait(0.6);
-    assert_eq!(stage.say(b"PO\x05S? "), b"0\n", "in the middle of a line");
-    let help = String::from_utf8(stage.say(b"HLP?\n")).unwrap();
+    assert_eq!(stage.exchange(b"PO\x05S? "), b"0\n", "in the middle of a line");
+    let help = String::from_utf8(stage.exchange(b"HLP?\n")).unwrap();
     assert!(help.ends_with(" \nend of help\n") && help.contains(" \nMOV {"), "{help}");
 }
 
@@ -66,7 +66,7 @@ fn every_query_that_the_help_names_is_answered() {
     let mut stage = Stage::new();
     for query in HELP.iter().filter_map(|line| line.split(' ').next()).filter(|word| word.ends_with('?')) {
         let request = if query == "VMO?" { "VMO? X 0".to_owned() } else { query.to_owned() };
-        assert!(!stage.say(format!("{request}\n").as_bytes()).is_empty(), "{query}");
+        assert!(!stage.exchange(format!("{request}\n").as_bytes()).is_empty(), "{query}");
         stage.check("ERR?", "0\n");
     }
     stage.check("XYZ?\nERR?", "2\n");
@@ -92,12 +92,12 @@ fn a_move_is_taken_as_a_whole_or_not_at_all() {
     stage.check("TMX? X", "X=22.5000\n");
     stage.check("MOV X 10 Z 5", "");
     stage.wait(2.0);
-    assert_eq!(stage.say(&[0x18]), b"");
+    assert_eq!(stage.exchange(&[0x18]), b"");
     stage.check("ERR?", "10\n");
-    let target = String::from_utf8(stage.say(b"MOV? X\n")).unwrap();
+    let target = String::from_utf8(stage.exchange(b"MOV? X\n")).unwrap();
     assert!((3.9..4.1).contains(&target.trim()[2..].parse::<f64>().unwrap()), "{target}");
     stage.check("FRF", "");
     stage.wait(1.0);
-    stage.say(&[0x18]);
+    stage.exchange(&[0x18]);
     stage.check("FRF? X", "X=0\n");
 }

@@ -8,7 +8,7 @@ use crate::sim::plant::{Hidden, Plant, STEP_S};
 struct Supply(Hmp, Plant);
 
 impl Supply {
-    fn say(&mut self, text: &str) -> String {
+    fn exchange(&mut self, text: &str) -> String {
         let mut output = Vec::new();
         self.0.receive(&mut text.as_bytes().to_vec(), &mut self.1, &mut output);
         String::from_utf8(output).unwrap()
@@ -36,14 +36,14 @@ fn both_the_channel_and_the_relay_have_to_be_on() {
         ("VOLT 45\nSYST:ERR?\n", "-222,\"Data out of range\"\n"),
         ("VOLT?\n", "30.000\n"),
     ] {
-        assert_eq!(supply.say(request), reply, "{request}");
+        assert_eq!(supply.exchange(request), reply, "{request}");
     }
     for _ in 0..(1.0 / STEP_S) as usize {
         supply.0.step(&mut supply.1);
         supply.1.advance();
     }
-    let amperes: f64 = supply.say("MEAS:CURR?\n").trim().parse().unwrap();
+    let amperes: f64 = supply.exchange("MEAS:CURR?\n").trim().parse().unwrap();
     assert!((amperes - 0.3).abs() < 2e-3, "{amperes}");
-    let both = supply.say("MEAS:VOLT?;:MEAS:CURR?\n");
+    let both = supply.exchange("MEAS:VOLT?;:MEAS:CURR?\n");
     assert_eq!(both.trim().split(';').count(), 2, "{both}");
 }

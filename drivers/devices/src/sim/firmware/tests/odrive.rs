@@ -12,11 +12,11 @@ impl Drive {
         Self(Odrive::new(Joint::JointA), Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default()))
     }
 
-    fn say(&mut self, text: &str) -> String {
-        self.say_bytes(text.as_bytes())
+    fn exchange(&mut self, text: &str) -> String {
+        self.exchange_bytes(text.as_bytes())
     }
 
-    fn say_bytes(&mut self, bytes: &[u8]) -> String {
+    fn exchange_bytes(&mut self, bytes: &[u8]) -> String {
         let mut output = Vec::new();
         self.0.receive(&mut bytes.to_vec(), &mut self.1, &mut output);
         String::from_utf8(output).unwrap()
@@ -53,7 +53,7 @@ fn recorded_replies() {
         ("esl 0 100\n", "encoder set to 100\r\n"),
         ("s?\n", ""),
     ] {
-        assert_eq!(drive.say(request), reply, "{request:?}");
+        assert_eq!(drive.exchange(request), reply, "{request:?}");
     }
 }
 
@@ -61,44 +61,44 @@ fn recorded_replies() {
 fn values_are_cut_after_nine_characters() {
     let mut drive = Drive::new();
     drive.0.config.vel_limit = -123.456;
-    assert_eq!(drive.say("r axis0.controller.config.vel_limit\n"), "-123.4560\r\n");
+    assert_eq!(drive.exchange("r axis0.controller.config.vel_limit\n"), "-123.4560\r\n");
     // The nearest float is 123456.7890625.
     drive.0.config.vel_limit = 123_456.79;
-    assert_eq!(drive.say("r axis0.controller.config.vel_limit\n"), "123456.78\r\n");
+    assert_eq!(drive.exchange("r axis0.controller.config.vel_limit\n"), "123456.78\r\n");
     drive.0.motor_error = 68_719_476_735;
-    assert_eq!(drive.say("r axis0.motor.error\n"), "687194767\r\n");
-    assert_eq!(drive.say("w axis0.controller.input_vel nan\nr axis0.controller.input_vel\n"), "nan\r\n");
-    assert_eq!(drive.say("r axis0.motor.config.torque_lim\n"), "inf\r\n");
+    assert_eq!(drive.exchange("r axis0.motor.error\n"), "687194767\r\n");
+    assert_eq!(drive.exchange("w axis0.controller.input_vel nan\nr axis0.controller.input_vel\n"), "nan\r\n");
+    assert_eq!(drive.exchange("r axis0.motor.config.torque_lim\n"), "inf\r\n");
 }
 
 #[test]
 fn some_commands_leave_traces() {
     let mut drive = Drive::new();
-    drive.say("q 0 1 7 3\n");
-    assert_eq!(drive.say("r axis0.controller.config.vel_limit\n"), "7.000000\r\n");
-    drive.say("t 0 1\n");
-    assert_eq!(drive.say("r axis0.controller.config.input_mode\n"), "5\r\n");
-    drive.say("w axis0.controller.input_torque 0.5\nw axis0.controller.input_vel\n");
-    assert_eq!(drive.say("r axis0.controller.input_vel\n"), "0.500000\r\n", "what the buffer still held");
+    drive.exchange("q 0 1 7 3\n");
+    assert_eq!(drive.exchange("r axis0.controller.config.vel_limit\n"), "7.000000\r\n");
+    drive.exchange("t 0 1\n");
+    assert_eq!(drive.exchange("r axis0.controller.config.input_mode\n"), "5\r\n");
+    drive.exchange("w axis0.controller.input_torque 0.5\nw axis0.controller.input_vel\n");
+    assert_eq!(drive.exchange("r axis0.controller.input_vel\n"), "0.500000\r\n", "what the buffer still held");
 }
 
 #[test]
 fn a_fast_joint_trips_and_a_reboot_is_silent() {
     let mut drive = Drive::new();
-    drive.say("w axis0.controller.config.vel_limit 10\nv 0 9\nw axis0.requested_state 8\n");
+    drive.exchange("w axis0.controller.config.vel_limit 10\nv 0 9\nw axis0.requested_state 8\n");
     drive.wait(0.5);
-    assert_eq!(drive.say("r axis0.current_state\n"), "8\r\n");
-    drive.say("w axis0.controller.config.vel_limit 2\n");
+    assert_eq!(drive.exchange("r axis0.current_state\n"), "8\r\n");
+    drive.exchange("w axis0.controller.config.vel_limit 2\n");
     drive.wait(0.01);
-    let state = drive.say("r axis0.current_state\nr axis0.error\nr axis0.controller.error\n");
+    let state = drive.exchange("r axis0.current_state\nr axis0.error\nr axis0.controller.error\n");
     assert_eq!(state, "1\r\n512\r\n1\r\n", "idle, controller failed, overspeed");
-    drive.say("w axis0.requested_state 8\n");
-    assert_eq!(drive.say("r axis0.current_state\n"), "1\r\n", "not with errors");
-    drive.say("sr\n");
+    drive.exchange("w axis0.requested_state 8\n");
+    assert_eq!(drive.exchange("r axis0.current_state\n"), "1\r\n", "not with errors");
+    drive.exchange("sr\n");
     drive.wait(0.9);
-    assert_eq!(drive.say("r axis0.error\n"), "");
+    assert_eq!(drive.exchange("r axis0.error\n"), "");
     drive.wait(0.2);
-    assert_eq!(drive.say("r axis0.error\n"), "0\r\n");
+    assert_eq!(drive.exchange("r axis0.error\n"), "0\r\n");
 }
 
 #[test]
@@ -109,6 +109,6 @@ fn garbage_is_survived() {
     assert!(input.len() <= 257);
     input.push(b'\n');
     drive.0.receive(&mut input, &mut drive.1, &mut Vec::new());
-    assert_eq!(drive.say("r fw_version_minor\n"), "5\r\n");
-    assert_eq!(drive.say_bytes(&[vec![b'r'; 300], b"\n".to_vec()].concat()), "", "an overlong line is dropped");
+    assert_eq!(drive.exchange("r fw_version_minor\n"), "5\r\n");
+    assert_eq!(drive.exchange_bytes(&[vec![b'r'; 300], b"\n".to_vec()].concat()), "", "an overlong line is dropped");
 }

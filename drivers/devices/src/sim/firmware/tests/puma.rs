@@ -16,7 +16,7 @@ impl Bench {
         Self { servo: Puma::new(), plant: Plant::new(Joint::Puma, Load::None, 1, hidden) }
     }
 
-    pub(super) fn say(&mut self, bytes: &[u8]) -> Vec<u8> {
+    pub(super) fn exchange(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut output = Vec::new();
         self.servo.receive(&mut bytes.to_vec(), &mut self.plant, &mut output);
         output
@@ -26,7 +26,7 @@ impl Bench {
     pub(super) fn ask(&mut self, command: u8, word: i16) -> (u8, i16) {
         let [high, low] = word.to_be_bytes();
         let [crc_low, crc_high] = crc(&[9, command, high, low]).to_le_bytes();
-        let reply = self.say(&[0xA5, 9, command, high, low, crc_low, crc_high]);
+        let reply = self.exchange(&[0xA5, 9, command, high, low, crc_low, crc_high]);
         let [0x5A, 9, command, high, low, crc_low, crc_high] = reply[..] else { panic!("{reply:02X?}") };
         assert_eq!(crc(&[9, command, high, low]).to_le_bytes(), [crc_low, crc_high]);
         (command, i16::from_be_bytes([high, low]))
@@ -60,9 +60,9 @@ fn bytes_in_and_bytes_out() {
         // No arm power.
         ([0xA5, 0x0A, 0x03, 0x00, 0x64, 0xF2, 0x17], [0x5A, 0x0A, 0x83, 0x00, 0x02, 0x73, 0xD5]),
     ] {
-        assert_eq!(bench.say(&request), reply);
+        assert_eq!(bench.exchange(&request), reply);
     }
-    let wrong = bench.say(&[0xA5, 0x07, 0x01, 0x00, 0x00, 0x50, 0x91]);
+    let wrong = bench.exchange(&[0xA5, 0x07, 0x01, 0x00, 0x00, 0x50, 0x91]);
     assert_eq!(wrong, [0; 0], "a wrong checksum is not answered");
 }
 

@@ -92,7 +92,7 @@ fn the_command_buffer_holds_the_last_four_commands() {
         let content = [1, READ, word[0], word[1]];
         [&[0xA5][..], &content, &super::super::adam::crc(&content).to_le_bytes()].concat()
     };
-    let replies = bench.say(&[frame([0, 0x41]), frame([0, 0x41])].concat());
+    let replies = bench.exchange(&[frame([0, 0x41]), frame([0, 0x41])].concat());
     assert_eq!((replies[4], replies[11]), (1, 0), "pending");
 }
 

@@ -44,12 +44,12 @@ pub struct HiddenFriction {
 impl HiddenFriction {
     /// The effects that the data sheet describes, drawn or not.
     pub fn of(sheet: &DataSheet) -> Self {
-        let told = |figure: f64| (figure != 0.0).then_some(figure);
+        let nonzero = |figure: f64| (figure != 0.0).then_some(figure);
         let upright = |size| Wave { size, harmonic: 1.0, phase_rad: PI };
         Self {
-            direction_offset_nm: told(sheet.direction_offset_nm),
-            viscous_asymmetry: told(sheet.viscous_asymmetry),
-            gravity_nm: told(sheet.upright_nm).map(upright),
+            direction_offset_nm: nonzero(sheet.direction_offset_nm),
+            viscous_asymmetry: nonzero(sheet.viscous_asymmetry),
+            gravity_nm: nonzero(sheet.upright_nm).map(upright),
             ..Self::default()
         }
     }

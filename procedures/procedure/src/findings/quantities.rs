@@ -51,7 +51,7 @@ pub(crate) enum Unusable {
     Table(#[from] TableFault),
     /// Missing data and advice, each as a sentence.
     #[error("{0} {1}")]
-    TooLittle(&'static str, &'static str),
+    InsufficientData(&'static str, &'static str),
     #[error("{} {SCATTERED}", scattered(*.rest_nm))]
     Scattered { rest_nm: f64 },
 }
@@ -66,9 +66,9 @@ fn scattered(rest_nm: f64) -> String {
 
 impl Unusable {
     /// Missing data and advice, each as a sentence.
-    fn said(&self) -> [String; 2] {
+    fn sentences(&self) -> [String; 2] {
         match self {
-            Self::TooLittle(lacking, cure) => [lacking, cure].map(|said| (*said).to_owned()),
+            Self::InsufficientData(lacking, cure) => [lacking, cure].map(|sentence| (*sentence).to_owned()),
             Self::Scattered { rest_nm } => [scattered(*rest_nm), SCATTERED.to_owned()],
             // Faults of a model and of a table read "what; cure" or "what: cure".
             Self::Model(_) | Self::Table(_) => {
@@ -88,7 +88,7 @@ fn sentence(text: &str) -> String {
 /// An unusable run gets a verdict too.
 pub(crate) fn verdict(found: Result<Identification, Unusable>) -> Option<Identification> {
     let failed = |fault: Unusable| {
-        let [lacking, cure] = fault.said();
+        let [lacking, cure] = fault.sentences();
         Identification::failed(lacking, cure)
     };
     Some(found.unwrap_or_else(failed))

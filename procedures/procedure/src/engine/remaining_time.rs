@@ -21,7 +21,7 @@ impl Durations {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Pace {
+pub(super) struct RemainingTime {
     /// Longest duration of each step, and whether it may end earlier.
     steps: Vec<(f64, bool)>,
     /// From the start of each step to the end of the plan, and 0 at the end.
@@ -35,7 +35,7 @@ pub(super) struct Pace {
     taken_s: Durations,
 }
 
-impl Pace {
+impl RemainingTime {
     pub fn new(plan: &Plan) -> Self {
         let mut left = Durations::default();
         let mut left_s = vec![left];
@@ -99,16 +99,16 @@ impl Pace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::place::{Edge, Place};
     use crate::plan::testing::plan_of;
-    use crate::plan::{Drive, Until};
+    use crate::plan::{Drive, EndCondition};
     use crate::profile::Profile;
+    use crate::stage_pose::{Edge, StagePose};
     use jointbench_instrument::roles::Pose;
 
     #[test]
     fn slow_steps_stretch_what_remains() {
         let plan = plan_of(&[10.0, 10.0, 20.0]);
-        let mut pace = Pace::new(&plan);
+        let mut pace = RemainingTime::new(&plan);
         pace.step_started(0, "first", 100.0);
         assert_eq!(pace.progress(100.0, 104.0, true).remaining_s, 36.0);
         assert_eq!(pace.progress(100.0, 104.0, false).remaining_s, 40.0);
@@ -125,9 +125,9 @@ mod tests {
         for step in [1, 3] {
             let current_a = Profile::from(0.0).to(1.0, 40.0);
             plan.steps[step].drive =
-                Drive::Current { from_s: 0.0, current_a, until: Until { increases: 3, speed_rad_s: 1.0 } };
+                Drive::Current { from_s: 0.0, current_a, until: EndCondition { increases: 3, speed_rad_s: 1.0 } };
         }
-        let mut pace = Pace::new(&plan);
+        let mut pace = RemainingTime::new(&plan);
         pace.step_started(0, "approach", 0.0);
         let progress = pace.progress(0.0, 0.0, true);
         assert_eq!((progress.remaining_s, progress.at_most), (100.0, true));
@@ -141,8 +141,8 @@ mod tests {
     fn a_search_for_an_edge_is_at_most_so_long() {
         let mut plan = plan_of(&[10.0, 40.0]);
         let [from, to] = [Pose::default(), Pose { shift_m: [1e-3, 0.0, 0.0], ..Pose::default() }];
-        plan.steps[1].place = Place::Edge(Edge { from, to, strides: 8, halvings: 4, dwell_s: 1.0 });
-        let progress = Pace::new(&plan).progress(0.0, 0.0, true);
+        plan.steps[1].place = StagePose::Edge(Edge { from, to, strides: 8, halvings: 4, dwell_s: 1.0 });
+        let progress = RemainingTime::new(&plan).progress(0.0, 0.0, true);
         assert_eq!((progress.remaining_s, progress.at_most), (50.0, true));
     }
 }

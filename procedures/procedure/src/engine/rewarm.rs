@@ -1,10 +1,10 @@
 //! Repeats the warm-up for a joint that cooled down during a long pause.
 
 use super::ending::Ending;
-use super::session::{Session, Wish};
+use super::session::{PendingRequest, Session};
 use crate::plan::{Phase, Step};
 use crate::profile::Profile;
-use crate::steady::{COOLS_S, SteadyWatch};
+use crate::steady::{COOLING_S, SteadyDetector};
 
 /// Ramp of a rising brake current, and the delay of supply and coil (bench-physics, section 2).
 const RAISE_S: f64 = 0.8;
@@ -13,13 +13,13 @@ const LAG_S: f64 = 0.6;
 impl Session<'_> {
     /// After a pause of this duration in the middle of `step`. Returns whether the brake has a new history, which
     /// ends at the step's initial current, approached from below.
-    pub(super) fn warm_after(&mut self, rested_s: f64, step: &Step) -> Result<bool, Ending> {
-        if rested_s < COOLS_S {
+    pub(super) fn rewarm_after(&mut self, rested_s: f64, step: &Step) -> Result<bool, Ending> {
+        if rested_s < COOLING_S {
             return Ok(false);
         }
         if step.phase == Phase::WarmUp {
             // Cycles before and after the pause do not belong to one warm-up.
-            self.warm = self.plan.steady.map(SteadyWatch::new);
+            self.warm = self.plan.steady.map(SteadyDetector::new);
             return Ok(false);
         }
         let plan = self.plan;
@@ -30,21 +30,23 @@ impl Session<'_> {
         self.unload()?;
         // Its travel was planned from there.
         self.go_back(plan.top_speed_rad_s(), self.warm_from_rad, 0.0)?;
-        let mut watch = plan.steady.map(SteadyWatch::new);
+        let mut watch = plan.steady.map(SteadyDetector::new);
         for step in plan.steps.iter().filter(|step| step.phase == Phase::WarmUp) {
-            if self.wish == Some(Wish::Pause) || watch.as_ref().is_some_and(SteadyWatch::is_steady) {
+            if self.pending_request == Some(PendingRequest::Pause)
+                || watch.as_ref().is_some_and(SteadyDetector::is_steady)
+            {
                 break;
             }
-            self.work(step, watch.as_mut())?;
+            self.run_unrecorded(step, watch.as_mut())?;
         }
         self.load(step.brake.at(0.0))?;
         Ok(true)
     }
 
     /// A step of the warm-up whose rows are shown, but not kept.
-    fn work(&mut self, step: &Step, mut watch: Option<&mut SteadyWatch>) -> Result<(), Ending> {
+    fn run_unrecorded(&mut self, step: &Step, mut watch: Option<&mut SteadyDetector>) -> Result<(), Ending> {
         let plateau_rad_s = step.velocity.largest();
-        let start_s = self.beat.next_s.max(self.bench.clock.now_s());
+        let start_s = self.period.next_s.max(self.bench.clock.now_s());
         loop {
             let now_s = self.wait();
             let velocity_rad_s = step.velocity.at(now_s - start_s);

@@ -37,12 +37,12 @@ pub(crate) fn legs(run: &RunTable) -> Vec<Leg> {
 }
 
 /// The table of some legs only.
-pub(crate) fn keep<'a>(run: &RunTable, legs: impl IntoIterator<Item = &'a Leg>) -> Result<RunTable, TableFault> {
-    keep_rows(run, &legs.into_iter().map(|leg| leg.rows.clone()).collect::<Vec<_>>())
+pub(crate) fn select_legs<'a>(run: &RunTable, legs: impl IntoIterator<Item = &'a Leg>) -> Result<RunTable, TableFault> {
+    select_rows(run, &legs.into_iter().map(|leg| leg.rows.clone()).collect::<Vec<_>>())
 }
 
 /// The table of some ranges only, in their order.
-pub(crate) fn keep_rows(run: &RunTable, rows: &[Range<usize>]) -> Result<RunTable, TableFault> {
+pub(crate) fn select_rows(run: &RunTable, rows: &[Range<usize>]) -> Result<RunTable, TableFault> {
     let column = |all: &Vec<f64>| rows.iter().flat_map(|rows| &all[rows.clone()]).copied().collect();
     let columns = run.trace().columns().iter().map(column).collect();
     RunTable::new(run.meta().clone(), Trace::from_columns(run.trace().channels().to_vec(), columns))

@@ -24,7 +24,7 @@ pub fn histogram(label: &str, values: &[f64], bins: usize) -> Series {
     Series::new(label, Mark::Bars, x, shares)
 }
 
-pub fn too_little(what: &str, advice: &str) -> Option<Identification> {
+pub fn insufficient_data(what: &str, advice: &str) -> Option<Identification> {
     Some(Identification {
         verdict: Verdict::Inconclusive,
         summary: what.into(),

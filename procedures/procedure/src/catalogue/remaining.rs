@@ -1,11 +1,12 @@
 //! The remaining steps of a plan after an incomplete run, preceded by steps that restore their history.
 
 use super::legs::Legs;
-use crate::continuing::{Continues, Done};
-use crate::place::Place;
-use crate::plan::{BenchFacts, Phase, Plan, Step};
+use crate::bench_facts::BenchFacts;
+use crate::plan::{Phase, Plan, Step};
 use crate::profile::Profile;
 use crate::recorder::RunId;
+use crate::resume::{Continuation, FinishedSteps};
+use crate::stage_pose::StagePose;
 use jointbench_instrument::RunTable;
 use std::sync::Arc;
 
@@ -18,7 +19,7 @@ impl Plan {
     /// from below. `first_segment` is the first unused segment number.
     ///
     /// `None` if nothing remains, or if only the warm-up was done.
-    pub fn rest(mut self, run: RunId, from_step: usize, first_segment: u32, bench: &BenchFacts) -> Option<Plan> {
+    pub fn remaining(mut self, run: RunId, from_step: usize, first_segment: u32, bench: &BenchFacts) -> Option<Plan> {
         let (done, left) = self.steps.split_at_checked(from_step)?;
         if left.is_empty() || done.iter().all(|step| step.phase == Phase::WarmUp) {
             return None;
@@ -53,24 +54,24 @@ impl Plan {
         let mut left = left.to_vec();
         // The last commanded pose of the stage.
         let place = done.iter().rev().find_map(|step| match step.place {
-            Place::At(pose) => Some(pose),
-            Place::AsLeft | Place::Edge(_) => None,
+            StagePose::At(pose) => Some(pose),
+            StagePose::AsLeft | StagePose::Edge(_) => None,
         });
-        if let (Place::AsLeft, Some(pose)) = (&left[0].place, place) {
-            left[0].place = Place::At(pose);
+        if let (StagePose::AsLeft, Some(pose)) = (&left[0].place, place) {
+            left[0].place = StagePose::At(pose);
         }
         self.begins_rad = begins_rad;
         self.steps = legs.steps;
         self.steps.append(&mut left);
-        let continues = Continues { run, from_step, restored, restored_from: first_segment };
-        continues.note_in(&mut self.meta);
+        let continuation = Continuation { run, from_step, restored, restored_from: first_segment };
+        continuation.write_to(&mut self.meta);
         Some(self)
     }
 
     /// Adds the earlier measurements and their finished steps, if the remaining steps depend on them.
-    pub fn recalling(mut self, measured: RunTable, done: Done) -> Plan {
-        if let Some(lesson) = &mut self.lesson {
-            lesson.earlier = Some(Arc::new((measured, done)));
+    pub fn with_earlier_measurement(mut self, measured: RunTable, finished: FinishedSteps) -> Plan {
+        if let Some(deferred) = &mut self.deferred {
+            deferred.earlier = Some(Arc::new((measured, finished)));
         }
         self
     }
@@ -92,10 +93,10 @@ mod tests {
     fn the_rest_begins_warm_demagnetised_and_under_the_load_of_its_first_step() {
         let whole = plan(json!({}));
         let from = whole.steps.iter().position(|step| step.brake.at(0.0) > 0.1).unwrap();
-        let rest = whole.clone().rest(7, from, 3, &joint_a()).unwrap();
-        let continues = Continues::of(&rest.meta).unwrap();
-        assert_eq!((continues.run, continues.from_step), (7, from));
-        let (restoring, left) = rest.steps.split_at(continues.restored);
+        let rest = whole.clone().remaining(7, from, 3, &joint_a()).unwrap();
+        let continuation = Continuation::of(&rest.meta).unwrap();
+        assert_eq!((continuation.run, continuation.from_step), (7, from));
+        let (restoring, left) = rest.steps.split_at(continuation.restored);
         assert_eq!(left, &whole.steps[from..]);
         assert!(restoring.iter().all(|step| step.segment >= whole.steps.len() as u32), "numbers of their own");
         assert!(restoring[0].phase == Phase::WarmUp);
@@ -110,10 +111,10 @@ mod tests {
     #[test]
     fn what_is_left_of_a_campaign_fits_into_the_range_wherever_it_ended() {
         let whole = procedure("identify_joint").unwrap().plan(&Map::new(), &joint_a()).unwrap();
-        let rests = (0..whole.steps.len()).filter_map(|from| whole.clone().rest(1, from, 0, &joint_a()));
+        let rests = (0..whole.steps.len()).filter_map(|from| whole.clone().remaining(1, from, 0, &joint_a()));
         let refused: Vec<_> = rests
             .flat_map(|rest| {
-                let from = Continues::of(&rest.meta).unwrap().from_step;
+                let from = Continuation::of(&rest.meta).unwrap().from_step;
                 let broken = rest.preview(&joint_a()).checks.into_iter().filter(|check| !check.ok);
                 broken.map(move |check| (from, check.detail)).collect::<Vec<_>>()
             })
@@ -126,8 +127,8 @@ mod tests {
         let whole = plan(json!({}));
         let measured = whole.steps.iter().position(|step| step.phase == Phase::Measure).unwrap();
         let count = whole.steps.len();
-        assert!(whole.clone().rest(1, measured, 0, &joint_a()).is_none());
-        assert!(whole.clone().rest(1, measured + 1, 0, &joint_a()).is_some());
-        assert!(whole.clone().rest(1, count, 0, &joint_a()).is_none(), "all done");
+        assert!(whole.clone().remaining(1, measured, 0, &joint_a()).is_none());
+        assert!(whole.clone().remaining(1, measured + 1, 0, &joint_a()).is_some());
+        assert!(whole.clone().remaining(1, count, 0, &joint_a()).is_none(), "all done");
     }
 }

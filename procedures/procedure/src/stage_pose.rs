@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Pose of the stage during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub enum Place {
+pub enum StagePose {
     /// The last pose.
     #[default]
     AsLeft,

@@ -1,23 +1,24 @@
 //! Compensation of the friction that the campaign itself identified.
 
 use super::super::compensation::{self, Compensation};
-use super::super::{Learnt, Procedure};
+use super::super::{PlannedSteps, Procedure};
 use super::{Friction, found, numbered, parts_of};
+use crate::bench_facts::BenchFacts;
+use crate::deferred_plan::DeferredPlan;
 use crate::identification::Verdict;
-use crate::plan::{BenchFacts, Lesson};
 use jointbench_instrument::RunTable;
 use serde_json::Value;
 use std::ops::Range;
 
 /// The part that waits, and the part that it depends on.
-pub(super) fn lesson(facts: &[Value]) -> Option<Lesson> {
+pub(super) fn deferred_plan(facts: &[Value]) -> Option<DeferredPlan> {
     let [from, to] =
         [&Friction as &dyn Procedure, &Compensation].map(|part| Some(segments(&facts[place(facts, part)?])));
-    Some(Lesson { from: from?, to: to?, earlier: None })
+    Some(DeferredPlan { from: from?, to: to?, earlier: None })
 }
 
 /// The steps of compensation with the friction identified from the earlier rows.
-pub(super) fn compensation(run: &RunTable, bench: &BenchFacts) -> Result<Learnt, String> {
+pub(super) fn compensation(run: &RunTable, bench: &BenchFacts) -> Result<PlannedSteps, String> {
     let facts = parts_of(run).map_err(|why| why.to_string())?;
     let [from, to] = [&Friction as &dyn Procedure, &Compensation].map(|part| place(facts, part));
     let (from, to) = from.zip(to).ok_or("the campaign does not contain both parts")?;
@@ -35,9 +36,9 @@ pub(super) fn compensation(run: &RunTable, bench: &BenchFacts) -> Result<Learnt,
     }
     let fed: Vec<String> = next.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let first = segments(&facts[to]).start as usize;
-    Ok(Learnt {
+    Ok(PlannedSteps {
         steps: numbered(plan.steps, &Compensation, first).collect(),
-        said: format!("Compensation uses the identified friction: {}", fed.join(", ")),
+        message: format!("Compensation uses the identified friction: {}", fed.join(", ")),
     })
 }
 

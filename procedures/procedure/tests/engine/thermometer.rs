@@ -1,19 +1,19 @@
 //! A bench with a thermometer: its readings are in every run.
 
 use crate::fakes::{Call, Fakes, World};
-use crate::ledger::{Done, loaded_plan, play};
+use crate::ledger::{FinishedRun, loaded_plan, play};
 use jointbench_instrument::FaultKind;
 use jointbench_procedure::*;
 
-fn felt(script: impl FnMut(Call, &mut World) -> Result<(), FaultKind> + Send + 'static) -> Done {
+fn run_with_thermometer(script: impl FnMut(Call, &mut World) -> Result<(), FaultKind> + Send + 'static) -> FinishedRun {
     let (fakes, mut bench) = Fakes::new(script);
-    fakes.feel_warmth(&mut bench);
+    fakes.connect_thermometer(&mut bench);
     play(&fakes, &mut bench, &loaded_plan(), |_| {})
 }
 
 #[test]
 fn every_channel_is_a_column_next_to_the_joints_own_temperature() {
-    let done = felt(|_, world| {
+    let done = run_with_thermometer(|_, world| {
         world.warmth_c = [world.now_s - 100.0, 20.0];
         Ok(())
     });
@@ -39,7 +39,7 @@ fn every_channel_is_a_column_next_to_the_joints_own_temperature() {
 
 #[test]
 fn the_first_channel_replaces_the_temperature_of_a_joint_without_one() {
-    let done = felt(|_, world| {
+    let done = run_with_thermometer(|_, world| {
         world.temperature_c = None;
         Ok(())
     });
@@ -52,7 +52,7 @@ fn the_first_channel_replaces_the_temperature_of_a_joint_without_one() {
 
 #[test]
 fn its_limit_holds_there_too() {
-    let done = felt(|_, world| {
+    let done = run_with_thermometer(|_, world| {
         world.temperature_c = None;
         world.warmth_c[0] = if world.now_s > 102.0 { 81.0 } else { 30.0 };
         Ok(())
@@ -63,7 +63,7 @@ fn its_limit_holds_there_too() {
 
 #[test]
 fn a_thermometer_that_is_lost_ends_the_run_safely() {
-    let done = felt(|call, world| match call {
+    let done = run_with_thermometer(|call, world| match call {
         Call::ReadWarmth if world.now_s > 102.0 => {
             Err(FaultKind::Silent { request: "holding registers".into(), deadline_ms: 50 })
         }

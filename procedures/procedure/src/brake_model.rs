@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Torque of a brake over its current, for any history since demagnetisation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Everett {
+pub struct BrakeModel {
     /// Currents in rising order, the first 0 (A).
     grid_a: Vec<f64>,
     /// Torque reduction by the fall from `grid_a[i]` to `grid_a[j]`, for j ≤ i (Nm).
@@ -15,12 +15,12 @@ pub struct Everett {
 
 /// The turning points of a current that are not erased: highest, lowest, next highest and so on.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct History {
+pub struct CurrentHistory {
     turns_a: Vec<f64>,
     now_a: f64,
 }
 
-impl History {
+impl CurrentHistory {
     /// Moves the current monotonically to another value.
     pub fn go(&mut self, to_a: f64) {
         let to_a = to_a.max(0.0);
@@ -52,7 +52,7 @@ impl History {
     }
 }
 
-impl Everett {
+impl BrakeModel {
     /// From reversal curves: for each current of the grid except 0, the torques at the currents from 0 up to it,
     /// measured while the current falls. The last value is the torque at the reversal. `None` if a curve is missing
     /// or too short.
@@ -67,7 +67,6 @@ impl Everett {
         Some(Self { grid_a: grid_a.to_vec(), falls_nm, drag_nm })
     }
 
-    /// The highest measured current.
     /// Number of currents in the grid, including 0.
     pub fn currents(&self) -> usize {
         self.grid_a.len()
@@ -100,7 +99,7 @@ impl Everett {
 
     /// Torque (Nm) after a history of currents: the classical Preisach model in Everett form (Mayergoyz, "Mathematical
     /// Models of Hysteresis", 1991).
-    pub fn torque_nm(&self, history: &History) -> f64 {
+    pub fn torque_nm(&self, history: &CurrentHistory) -> f64 {
         let (mut torque_nm, mut before_a, mut rises) = (self.drag_nm, 0.0, true);
         for turn_a in history.turns_a.iter().chain([&history.now_a]) {
             torque_nm += if rises { self.fall_nm(*turn_a, before_a) } else { -self.fall_nm(before_a, *turn_a) };
@@ -110,7 +109,7 @@ impl Everett {
     }
 
     /// The current that gives a torque after a history; `None` if the torque is out of range.
-    pub fn current_a(&self, history: &History, torque_nm: f64) -> Option<f64> {
+    pub fn current_a(&self, history: &CurrentHistory, torque_nm: f64) -> Option<f64> {
         let rises = torque_nm >= self.torque_nm(history);
         let (mut low, mut high) = if rises { (history.now_a, self.top_a()) } else { (0.0, history.now_a) };
         let at = |current_a: f64| self.torque_nm(&history.after(current_a));
@@ -152,7 +151,7 @@ mod tests {
         }
     }
 
-    fn measured() -> Everett {
+    fn measured() -> BrakeModel {
         let grid: Vec<f64> = (0..=20).map(|i| f64::from(i) / 20.0).collect();
         let curve = |top: usize| {
             let mut relays = Relays::new();
@@ -162,13 +161,13 @@ mod tests {
             down
         };
         let curves: Vec<Vec<f64>> = (1..=20).map(curve).collect();
-        Everett::from_reversals(&grid, &curves).unwrap()
+        BrakeModel::from_reversals(&grid, &curves).unwrap()
     }
 
     #[test]
     fn any_history_is_predicted_and_inverted() {
         let everett = measured();
-        let (mut relays, mut history) = (Relays::new(), History::default());
+        let (mut relays, mut history) = (Relays::new(), CurrentHistory::default());
         let top = everett.torque_nm(&history.after(1.0));
         for current in [0.83, 0.12, 0.55, 0.31, 0.48, 0.33, 0.97, 0.4, 0.61, 0.0, 0.37] {
             let torque = relays.go(current);
@@ -187,10 +186,10 @@ mod tests {
     #[test]
     fn a_larger_loop_wipes_out_a_smaller_one() {
         let everett = measured();
-        let mut history = History::default();
+        let mut history = CurrentHistory::default();
         for current in [0.8, 0.3, 0.6, 0.3, 0.8] {
             history.go(current);
         }
-        assert_eq!(everett.torque_nm(&history), everett.torque_nm(&History::default().after(0.8)));
+        assert_eq!(everett.torque_nm(&history), everett.torque_nm(&CurrentHistory::default().after(0.8)));
     }
 }

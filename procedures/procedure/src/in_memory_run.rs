@@ -1,9 +1,10 @@
 //! Performs one run in memory: plan, run, identify. For campaigns and tests; the server stores its runs.
 
+use crate::bench_facts::BenchFacts;
 use crate::catalogue::Procedure;
 use crate::identification::Identification;
 use crate::parameter::Values;
-use crate::plan::{BenchFacts, PlanFault};
+use crate::plan::PlanFault;
 use crate::recorder::{Commit, Live, Recorder, RecorderFault};
 use crate::state::RunState;
 use crate::{RunEnd, run};
@@ -13,7 +14,7 @@ use std::sync::mpsc::channel;
 
 /// Result of a run.
 #[derive(Debug)]
-pub struct Conducted {
+pub struct InMemoryRun {
     /// Samples of the run with its facts.
     pub table: RunTable,
     /// `None` if the procedure only records samples.
@@ -24,7 +25,7 @@ pub struct Conducted {
 
 /// Why a run in memory has no result.
 #[derive(Debug, thiserror::Error)]
-pub enum ConductFault {
+pub enum InMemoryRunFault {
     /// The procedure cannot be planned for this bench.
     #[error(transparent)]
     Plan(#[from] PlanFault),
@@ -50,46 +51,46 @@ pub enum ConductFault {
 }
 
 /// Plans a procedure, runs it to its end and identifies the result.
-pub fn conduct(
+pub fn run_in_memory(
     bench: &mut Bench,
     procedure: &dyn Procedure,
     parameters: &Map<String, Value>,
-) -> Result<Conducted, ConductFault> {
+) -> Result<InMemoryRun, InMemoryRunFault> {
     let facts = BenchFacts::of(bench);
-    conduct_knowing(bench, &facts, procedure, parameters)
+    run_in_memory_with_facts(bench, &facts, procedure, parameters)
 }
 
 /// The same with additional facts about the bench.
-pub fn conduct_knowing(
+pub fn run_in_memory_with_facts(
     bench: &mut Bench,
     facts: &BenchFacts,
     procedure: &dyn Procedure,
     parameters: &Map<String, Value>,
-) -> Result<Conducted, ConductFault> {
+) -> Result<InMemoryRun, InMemoryRunFault> {
     let plan = procedure.plan(parameters, facts)?;
     let preview = plan.preview(facts);
     if let Some(broken) = preview.checks.iter().find(|check| !check.ok) {
-        return Err(ConductFault::NotAllowed { procedure: procedure.id(), why: broken.refusal() });
+        return Err(InMemoryRunFault::NotAllowed { procedure: procedure.id(), why: broken.refusal() });
     }
-    let mut kept = Kept::default();
-    // Kept until the end, because a dropped sender stops a run.
+    let mut recorder = RowRecorder::default();
+    // Held until the end, because a dropped sender stops a run.
     let (_held, controls) = channel();
-    let end = run(bench, &plan, 0, &controls, &mut kept);
+    let end = run(bench, &plan, 0, &controls, &mut recorder);
     if end.state != RunState::Completed {
-        return Err(ConductFault::Ended { procedure: procedure.id(), end: Box::new(end) });
+        return Err(InMemoryRunFault::Ended { procedure: procedure.id(), end: Box::new(end) });
     }
-    let table = RunTable::new(plan.meta, kept.rows.unwrap_or_default())?;
+    let table = RunTable::new(plan.meta, recorder.rows.unwrap_or_default())?;
     let values = Values::parse(procedure.schema(), parameters).map_err(PlanFault::from)?;
     let identification = procedure.identify(&values, &table);
-    Ok(Conducted { table, identification, duration_s: end.duration_s })
+    Ok(InMemoryRun { table, identification, duration_s: end.duration_s })
 }
 
 #[derive(Default)]
-struct Kept {
+struct RowRecorder {
     rows: Option<Trace>,
 }
 
-impl Recorder for Kept {
+impl Recorder for RowRecorder {
     fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
         Ok(None)
     }
