@@ -6,6 +6,7 @@ mod maps;
 mod practice;
 mod refused;
 mod round_trip;
+mod simulate;
 mod user_effects;
 
 use crate::program::{jointbench, stderr};
