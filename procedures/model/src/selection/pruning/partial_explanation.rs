@@ -11,7 +11,7 @@ use crate::thresholds::{PERIODS_SEEN, WHOLE_CURVE, WHOLE_EXPLANATION};
 
 /// An added effect that only resembles the missing one: structure remains over its axis, and a free function of that
 /// axis would explain much more. Example: a wave over the angle fitted to a bump at one angle.
-pub fn half_explained<'p>(
+pub fn partially_explained<'p>(
     search: &FloatingSearch<'_, 'p>,
     axis: &str,
     prepared: &Prepared,

@@ -9,13 +9,13 @@ impl<'p> FloatingSearch<'_, 'p> {
     /// just passed the test.
     pub(crate) fn redundant(&self) -> Option<&'p str> {
         let full = self.now.linear().sse;
-        let ids = self.on_trial().map(Term::id).filter(|id| self.last != Some(id));
+        let ids = self.testable().map(Term::id).filter(|id| self.last != Some(id));
         let ids: Vec<&'p str> = ids.collect();
         let share = |id: &'p str| {
             let without = self.now.without(id);
             let share = 1.0 - full / without.linear().sse;
             // An effect is not redundant if the others become physically impossible without it.
-            (share < self.options.practical_share && self.impossible(&without).is_none()).then_some((id, share))
+            (share < self.options.practical_share && self.infeasible(&without).is_none()).then_some((id, share))
         };
         ids.into_par_iter().filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
     }

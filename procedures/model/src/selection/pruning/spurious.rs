@@ -12,19 +12,19 @@ use crate::thresholds::BIAS_TOLERANCE;
 /// An added effect that only follows structure over an axis that is not its own: together with a free function of
 /// that axis it explains nothing. Example: a wave whose mean changes from step to step follows any curve over speed a
 /// little.
-pub fn borrowing<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str, options: &Options) -> Option<&'p str> {
+pub fn spurious<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str, options: &Options) -> Option<&'p str> {
     let functions = maps.functions(axis);
-    let is_borrowed = |term: &&Term<'p>| {
+    let is_spurious = |term: &&Term<'p>| {
         let without = search.now.without(term.id());
         let mut basis = without.tangent();
         functions.iter().for_each(|f| {
             basis.push(f);
         });
         let left = basis.rest(&without.response());
-        let ground = PartialRegression::new(basis, left, search.now.problem);
-        let own = ground.own(&term.columns);
+        let partial = PartialRegression::new(basis, left, search.now.problem);
+        let own = partial.own(&term.columns);
         own.visible > BIAS_TOLERANCE
-            && (own.share < options.practical_share || alone(term, &ground, options) > options.alpha)
+            && (own.share < options.practical_share || alone(term, &partial, options) > options.alpha)
     };
-    search.added().filter(|term| term.effect.regime() != Regime::Hysteresis).find(is_borrowed).map(Term::id)
+    search.added().filter(|term| term.effect.regime() != Regime::Hysteresis).find(is_spurious).map(Term::id)
 }

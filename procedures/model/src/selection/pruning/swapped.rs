@@ -21,7 +21,7 @@ impl<'p> FloatingSearch<'_, 'p> {
                 let clearly = scored.validation_losses < (1.0 - self.options.practical_share) * present;
                 scored.term.id() != id && clearly && !is_tie(&scored.losses, &losses)
             });
-            plain.or_else(|| self.behind_bent(&rest, Some(id), &losses)).map(|found| (id, found))
+            plain.or_else(|| self.masked_by(&rest, Some(id), &losses)).map(|found| (id, found))
         };
         ids.into_par_iter().find_map_first(better)
     }
