@@ -133,3 +133,23 @@ fn is_missing(found: &[f64], expected: &[f64]) -> bool {
     let error = found.iter().zip(expected).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt() / all;
     share < ALIAS_SHARE && 1.0 - share > ALIAS_ERRORS * error
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn a_wave_that_shows_at_one_speed_only_is_an_alias() {
+        let is_alias = |shows: fn(f64) -> bool| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| {
+                let wave = if shows(row.velocity.abs()) { (2.0 * row.angle).cos() } else { 0.0 };
+                5.0 * row.direction + wave + 0.1 * row.scatter
+            });
+            is_none(&tiny.term("cogging", vec![2.0]), &tiny.model(), &tiny.partial())
+        };
+        assert!(is_alias(|speed| speed == 6.0));
+        assert!(!is_alias(|_| true));
+    }
+}

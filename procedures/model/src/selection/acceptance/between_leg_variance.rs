@@ -105,3 +105,25 @@ fn is_between(column: &[f64], legs: &[Range<usize>]) -> bool {
     let of_legs = means(column, legs).into_iter().zip(legs);
     of_legs.map(|(mean, leg)| leg.len() as f64 * mean * mean).sum::<f64>() > BETWEEN_LEGS * dot(column, column)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::selection::tiny::Tiny;
+
+    #[test]
+    fn a_temperature_that_is_unrelated_to_the_scatter_of_legs_is_rejected() {
+        let is_random = |of_temperature: f64, of_legs: f64| {
+            let warm = |leg: usize| (2.1 * leg as f64).sin();
+            let tiny = Tiny::warmed(
+                Kind::Encoder,
+                &["offset"],
+                |row| 25.0 + warm(row.leg),
+                |row| of_temperature * warm(row.leg) + of_legs * row.leg_scatter + 0.1 * row.scatter,
+            );
+            let term = tiny.term("temperature_drift", Vec::new());
+            is_random_leg_effect(&term, &tiny.model(), &tiny.partial(), Kind::Encoder, &tiny.options)
+        };
+        assert!(is_random(0.0, 1.0) && !is_random(1.0, 0.1));
+    }
+}

@@ -12,3 +12,21 @@ impl<'p> FloatingSearch<'_, 'p> {
         sized.find(|(term, coefficients)| !term.allows(coefficients)).map(|(term, _)| term.id())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn negative_coulomb_friction_is_infeasible() {
+        let removed = |coulomb: f64| {
+            let tiny = Tiny::new(Kind::Friction, &["viscous"], |row| {
+                coulomb * row.direction + row.velocity + 0.1 * row.scatter
+            });
+            tiny.removed(&["coulomb"], |search| search.infeasible(&search.now))
+        };
+        assert_eq!(removed(-2.0).as_deref(), Some("coulomb"));
+        assert_eq!(removed(2.0), None);
+    }
+}

@@ -20,3 +20,19 @@ impl<'p> FloatingSearch<'_, 'p> {
         insignificant.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn an_effect_that_leaves_the_validation_error_as_it_is_is_insignificant() {
+        let removed = |offset: f64| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| offset + 5.0 * row.direction + row.scatter);
+            tiny.removed(&["direction_offset"], |search| search.insignificant())
+        };
+        assert_eq!(removed(0.0).as_deref(), Some("direction_offset"));
+        assert_eq!(removed(1.0), None);
+    }
+}

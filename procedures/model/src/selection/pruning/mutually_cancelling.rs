@@ -33,3 +33,22 @@ impl<'p> FloatingSearch<'_, 'p> {
         freed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn a_drag_that_makes_the_coulomb_friction_negative_cancels_it() {
+        let removed = |coulomb: f64| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb", "viscous"], |row| {
+                let drag = row.velocity - 0.05 * row.velocity * row.velocity.abs();
+                coulomb * row.direction + drag + 0.1 * row.scatter
+            });
+            tiny.removed(&["viscous_quadratic"], |search| search.mutually_cancelling())
+        };
+        assert_eq!(removed(-1.0).as_deref(), Some("viscous_quadratic"));
+        assert_eq!(removed(1.0), None);
+    }
+}

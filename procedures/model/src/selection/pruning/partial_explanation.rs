@@ -69,3 +69,23 @@ fn least_share(term: &Term, problem: &Problem) -> f64 {
         false => WHOLE_EXPLANATION,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn a_wave_explains_a_bump_over_the_angle_only_in_part() {
+        let removed = |over_angle: fn(f64) -> f64| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| {
+                5.0 * row.direction + over_angle(row.angle) + 0.05 * row.scatter
+            });
+            tiny.removed(&["gravity"], |search| {
+                super::partially_explained(search, "link_position_rad", &tiny.prepared, &tiny.options)
+            })
+        };
+        assert_eq!(removed(|angle| f64::from(u8::from((1.0..2.0).contains(&angle)))).as_deref(), Some("gravity"));
+        assert_eq!(removed(f64::cos), None);
+    }
+}

@@ -28,3 +28,33 @@ pub fn spurious<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str, op
     };
     search.added().filter(|term| term.effect.regime() != Regime::Hysteresis).find(is_spurious).map(Term::id)
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::residual_analysis::maps::Maps;
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn a_temperature_that_follows_structure_over_speed_is_spurious() {
+        let hump = |velocity: f64| f64::from(u8::from(velocity.abs() == 6.0));
+        let removed = |of_hump: f64, of_temperature: f64| {
+            let temperature = |row: crate::selection::tiny::Row| 4.0 * hump(row.velocity) + 3.0 * row.leg_scatter;
+            let tiny = Tiny::warmed(
+                Kind::Friction,
+                &["coulomb"],
+                |row| 25.0 + temperature(row),
+                |row| {
+                    let size = of_hump * hump(row.velocity) + of_temperature * temperature(row);
+                    (5.0 + size) * row.direction + 0.1 * row.scatter
+                },
+            );
+            tiny.removed(&["temperature_coulomb"], |search| {
+                let maps = Maps::new(&tiny.prepared, search.now.linear().residual, &tiny.options);
+                super::spurious(search, &maps, "motor_velocity_rad_s", &tiny.options)
+            })
+        };
+        assert_eq!(removed(4.0, 0.0).as_deref(), Some("temperature_coulomb"));
+        assert_eq!(removed(0.0, 1.0), None);
+    }
+}

@@ -26,3 +26,25 @@ impl<'p> FloatingSearch<'_, 'p> {
         ids.into_par_iter().find_map_first(better)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn an_effect_that_resembles_the_missing_one_is_swapped_for_it() {
+        let replacement = |drag: fn(f64) -> f64| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| {
+                3.0 + 5.0 * row.direction + drag(row.velocity) + 0.1 * row.scatter
+            });
+            tiny.removed(&["viscous", "direction_offset"], |search| {
+                let (removed, found) = search.swapped()?;
+                assert_eq!(removed, "viscous");
+                Some(found.0.term.id())
+            })
+        };
+        assert_eq!(replacement(|v| 0.1 * v * v.abs()).as_deref(), Some("viscous_quadratic"));
+        assert_eq!(replacement(|v| v), None);
+    }
+}

@@ -70,3 +70,19 @@ pub fn unidentified<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared) ->
     });
     open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn an_effect_whose_size_may_be_zero_is_unidentified() {
+        let removed = |offset: f64| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| offset + 5.0 * row.direction + row.scatter);
+            tiny.removed(&["direction_offset"], |search| super::unidentified(search, &tiny.prepared))
+        };
+        assert_eq!(removed(0.0).as_deref(), Some("direction_offset"));
+        assert_eq!(removed(2.0), None);
+    }
+}
