@@ -1,7 +1,7 @@
 //! Comparison of two revisions of a model.
 
 use crate::fit::evaluate;
-use crate::report::comparison::{Comparison, ParameterPair, Wider};
+use crate::report::comparison::{Comparison, ParameterPair, WiderInterval};
 use crate::report::fit::{Fit, Parameter};
 use crate::{ModelError, words};
 use jointbench_instrument::RunTable;
@@ -56,7 +56,7 @@ const WIDER: f64 = 1.5;
 /// A ratio of rows or errors below this is a reason for a wider interval.
 const FEWER: f64 = 0.8;
 
-fn wider(fits: [&Fit; 2], pair: &ParameterPair) -> Option<Wider> {
+fn wider(fits: [&Fit; 2], pair: &ParameterPair) -> Option<WiderInterval> {
     let width = |p: &Parameter| p.ci95[1] - p.ci95[0];
     let times = width(pair.second.as_ref()?) / width(pair.first.as_ref()?);
     if !times.is_finite() || times <= 0.0 {
@@ -64,7 +64,7 @@ fn wider(fits: [&Fit; 2], pair: &ParameterPair) -> Option<Wider> {
     }
     let (second, times) = (times > 1.0, times.max(1.0 / times));
     let (wide, narrow) = (fits[usize::from(second)], fits[usize::from(!second)]);
-    (times > WIDER).then(|| Wider { second, times, why: why_wider(wide, narrow, pair) })
+    (times > WIDER).then(|| WiderInterval { second, times, why: why_wider(wide, narrow, pair) })
 }
 
 /// The first reason that the fits themselves give.

@@ -131,7 +131,7 @@ fn fitted_terms(assembly: &TwoStageModel) -> (Vec<TermReport>, Vec<Parameter>, V
 /// Notes on a fit for its reader, in sentences.
 fn notes(assembly: &TwoStageModel, nuisance: Option<&Nuisance>, undetermined: Option<String>) -> Vec<String> {
     let (prepared, main) = (assembly.prepared, &assembly.main);
-    let mut notes: Vec<String> = prepared.clashes.all().chain(&prepared.doubts).cloned().collect();
+    let mut notes: Vec<String> = prepared.data_errors.all().chain(&prepared.warnings).cloned().collect();
     notes.extend(nuisance.map(|nuisance| nuisance.note.clone()));
     notes.extend(assembly.hidden.iter().map(|h| format!("{} is not testable with this run: {}", h.effect, h.why)));
     if assembly.effects.iter().any(|e| e == "direction_offset") {
@@ -145,7 +145,7 @@ fn notes(assembly: &TwoStageModel, nuisance: Option<&Nuisance>, undetermined: Op
     notes.extend(undetermined);
     notes.extend(main.terms.iter().filter_map(written));
     let mut instead = main.terms.iter().map(|term| confounding::instead(term.effect, prepared));
-    notes.extend(instead.find(|said| !said.is_empty()).unwrap_or_default());
+    notes.extend(instead.find(|text| !text.is_empty()).unwrap_or_default());
     notes
 }
 

@@ -52,7 +52,7 @@ pub(crate) fn predict_nuisance(fit: &Fit, problem: &Problem) -> Result<Vec<f64>,
             }
             Err(_) => {
                 let place = term.shape.first().map_or(0, |place| *place as usize);
-                let mut columns_of_kind = form_error.columns.iter().filter(|column| column.lives.name() == term.name);
+                let mut columns_of_kind = form_error.columns.iter().filter(|column| column.kind.name() == term.name);
                 let column = columns_of_kind.nth(place).zip(term.linear.first());
                 column.into_iter().for_each(|(column, coefficient)| add(&column.values, *coefficient));
             }

@@ -66,7 +66,7 @@ pub struct View {
     /// Time step of the samples [s].
     pub sample_s: f64,
     /// The measured load of each sample, if `samples` contains a smoothed one.
-    pub felt: Option<Arc<Vec<f64>>>,
+    pub measured_load: Option<Arc<Vec<f64>>>,
     /// Constants of the set-up and limits of the run.
     pub constants: Constants,
     zeros: Vec<f64>,
@@ -83,7 +83,7 @@ impl View {
     ) -> Self {
         let zeros = vec![0.0; points.len()];
         let starts = starts.into_iter().map(Start::from).collect();
-        Self { points, samples, chunks, starts, sample_s, felt: None, constants: Constants::default(), zeros }
+        Self { points, samples, chunks, starts, sample_s, measured_load: None, constants: Constants::default(), zeros }
     }
 
     /// Number of points.
@@ -181,7 +181,7 @@ impl View {
         let mut cos = Vec::with_capacity(angle.len());
         let mut sin = Vec::with_capacity(angle.len());
         let steps = self.samples.find(signal);
-        let speed = self.swiftness(signal);
+        let speed = self.phase_step(signal);
         for (i, a) in angle.iter().enumerate() {
             let fade = match (self.chunks.get(i), steps) {
                 (Some(chunk), Some(samples)) if chunk.len() > 1 => {
@@ -198,7 +198,7 @@ impl View {
     }
 
     /// Turns in a second relative to `followed_hz`. `None` if points are means.
-    fn swiftness(&self, angle: Signal) -> Option<Vec<f64>> {
+    fn phase_step(&self, angle: Signal) -> Option<Vec<f64>> {
         let followed = self.constants.followed_hz?;
         let values = self.get(angle);
         let last = values.len().saturating_sub(1);

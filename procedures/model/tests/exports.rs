@@ -55,19 +55,19 @@ fn c_remembers_a_torque_with_noise_as_the_model_does_a_smooth_one() {
     let run = slipping_joint();
     let fit = fitted(&run, "offset,compliance,torsional_hysteresis");
     let felt: Vec<Vec<f64>> = run.column("link_torque_nm").unwrap().iter().map(|torque| vec![*torque]).collect();
-    let Some(said) = on_controller(&fit, "rad", &felt) else { return };
+    let Some(predicted) = on_controller(&fit, "rad", &felt) else { return };
     let of_fit = residuals(&run, &fit, &Options::default()).unwrap();
     let time = &of_fit.axes.iter().find(|axis| axis.name == "time_s").unwrap().values;
     // A point is the mean of the four samples around its moment.
     let first = |moment: &f64| (moment / STEP_S - 1.5).round() as usize;
-    let mean = |moment: &f64| said[first(moment)..first(moment) + 4].iter().sum::<f64>() / 4.0;
+    let mean = |moment: &f64| predicted[first(moment)..first(moment) + 4].iter().sum::<f64>() / 4.0;
     let c: Vec<f64> = time.iter().map(mean).collect();
     let apart = rms(c.iter().zip(&of_fit.predicted).map(|(c, model)| c - model));
     assert!(apart < fit.rms, "C and model are {apart} apart, and the model errs by {}", fit.rms);
     let error = rms(c.iter().zip(&of_fit.measured).map(|(c, measured)| c - measured));
     let header = export(&fit, Format::C).unwrap();
-    let said = reported(&header, "Error with the measured load of that run, sample by sample: ");
-    assert!((said / error - 1.0).abs() < 0.02, "the header says {said}, and it is {error}");
+    let stated = reported(&header, "Error with the measured load of that run, sample by sample: ");
+    assert!((stated / error - 1.0).abs() < 0.02, "the header says {stated}, and it is {error}");
     assert!(header.contains("torsional_hysteresis_dead_band"), "{header}");
 
     // A file without the noise has no dead band, follows the peaks, and states the resulting error.
@@ -178,8 +178,8 @@ fn a_table_contains_the_mean_of_hysteresis_and_states_its_error() {
     }
     let best = rms(current.iter().zip(torque).map(|(i, t)| means[stretch(i)].0 / means[stretch(i)].1 - t));
     assert!(best > 0.1 && error < 1.02 * best, "the table errs by {error}, the best single curve by {best}\n{text}");
-    let said = reported(&text, "# Error: of this table ");
-    assert!((said / error - 1.0).abs() < 0.05, "the header says {said}, and it is {error}");
+    let stated = reported(&text, "# Error: of this table ");
+    assert!((stated / error - 1.0).abs() < 0.05, "the header says {stated}, and it is {error}");
     assert!(text.contains("# hysteresis remembers: the table holds its mean over current"), "{text}");
     assert!(!text.contains("NOT CARRIED OVER"), "{text}");
 }
@@ -205,6 +205,6 @@ fn a_table_has_points_enough_for_its_fastest_wave() {
     let model = predict(&flat, &moments, 0.004).unwrap();
     let off = rms(asked.iter().zip(&model).map(|(at, model)| lut.at(at) - model));
     assert!(off < 0.02 * 0.006, "{off}");
-    let said = reported(&text, "it is off what it is a table of by ");
-    assert!(off < 1.5 * said && said < 0.02 * 0.006, "the header says {said}, and it is {off}");
+    let stated = reported(&text, "it is off what it is a table of by ");
+    assert!(off < 1.5 * stated && stated < 0.02 * 0.006, "the header says {stated}, and it is {off}");
 }

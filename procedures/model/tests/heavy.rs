@@ -45,8 +45,8 @@ fn teeth_that_bear_load_and_weight_rub_by_both() {
             let [one, other] = ["gravity", "load_linear"].map(|effect| value(&found, effect, name));
             assert!((one - other).abs() < 5e-3, "one weight: {one} {other}");
         }
-        let said = "load_linear is μ·|τ_link/N + g_c·cos θ_link + g_s·sin θ_link|·sign ω in this data";
-        assert!(found.fit.notes.iter().any(|note| note == said), "{:?}", found.fit.notes);
+        let text = "load_linear is μ·|τ_link/N + g_c·cos θ_link + g_s·sin θ_link|·sign ω in this data";
+        assert!(found.fit.notes.iter().any(|note| note == text), "{:?}", found.fit.notes);
     }
 }
 
@@ -55,8 +55,8 @@ fn friction_that_grows_with_the_square_of_both_is_named() {
     let run = run(6, 0.3, |borne| 0.5 * borne * borne);
     let missing = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     let why = |effect: &str| missing.suggestions.iter().find(|s| s.effect == effect).unwrap().why.clone();
-    let said = " load_quadratic is μ_2·(τ_link/N + g_c·cos θ_link + g_s·sin θ_link)²·sign ω in this data.";
-    assert!(why("load_quadratic").ends_with(said), "{}", why("load_quadratic"));
+    let text = " load_quadratic is μ_2·(τ_link/N + g_c·cos θ_link + g_s·sin θ_link)²·sign ω in this data.";
+    assert!(why("load_quadratic").ends_with(text), "{}", why("load_quadratic"));
     assert!(!why("gravity").contains("in this data"), "{}", why("gravity"));
     let found = end(&run);
     assert_eq!(added(&found), ["gravity", "load_quadratic"], "{}", found.summary);

@@ -162,9 +162,9 @@ fn what_lacks_its_signals_is_not_visible_and_no_error() {
                 continue;
             }
             let found = fit(&run, &base.with(id).unwrap(), &Options::default()).unwrap();
-            let said = found.notes.iter().any(|n| n.starts_with(&format!("{id} is not testable with this run")));
+            let text = found.notes.iter().any(|n| n.starts_with(&format!("{id} is not testable with this run")));
             let there = found.terms.iter().any(|t| t.effect == id);
-            assert!(said || there, "{kind} {id}: {:?}", found.notes);
+            assert!(text || there, "{kind} {id}: {:?}", found.notes);
         }
     }
 }

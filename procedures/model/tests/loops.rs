@@ -17,12 +17,12 @@ const SCATTER_NM: f64 = 0.01;
 const DRAG_NM: f64 = 0.5;
 
 /// Up and down in steps, to 1 A first and then to less, three times. `hold_nm` is the largest torque of each contact.
-fn run(hold_nm: f64, bends: bool) -> RunTable {
-    recorded(hold_nm, bends, 0)
+fn run(hold_nm: f64, can_absorb: bool) -> RunTable {
+    recorded(hold_nm, can_absorb, 0)
 }
 
 /// The same without its first steps.
-fn recorded(hold_nm: f64, bends: bool, from: usize) -> RunTable {
+fn recorded(hold_nm: f64, can_absorb: bool, from: usize) -> RunTable {
     let names = ["time_s", "brake_current_a", "brake_torque_nm", "segment", "repeat"];
     let mut trace = Trace::new(names.map(Channel::new).to_vec());
     let levels = [10, 7, 4].into_iter().flat_map(|top: i32| (0..2 * top).map(move |step| top - (step - top).abs()));
@@ -37,7 +37,7 @@ fn recorded(hold_nm: f64, bends: bool, from: usize) -> RunTable {
             pairs.for_each(|(state, slips)| *state = (*state + current - before).clamp(-slips, slips));
             before = current;
             let held: f64 = states.iter().zip(SLIPS).map(|(state, slips)| hold_nm * state / slips).sum();
-            let curve = if bends { 5.0 * (current / 0.8).powi(3).tanh() } else { 6.0 * current };
+            let curve = if can_absorb { 5.0 * (current / 0.8).powi(3).tanh() } else { 6.0 * current };
             let torque = DRAG_NM + curve - held + 2.0 * SCATTER_NM * scatter(at, 1);
             let repeat = (step / levels.len()) as f64;
             if step >= from {
@@ -63,12 +63,12 @@ fn a_current_is_no_number_of_waves() {
 
 #[test]
 fn the_floor_of_a_brake_holds_no_hysteresis() {
-    for (hold_nm, bends, expected) in [
+    for (hold_nm, can_absorb, expected) in [
         (0.0125, false, ["hysteresis"].as_slice()),
         (0.003, false, &["hysteresis"]),
         (0.0125, true, &["saturation", "hysteresis"]),
     ] {
-        let run = run(hold_nm, bends);
+        let run = run(hold_nm, can_absorb);
         let found = end(&run, 4);
         // With the hysteresis in the model and without.
         for found in [&found, &end(&run, 0)] {

@@ -90,7 +90,7 @@ fn what_measured_brakes_reach_is_no_slip_of_a_unit() {
         columns[place].iter_mut().for_each(|value| *value *= coefficient);
         RunTable::new(run.meta().clone(), Trace::from_columns(run.trace().channels().to_vec(), columns)).unwrap()
     };
-    let reported = |run: &RunTable| attention(run).iter().any(|said| said.contains("another unit"));
+    let reported = |run: &RunTable| attention(run).iter().any(|text| text.contains("another unit"));
     for folder in ["data", "hidden-effects"].into_iter().filter_map(shared) {
         for case in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
             let run = read(&case);

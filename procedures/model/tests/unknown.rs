@@ -4,7 +4,7 @@ mod common;
 
 use common::bench::Staircase;
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
-use jointbench_model::export::{Alongside, Format, export};
+use jointbench_model::export::{Format, OnlinePrediction, export};
 use jointbench_model::{
     Diagnosis, Fit, ModelSpec, Options, OwnEffect, Verdict, diagnose, evaluate, fit, maps, residuals,
 };
@@ -112,13 +112,13 @@ fn a_formula_over_the_column_takes_it_off() {
 
     // During a run the column is read row by row; without it there is no prediction.
     let (kt, gear) = (run.meta().torque_constant_nm_per_a.unwrap(), run.meta().gear_ratio.unwrap());
-    let live = || Alongside::new(fitted.clone(), kt, gear).unwrap();
-    let [measured, model] = live().tell(run.trace()).unwrap();
+    let live = || OnlinePrediction::new(fitted.clone(), kt, gear).unwrap();
+    let [measured, model] = live().push(run.trace()).unwrap();
     let left = measured.iter().zip(&model).map(|(m, p)| (m - p).powi(2)).sum::<f64>() / measured.len() as f64;
     assert!(left.sqrt() < 4e-3, "{}", left.sqrt());
-    assert!(live().tell(other.trace()).is_none());
+    assert!(live().push(other.trace()).is_none());
 
     let without = fit(&other, &spec, &Options::default()).unwrap();
-    let said = "middle is not testable with this run: the run has no column oil_pressure_pa";
-    assert!(without.notes.iter().any(|note| note == said), "{:?}", without.notes);
+    let text = "middle is not testable with this run: the run has no column oil_pressure_pa";
+    assert!(without.notes.iter().any(|note| note == text), "{:?}", without.notes);
 }

@@ -12,7 +12,7 @@ use crate::residual_analysis::{lack_of_fit, noise_floor};
 use crate::selection;
 use crate::selection::advance::SelectionStep;
 use crate::selection::model_selection::ModelSelection;
-use crate::selection::refused::Decided;
+use crate::selection::refused::EvidenceResult;
 use crate::selection::removal::Withdrawn;
 use crate::thresholds::{FLOOR_RATIO, REPEATABLE_SHARE, STRUCTURE_SHARE};
 use crate::{ModelError, ModelSpec, Options};
@@ -34,11 +34,11 @@ pub struct Findings<'p> {
     /// Effects of the last model with the effects that are confounded with them.
     ties: Vec<(&'p str, &'p str)>,
     /// Effects of the last model that hardly reduce the error, but prevent biased coefficients.
-    pub upheld: Vec<Imitated>,
+    pub retained: Vec<Imitated>,
     /// An effect that may be present as well.
     pub open: Option<Imitated>,
     /// Result of the evidence search, for runs that are judged sample by sample.
-    pub decided: Option<Decided<'p>>,
+    pub decided: Option<EvidenceResult<'p>>,
 }
 
 impl<'p> Findings<'p> {
@@ -62,7 +62,7 @@ impl<'p> Findings<'p> {
         let scatters = selected.decided.is_none()
             && lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
         let end_validation_rms = validation_rms(&selected.end().main);
-        let ModelSelection { start, advances, withdrawn, maps, ties, upheld, open, decided, .. } = selected;
+        let ModelSelection { start, advances, withdrawn, maps, ties, retained, open, decided, .. } = selected;
         Ok(Self {
             start,
             advances,
@@ -74,7 +74,7 @@ impl<'p> Findings<'p> {
             floor,
             end_validation_rms,
             ties,
-            upheld,
+            retained,
             open,
             decided,
         })

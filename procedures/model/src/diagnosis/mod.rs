@@ -17,7 +17,7 @@ use crate::report::diagnosis::{Diagnosis, Discovery, Evidence, Experiment, Step,
 use crate::report::fit::Parameter;
 use crate::report::maps::{PairMap, Region};
 use crate::residual_analysis::maps::Maps;
-use crate::residual_analysis::maps::regions::yardstick;
+use crate::residual_analysis::maps::regions::reference;
 use crate::selection::advance::SelectionStep;
 use crate::words::{figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
@@ -73,7 +73,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let remembering = found.ranking().into_iter().filter_map(|(advance, _)| advance.added.as_ref());
     let apart = remembering.filter(|scored| found.start.is_apart(scored.term.effect));
     let reach = apart.filter_map(|scored| scored.term.shape.first().copied());
-    let measure = yardstick(&fit, Some(&found.floor));
+    let measure = reference(&fit, Some(&found.floor));
     let reversals = reach.filter_map(|reach| reversals::region(&found.start, reach, &fit, measure.as_ref()));
     regions.splice(0..0, reversals.collect::<Vec<_>>());
     let structure = structure(&found, verdict);
@@ -86,7 +86,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         noise_floor: found.floor.clone(),
         verdict,
         undecided_reason: undecided.as_ref().map(|why| why.reason),
-        undecided: undecided.map(|why| why.said),
+        undecided: undecided.map(|why| why.text),
         summary: match verdict {
             Verdict::MissingEffect => narrative::missing(&found, &fit, &complete, &suggestions),
             _ => narrative::end(&found, &complete, structure.as_ref(), options, false),
@@ -142,7 +142,7 @@ pub fn discover(
         noise_floor: found.floor.clone(),
         verdict,
         undecided_reason: undecided.as_ref().map(|why| why.reason),
-        undecided: undecided.map(|why| why.said),
+        undecided: undecided.map(|why| why.text),
         summary: narrative::end(&found, &fit, structure.as_ref(), options, is_cut)
             + &narrative::nowhere(verdict, &found.maps, &regions, &fit),
         shows_over: shows_over(&found, structure.as_ref()),
@@ -197,8 +197,8 @@ fn suggestions(
         let tie = tie(&found.start, &alone, &confounded_with, spec, options)?;
         let evidence = if apart {
             format!("Around reversals it reduces the squared error by {}.", percent(scored.share))
-        } else if let Some(upheld) = found.upheld.iter().find(|u| u.effect == id) {
-            format!("Removing it hardly changes the error, but without it {}.", narrative::elsewhere(upheld, false))
+        } else if let Some(retained) = found.retained.iter().find(|u| u.effect == id) {
+            format!("Removing it hardly changes the error, but without it {}.", narrative::elsewhere(retained, false))
         } else if found.decided.is_some() && reduction <= 0.0 {
             format!("Away from reversals and rest it reduces the squared error by {}.", percent(importance))
         } else if found.decided.is_some() {
@@ -210,7 +210,7 @@ fn suggestions(
         };
         let written = found.end().main.terms.iter().find(|term| term.id() == id).and_then(written);
         let instead = confounding::instead(scored.term.effect, found.start.prepared);
-        let also: String = written.into_iter().chain(instead).map(|said| format!(" {said}.")).collect();
+        let also: String = written.into_iter().chain(instead).map(|text| format!(" {text}.")).collect();
         let why = format!("{} {evidence}{tie}{also}", info.sentence);
         let reduction_ci95 = (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten();
         let together = found.lost_without(id);
@@ -273,7 +273,7 @@ fn leave_open(fit: &mut Fit, found: &Findings) {
 fn regions(maps: &Maps, fit: &Fit, found: &Findings, is_adequate: bool) -> Vec<Region> {
     match is_adequate {
         true => Vec::new(),
-        false => maps.regions(&fit.unit, yardstick(fit, Some(&found.floor)).as_ref()),
+        false => maps.regions(&fit.unit, reference(fit, Some(&found.floor)).as_ref()),
     }
 }
 
@@ -288,7 +288,7 @@ fn shows_over(found: &Findings, structure: Option<&PairMap>) -> Vec<String> {
 
 /// The recommended next run.
 fn experiment(found: &Findings, prepared: &Prepared) -> Option<Experiment> {
-    if found.floor.rms.is_none() && prepared.clashes.is_empty() {
+    if found.floor.rms.is_none() && prepared.data_errors.is_empty() {
         let mut parameters = serde_json::Map::new();
         parameters.insert("repeats".into(), 3.into());
         return Some(Experiment {

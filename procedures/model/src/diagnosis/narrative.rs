@@ -8,7 +8,7 @@ use crate::report::maps::{PairMap, Region};
 use crate::residual_analysis::events::Events;
 use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
-use crate::residual_analysis::structure::Left;
+use crate::residual_analysis::structure::Unexplained;
 use crate::selection::removal::Withdrawn;
 use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, SMALL_REDUCTION, TOLD_LOSS};
 use crate::words::{Scale, figure, list, percent, spoken_axis};
@@ -99,7 +99,7 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
     let unit = Scale::of(fit.validation_rms, &fit.unit);
     let (error, floor) = (unit.figure(fit.validation_rms), floor(found, fit, &unit));
     let verdict = found.end_verdict();
-    let said = match (verdict, undecided(found, &[fit], verdict, options)) {
+    let text = match (verdict, undecided(found, &[fit], verdict, options)) {
         (Verdict::UnexplainedStructure, _) => format!(
             "Unexplained structure remains: {}; {floor}. {}",
             structure(found, fit, shown),
@@ -120,14 +120,14 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
         (_, None) => {
             format!("The model explains this run. Validation error {error}, {floor}{}.", above(found, fit))
         }
-        (_, Some(Undecided { said: why, .. })) => format!(
+        (_, Some(Undecided { text: why, .. })) => format!(
             "This run identifies no further effect (validation error {error}). Whether the model is adequate cannot be \
              decided: {why}."
         ),
     };
     // For an otherwise adequate model, the sentence itself contains this.
     let sized: &[&Fit] = if verdict == Verdict::UnexplainedStructure { &[fit] } else { &[] };
-    attention(found, sized) + &said + &scatter(found, verdict, &fit.unit) + &open(found) + &rejected(found, &fit.unit)
+    attention(found, sized) + &text + &scatter(found, verdict, &fit.unit) + &open(found) + &rejected(found, &fit.unit)
 }
 
 /// Why the structure over an axis counts as noise.
@@ -137,22 +137,22 @@ fn scatter(found: &Findings, verdict: Verdict, unit: &str) -> String {
         true => ", or friction depends on an angle that the repeats pass at other times",
         false => "",
     };
-    let said = |rms: f64| {
+    let text = |rms: f64| {
         format!(
             " Part of the residual depends on an axis but hardly recurs in other repeats: the zero drifts by {} between \
              sections of the run{elsewhere}.",
             figure(rms, unit)
         )
     };
-    found.scatter_rms().filter(|_| verdict == Verdict::Adequate).map(said).unwrap_or_default()
+    found.scatter_rms().filter(|_| verdict == Verdict::Adequate).map(text).unwrap_or_default()
 }
 
 /// An effect that may be present as well, because the error does not decide.
 fn open(found: &Findings) -> String {
-    let said = |open: &Imitated| {
+    let text = |open: &Imitated| {
         format!(" This run does not determine whether {} is present: with it {}.", open.effect, elsewhere(open, true))
     };
-    found.open.as_ref().map(said).unwrap_or_default()
+    found.open.as_ref().map(text).unwrap_or_default()
 }
 
 /// The parameter that the absence of an imitated effect biases.
@@ -170,17 +170,17 @@ const CORRECT_ALL: &str =
 /// all fits. A constant input of an offset term is also reported, because its sensor may not have been connected.
 fn attention(found: &Findings, fits: &[&Fit]) -> String {
     let problem = |what: &String| format!("Data problem: {what}. ");
-    let clashes = &found.start.prepared.clashes;
-    let correct = || if clashes.void.is_empty() { CORRECT } else { CORRECT_ALL }.to_owned();
-    let correct = (!clashes.is_empty()).then(correct);
-    let clashes = clashes.all().map(problem).chain(correct);
+    let data_errors = &found.start.prepared.data_errors;
+    let correct = || if data_errors.fatal.is_empty() { CORRECT } else { CORRECT_ALL }.to_owned();
+    let correct = (!data_errors.is_empty()).then(correct);
+    let data_errors = data_errors.all().map(problem).chain(correct);
     let impossible = impossible(fits).map(|what| format!("Implausible: {what}. "));
     let spec = found.start.spec;
     let view = &found.start.main.problem.view;
     let is_dependent = |id: &str| spec.find(id).is_ok_and(|e| e.is_offset() && e.missing(view).is_none());
     let dead = found.start.hidden.iter().find(|h| is_dependent(&h.effect));
     let dead = dead.map(|h| format!("Data problem: {}; if that input was active, the results are wrong. ", h.why));
-    clashes.chain(impossible).chain(dead).collect()
+    data_errors.chain(impossible).chain(dead).collect()
 }
 
 /// The noise floor, and why an error may be smaller.
@@ -250,7 +250,8 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
 pub fn shown_over(found: &Findings, shown: Option<&PairMap>) -> Option<(Vec<String>, f64)> {
     if let Some(decided) = &found.decided {
         let prepared = found.start.prepared;
-        let named = |left: &Left| left.over.iter().map(|signal| prepared.column_name(*signal).to_owned()).collect();
+        let named =
+            |left: &Unexplained| left.over.iter().map(|signal| prepared.column_name(*signal).to_owned()).collect();
         return decided.left.as_ref().map(|left| (named(left), left.share));
     }
     let pair = shown.map(|s| (vec![s.x.clone(), s.y.clone()], s.removable_share));
@@ -277,7 +278,7 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
 /// The reason why a verdict is undecided, and the sentence for it.
 pub struct Undecided {
     pub reason: UndecidedReason,
-    pub said: String,
+    pub text: String,
 }
 
 /// Why the verdict is undecided: contradicting columns, too few blocks to reject a model, an unknown noise floor, or
@@ -286,8 +287,8 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
     let blocks = found.start.main.problem.blocks;
     // The smallest possible p-value of sign flips with this number of blocks.
     let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
-    let (reason, said) = match verdict {
-        _ if !found.start.prepared.clashes.is_empty() => {
+    let (reason, text) = match verdict {
+        _ if !found.start.prepared.data_errors.is_empty() => {
             (UndecidedReason::ContradictoryColumns, "its columns contradict each other".to_owned())
         }
         Verdict::Adequate if smallest > options.alpha => {
@@ -301,7 +302,7 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
         Verdict::Adequate | Verdict::MissingEffect => (UndecidedReason::ImpossibleParameter, impossible(fits)?),
         Verdict::UnexplainedStructure => return None,
     };
-    Some(Undecided { reason, said })
+    Some(Undecided { reason, text })
 }
 
 /// A parameter that is physically impossible in all fits. With an additional curve in the model, the remaining linear
@@ -321,7 +322,7 @@ fn impossible(fits: &[&Fit]) -> Option<String> {
 
 /// Statement about unexplained structure; a rejected effect might explain it.
 fn unexplained(found: &Findings) -> &'static str {
-    if !found.start.prepared.clashes.void.is_empty() {
+    if !found.start.prepared.data_errors.fatal.is_empty() {
         return "No effect was tested.";
     }
     let is_refused = found.decided.as_ref().is_some_and(|decided| !decided.refused.is_empty());

@@ -10,7 +10,7 @@ use crate::words::figure;
 
 /// Difference between measured and predicted friction within `reach` of a reversal. The interval is Student's t over
 /// the reversals. `None` with fewer than three.
-pub fn region(model: &TwoStageModel, reach: f64, fit: &Fit, yardstick: Option<&ReferenceMagnitude>) -> Option<Region> {
+pub fn region(model: &TwoStageModel, reach: f64, fit: &Fit, reference: Option<&ReferenceMagnitude>) -> Option<Region> {
     let problem = model.prepared.memory.as_ref()?;
     let samples = &problem.view.samples;
     let (position, direction) = (samples.find(Signal::Position)?, samples.find(Signal::Direction)?);
@@ -31,7 +31,7 @@ pub fn region(model: &TwoStageModel, reach: f64, fit: &Fit, yardstick: Option<&R
     let t = student::quantile(means.len() as f64 - 1.0, 0.975).filter(|_| means.len() >= 3)?;
     let half_width = t * summary::standard_error(&means);
     let side = if mean > 0.0 { "low" } else { "high" };
-    let measure = yardstick.map_or_else(String::new, |y| format!(", {}", y.says(mean.abs())));
+    let measure = reference.map_or_else(String::new, |y| format!(", {}", y.says(mean.abs())));
     let angle = model.prepared.column_unit(Signal::Position);
     Some(Region {
         axis: "way_since_reversal_rad".into(),

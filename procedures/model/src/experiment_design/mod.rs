@@ -138,7 +138,7 @@ pub fn next_run(run: &RunTable, open: &Open, menu: &[Choice], options: &Options)
 
 fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Result<Next, ModelError> {
     let prepared = prepare(run, options)?;
-    if !prepared.clashes.is_empty() {
+    if !prepared.data_errors.is_empty() {
         return Ok(Next::default());
     }
     let spec = ModelSpec::with_own(run.kind(), &open.model, open.own.clone())?;
@@ -148,7 +148,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let known = menu.iter().filter(|choice| !choice.stretches.is_empty());
     let simulated = known.map(|choice| (choice, simulate(choice, &prepared, &model, gear))).collect();
     let side = Side::new(&model.main, &noise);
-    let offer = Offer { menu, simulated, prepared: &prepared, model: &model, side, noise, options };
+    let offer = RunPlanner { menu, simulated, prepared: &prepared, model: &model, side, noise, options };
     let mut in_vain = Vec::new();
     for (effect, alternatives) in &open.ties {
         let (experiment, vain) = offer.distinguish(effect, alternatives, open)?;
@@ -173,7 +173,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
 }
 
 /// The menu with its simulated runs, and the model on the measured run.
-struct Offer<'a> {
+struct RunPlanner<'a> {
     menu: &'a [Choice],
     simulated: Vec<(&'a Choice, Problem)>,
     prepared: &'a Prepared,
@@ -183,9 +183,9 @@ struct Offer<'a> {
     options: &'a Options,
 }
 
-impl<'a> Offer<'a> {
+impl<'a> RunPlanner<'a> {
     /// The run that separates the model from all these alternatives.
-    fn decided(&self, alternatives: &[ModelSpec]) -> Result<Option<Bid<'a>>, ModelError> {
+    fn decided(&self, alternatives: &[ModelSpec]) -> Result<Option<ScoredRun<'a>>, ModelError> {
         let others = alternatives.iter().map(|spec| TwoStageModel::new(self.prepared, spec, self.options));
         let others: Vec<TwoStageModel> = others.collect::<Result<_, _>>()?;
         let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &self.noise)).collect();
@@ -194,7 +194,7 @@ impl<'a> Offer<'a> {
         let useful = self.simulated.iter().filter(|(choice, _)| asks_for_power_ups || !choice.powers_anew());
         Ok(decide(useful.map(|(choice, problem)| {
             let apart = others.iter().map(|other| self.side.separation(other, problem, &self.noise));
-            Bid { choice, z: apart.fold(f64::INFINITY, f64::min) }
+            ScoredRun { choice, z: apart.fold(f64::INFINITY, f64::min) }
         })))
     }
 
@@ -283,20 +283,20 @@ fn over_time(model: &ModelSpec, prepared: &Prepared) -> Result<Option<(String, M
 
 /// A choice with its expected separation.
 #[derive(Clone, Copy)]
-struct Bid<'m> {
+struct ScoredRun<'m> {
     choice: &'m Choice,
     z: f64,
 }
 
 /// The shortest run that separates the models, otherwise the run with the largest separation.
-fn decide<'m>(bids: impl Iterator<Item = Bid<'m>>) -> Option<Bid<'m>> {
-    let bids: Vec<Bid> = bids.filter(|bid| bid.z.is_finite() && bid.z >= USELESS_Z).collect();
+fn decide<'m>(bids: impl Iterator<Item = ScoredRun<'m>>) -> Option<ScoredRun<'m>> {
+    let bids: Vec<ScoredRun> = bids.filter(|bid| bid.z.is_finite() && bid.z >= USELESS_Z).collect();
     let enough = bids.iter().filter(|bid| bid.z >= SEPARATED_Z);
     let shortest = enough.min_by(|a, b| a.choice.duration_s.total_cmp(&b.choice.duration_s));
     shortest.or_else(|| bids.iter().max_by(|a, b| a.z.total_cmp(&b.z))).copied()
 }
 
-fn experiment<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String>) -> Experiment {
+fn experiment<'e>(bid: ScoredRun, what: &str, separates: impl IntoIterator<Item = &'e String>) -> Experiment {
     let times = (SEPARATED_Z / bid.z).powi(2).ceil();
     let enough = if bid.z >= SEPARATED_Z {
         String::new()

@@ -113,7 +113,7 @@ impl<'a> Side<'a> {
             predict(self.model, run).iter().zip(predict(alternative.model, run)).map(|(a, b)| a - b).collect();
         let difference = noise.whiten(&difference, run);
         let (own, other) = (self.at(run, noise), alternative.at(run, noise));
-        let one_way = |side: &Side, at: &There, wrong: &There| {
+        let one_way = |side: &Side, at: &RunColumns, wrong: &RunColumns| {
             // A term that only the other model has in the new run cannot be followed, unless this model has one as
             // well.
             let new = if at.new.is_empty() { wrong.new.as_slice() } else { &[] };
@@ -124,7 +124,7 @@ impl<'a> Side<'a> {
 
     /// Squared norm of the remainder of a whitened column at the new run, after the model is refitted within the
     /// information of the measured run.
-    fn left_over(&self, white: &[f64], there: &There) -> f64 {
+    fn left_over(&self, white: &[f64], there: &RunColumns) -> f64 {
         let side: Vec<f64> = there.columns().map(|c| dot(c, white)).collect();
         let followed = Cholesky::new(&self.known_then(there), side.len(), 0.0).whiten(&side);
         dot(white, white) - dot(&followed, &followed)
@@ -132,7 +132,7 @@ impl<'a> Side<'a> {
 
     /// Information about the coefficient of a further whitened column, from the measured run and with the new run:
     /// squared standard deviations of a coefficient of one.
-    pub fn information(&self, now: &[f64], then: &[f64], there: &There) -> (f64, f64) {
+    pub fn information(&self, now: &[f64], then: &[f64], there: &RunColumns) -> (f64, f64) {
         let alone: Vec<f64> = self.columns.iter().map(|c| dot(c, now)).collect();
         let begun = alone.iter().copied().chain(std::iter::repeat(0.0));
         let both: Vec<f64> = begun.zip(there.columns()).map(|(a, c)| a + dot(c, then)).collect();
@@ -146,7 +146,7 @@ impl<'a> Side<'a> {
     }
 
     /// Information about all parameters after both runs.
-    fn known_then(&self, there: &There) -> Vec<f64> {
+    fn known_then(&self, there: &RunColumns) -> Vec<f64> {
         let (before, all) = (self.columns.len(), there.columns().count());
         let mut both = gram(&there.columns().collect::<Vec<_>>());
         for a in 0..all {
@@ -160,7 +160,7 @@ impl<'a> Side<'a> {
     }
 
     /// The model at another run.
-    pub fn at(&self, run: &Problem, noise: &Noise) -> There {
+    pub fn at(&self, run: &Problem, noise: &Noise) -> RunColumns {
         let there = elsewhere(self.model, run);
         let (mut known, mut new) = (Vec::new(), Vec::new());
         for (term, coefficients) in there.terms.iter().zip(&self.coefficients) {
@@ -174,19 +174,19 @@ impl<'a> Side<'a> {
             new.extend(term.columns.iter().map(|c| noise.whiten(&sized(c), run)));
         }
         known.extend(there.slopes(&self.coefficients).into_iter().map(|(_, _, slope)| noise.whiten(&slope, run)));
-        There { known, new }
+        RunColumns { known, new }
     }
 }
 
 /// Whitened columns of a model at another run.
-pub struct There {
+pub struct RunColumns {
     /// Columns of the parameters that the measured run has.
     known: Vec<Vec<f64>>,
     /// Columns of parameters that exist only in the new run, scaled by their expected size.
     new: Vec<Vec<f64>>,
 }
 
-impl There {
+impl RunColumns {
     fn columns(&self) -> impl Iterator<Item = &Vec<f64>> {
         self.known.iter().chain(&self.new)
     }

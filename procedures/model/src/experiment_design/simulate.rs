@@ -57,7 +57,7 @@ pub fn simulate(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gea
         replicate_pairs: Vec::new(),
         different_history: HashSet::new(),
         different_angle: HashSet::new(),
-        unlike: None,
+        different_motion: None,
         segment: vec![0; rows],
         repeat: vec![0; rows],
         settled: true,

@@ -2,7 +2,7 @@
 
 use crate::effect::{Effect, Regime, ShapeSearch};
 use crate::experiment_design::separation::{Noise, Side};
-use crate::experiment_design::{Bid, Choice, SEPARATED_Z};
+use crate::experiment_design::{Choice, SEPARATED_Z, ScoredRun};
 use crate::linear::basis::dot;
 use crate::preprocess::Problem;
 use crate::regression::linear_model::columns;
@@ -19,7 +19,7 @@ const FOUND_Z: f64 = 2.8;
 pub fn unseen(model: &TwoStageModel, noise: &Noise, simulated: &[(&Choice, Problem)]) -> Option<Experiment> {
     let is_friction = model.spec.kind == Kind::Friction;
     let side = Side::new(&model.main, noise);
-    let mut best: Option<(Bid, Vec<&str>)> = None;
+    let mut best: Option<(ScoredRun, Vec<&str>)> = None;
     for (choice, run) in simulated {
         let worth = match is_friction {
             true => WORTH_SEEING * dot(&run.target, &run.target).sqrt(),
@@ -40,7 +40,7 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, simulated: &[(&Choice, Probl
             seen.len() > effects.len() || seen.len() == effects.len() && choice.duration_s < bid.choice.duration_s
         });
         if !seen.is_empty() && better {
-            best = Some((Bid { choice, z }, seen.into_iter().map(|s| s.0).collect()));
+            best = Some((ScoredRun { choice, z }, seen.into_iter().map(|s| s.0).collect()));
         }
     }
     best.map(|(bid, effects)| experiment(bid, &effects, is_friction))
@@ -75,7 +75,7 @@ fn columns_of(effect: &dyn Effect, model: &TwoStageModel, run: &Problem, worth: 
     Some((now, then))
 }
 
-fn experiment(bid: Bid, effects: &[&str], is_friction: bool) -> Experiment {
+fn experiment(bid: ScoredRun, effects: &[&str], is_friction: bool) -> Experiment {
     let worth = match is_friction {
         true => format!("{} % of the torque there", 100.0 * WORTH_SEEING),
         false => "what is as large as the scatter of one reading".to_owned(),

@@ -36,7 +36,9 @@ pub fn remembered(part: &Part) -> Option<Signal> {
 
 /// Error of the C code on the fitted run, with the load as measured and without a loading history.
 pub fn error(fit: &Fit, problem: &Problem) -> Result<Option<f64>, ModelError> {
-    let (Some(felt), Some(band)) = (&problem.view.felt, dead_band(fit, Signal::Load)) else { return Ok(None) };
+    let (Some(measured_load), Some(band)) = (&problem.view.measured_load, dead_band(fit, Signal::Load)) else {
+        return Ok(None);
+    };
     let parts = Parts::of(fit)?;
     let remembers = |id: &str| parts.parts.iter().any(|p| p.effect == id && remembered(p) == Some(Signal::Load));
     if !fit.effects.iter().any(|id| remembers(id)) {
@@ -52,8 +54,8 @@ pub fn error(fit: &Fit, problem: &Problem) -> Result<Option<f64>, ModelError> {
         let view = with_load(&problem.view, load);
         predict_on(fit, &view, problem.rows(), |column| problem.reduce.apply(column))
     };
-    let at_once = on(&part_of(false), felt.to_vec())?;
-    let held = on(&part_of(true), through(felt, band, &problem.view.starts))?;
+    let at_once = on(&part_of(false), measured_load.to_vec())?;
+    let held = on(&part_of(true), through(measured_load, band, &problem.view.starts))?;
     let sse: f64 = problem.target.iter().zip(at_once.iter().zip(&held)).map(|(y, (a, b))| (y - a - b).powi(2)).sum();
     Ok(Some((sse / problem.rows() as f64).sqrt()))
 }

@@ -12,7 +12,7 @@ pub(crate) mod table;
 pub(crate) mod terms;
 
 pub use crate::export::file::ModelFile;
-pub use crate::export::online_prediction::Alongside;
+pub use crate::export::online_prediction::OnlinePrediction;
 pub use crate::export::predict::{Moments, predict};
 
 use crate::ModelError;

@@ -12,7 +12,7 @@ const STILL: f64 = 0.005;
 
 /// Measured and predicted motor torque, row by row.
 #[derive(Debug)]
-pub struct Alongside {
+pub struct OnlinePrediction {
     fit: Fit,
     torque_constant_nm_per_a: f64,
     gear_ratio: f64,
@@ -23,7 +23,7 @@ pub struct Alongside {
     before: Option<(f64, f64)>,
 }
 
-impl Alongside {
+impl OnlinePrediction {
     /// `None` for a model that needs more history than the previous row.
     pub fn new(fit: Fit, torque_constant_nm_per_a: f64, gear_ratio: f64) -> Option<Self> {
         let stage = |id: &String| find_with_own(fit.kind, &fit.own, id).map(|effect| effect.regime());
@@ -42,7 +42,7 @@ impl Alongside {
     }
 
     /// Measured and predicted torque [Nm], one value for each row. `None` if the rows lack a signal of the model.
-    pub fn tell(&mut self, rows: &Trace) -> Option<[Vec<f64>; 2]> {
+    pub fn push(&mut self, rows: &Trace) -> Option<[Vec<f64>; 2]> {
         let (time_s, velocity) = (rows.column("time_s")?, rows.column("motor_velocity_rad_s")?);
         let end = (*time_s.last()?, *velocity.last()?);
         let (from_s, from_rad_s) = self.before.replace(end).unwrap_or((time_s[0], velocity[0]));
@@ -69,7 +69,7 @@ impl Alongside {
             ("motor_torque", measured.clone()),
         ];
         moments.extend(rows.column("link_torque_nm").map(|load| ("load", geared(load))));
-        moments.extend(rows.column("temperature_c").map(|felt| ("temperature", felt.to_vec())));
+        moments.extend(rows.column("temperature_c").map(|measured| ("temperature", measured.to_vec())));
         let named = signals_with(self.fit.kind, &self.fit.own).into_iter();
         let unknown = named.filter(|s| matches!(s.signal, Signal::Column(_)));
         moments.extend(unknown.filter_map(|s| Some((s.name, rows.column(s.column)?.to_vec()))));

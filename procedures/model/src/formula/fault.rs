@@ -19,12 +19,12 @@ pub struct FormulaFault {
     /// The error, and what to write instead.
     pub message: String,
     /// Further errors of the same text, so that all can be corrected at once.
-    pub also: Box<[Also]>,
+    pub also: Box<[FurtherFault]>,
 }
 
 /// A further error of a text.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Also {
+pub struct FurtherFault {
     /// Characters before the error, in the same text.
     pub position: usize,
     /// Length of the error in characters; 0 if something is missing.
@@ -37,7 +37,7 @@ fn whose(effect: &str) -> String {
     if effect.is_empty() { String::new() } else { format!("effect {effect}: ") }
 }
 
-fn more(also: &[Also]) -> String {
+fn more(also: &[FurtherFault]) -> String {
     also.iter().map(|a| format!("\n  and {} (character {})", a.message, a.position + 1)).collect()
 }
 
@@ -93,7 +93,7 @@ impl Mistake {
 
     pub fn found(self, effect: &str, field: &'static str, text: &str) -> FormulaFault {
         let characters = |range: Range<usize>| text.get(range).map_or(0, |part| part.chars().count());
-        let also = self.also.into_iter().map(|other| Also {
+        let also = self.also.into_iter().map(|other| FurtherFault {
             position: characters(0..other.at.start),
             length: characters(other.at),
             message: other.message,

@@ -15,7 +15,7 @@ pub(crate) mod units;
 pub use crate::formula::expression::Expression;
 pub(crate) use crate::formula::expression::{Value, What};
 pub(crate) use crate::formula::fault::Mistake;
-pub use crate::formula::fault::{Also, FormulaFault};
+pub use crate::formula::fault::{FormulaFault, FurtherFault};
 pub use crate::formula::function::Function;
 pub use crate::formula::signals::{NamedSignal, in_formula, left_hand_side, signals};
 pub(crate) use crate::formula::syntax::Operator;
@@ -37,7 +37,7 @@ pub struct Formula {
     pub is_periodic: bool,
     /// Contradicting units for a rotating and for a sliding joint. They do not change results, so that the formula is
     /// still used.
-    doubts: [Option<Mistake>; 2],
+    unit_faults: [Option<Mistake>; 2],
 }
 
 impl Formula {
@@ -74,14 +74,14 @@ impl Formula {
             shape: (0..parameters.len()).filter(|p| !linear(p) && whole.uses(*p)).collect(),
             signals: signals(kind).iter().copied().filter(|s| whole.uses_signal(s.signal)).chain(columns).collect(),
             is_periodic: whole.any(&mut |what| periodic(what)),
-            doubts: units::check(kind, text, &whole, units),
+            unit_faults: units::check(kind, text, &whole, units),
             columns: coefficients.columns,
         })
     }
 
     /// Contradicting units for this motion. If the motion is unknown, only contradictions for both.
     pub(crate) fn doubt(&self, motion: Option<Motion>) -> Option<&Mistake> {
-        let [turning, sliding] = &self.doubts;
+        let [turning, sliding] = &self.unit_faults;
         match motion {
             Some(Motion::Rotary) => turning.as_ref(),
             Some(Motion::Linear) => sliding.as_ref(),

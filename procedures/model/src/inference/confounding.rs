@@ -66,7 +66,7 @@ mod tests {
             let effects: Vec<_> = of_temperature(kind).collect();
             for effect in &effects {
                 let own = OwnEffect::inline(kind, effect.over_time().unwrap()).unwrap();
-                assert_eq!(own.doubts(None), []);
+                assert_eq!(own.unit_warnings(None), []);
             }
             effects.len()
         });

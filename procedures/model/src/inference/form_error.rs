@@ -53,9 +53,9 @@ pub fn nuisance(model: &LinearModel, unit: &str) -> Option<Nuisance> {
     let mut terms = Vec::new();
     for (at, coefficient) in &solution.error {
         let column = &form_error.columns[*at];
-        let place = form_error.columns[..*at].iter().filter(|other| other.lives == column.lives).count();
+        let place = form_error.columns[..*at].iter().filter(|other| other.kind == column.kind).count();
         terms.push(FormErrorTerm {
-            name: column.lives.name().into(),
+            name: column.kind.name().into(),
             form: String::new(),
             shape: vec![place as f64],
             linear: vec![*coefficient],

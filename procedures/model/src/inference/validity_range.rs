@@ -112,7 +112,13 @@ impl Scope {
 /// not count.
 fn noise(view: &View) -> Option<f64> {
     let smooth = view.samples.find(Signal::Load)?;
-    let off = view.felt.as_ref()?.iter().zip(smooth).map(|(felt, smooth)| felt - smooth).filter(|off| *off != 0.0);
+    let off = view
+        .measured_load
+        .as_ref()?
+        .iter()
+        .zip(smooth)
+        .map(|(measured_load, smooth)| measured_load - smooth)
+        .filter(|off| *off != 0.0);
     let (count, square) = off.fold((0, 0.0), |(n, sum), off| (n + 1, sum + off * off));
     Some((square / f64::from(count.max(1))).sqrt())
 }

@@ -205,7 +205,7 @@ mod tests {
         let (base, other, noise) = (column(0.3), column(0.7), column(2.9));
         let y: Vec<f64> = (0..240).map(|i| 2.0 * base[i] + 0.5 * other[i] + 0.3 * noise[i]).collect();
         let block: Vec<usize> = (0..240).map(|i| i / 30).collect();
-        let free = |values| BaseColumn { values, scale: 1.0, shrinks: false };
+        let free = |values| BaseColumn { values, scale: 1.0, is_penalised: false };
         let weight = vec![1.0; 240];
         let alone = BlockedRidge::new(&[free(&base)], &y, &weight, &block, None);
         let both = BlockedRidge::new(&[free(&base), free(&other)], &y, &weight, &block, None);

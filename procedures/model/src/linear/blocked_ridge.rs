@@ -18,7 +18,7 @@ pub struct BaseColumn<'a> {
     pub values: &'a [f64],
     /// Scale of the ridge penalty.
     pub scale: f64,
-    pub shrinks: bool,
+    pub is_penalised: bool,
 }
 
 /// Sums of products over some rows: of the base with itself and with the response, and of the response.
@@ -123,15 +123,15 @@ impl BlockedRidge {
         each[1..].iter().for_each(|sums| all.add(sums, 1.0));
         let n = response.len() as f64;
         let penalty = |strength: f64| -> Vec<f64> {
-            columns.iter().map(|c| if c.shrinks { strength } else { FREE } * n).collect()
+            columns.iter().map(|c| if c.is_penalised { strength } else { FREE } * n).collect()
         };
-        let shrinks = columns.iter().any(|c| c.shrinks);
+        let is_penalised = columns.iter().any(|c| c.is_penalised);
         let loss = |strength: f64| -> f64 {
             let penalty = penalty(strength);
             each.par_iter().map(|sums| sums.loss(&all.without(sums).coefficients(&penalty))).sum()
         };
         let strength = strength.unwrap_or_else(|| {
-            let tried = RIDGES.iter().filter(|_| shrinks).map(|strength| (*strength, loss(*strength)));
+            let tried = RIDGES.iter().filter(|_| is_penalised).map(|strength| (*strength, loss(*strength)));
             tried.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(1.0, |best| best.0)
         });
         let penalty = penalty(strength);
@@ -231,7 +231,7 @@ pub fn fitted(columns: &[BaseColumn], response: &[f64], weight: &[f64], strength
     let base: Vec<Vec<f64>> = columns.iter().map(|c| weighted(c.values, scale(c))).collect();
     let n = response.len() as f64;
     let sums = Sums::of(&base, &weighted(response, 1.0), &(0..response.len()));
-    let penalty: Vec<f64> = columns.iter().map(|c| if c.shrinks { strength } else { FREE } * n).collect();
+    let penalty: Vec<f64> = columns.iter().map(|c| if c.is_penalised { strength } else { FREE } * n).collect();
     sums.coefficients(&penalty).iter().zip(columns).map(|(f, c)| f / scale(c)).collect()
 }
 

@@ -174,7 +174,7 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         replicate_pairs,
         different_history: HashSet::new(),
         different_angle,
-        unlike: None,
+        different_motion: None,
         segment,
         repeat,
         settled,
@@ -182,7 +182,7 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         bandwidths: Vec::new(),
         memo: Memo::default(),
     };
-    replicates::believe(&mut problem, &of, inputs);
+    replicates::check_replicates(&mut problem, &of, inputs);
     problem
 }
 

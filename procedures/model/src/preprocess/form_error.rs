@@ -6,7 +6,7 @@
 
 /// The quantity that a form-error column depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lives {
+pub enum FormErrorKind {
     /// Displacement since a reversal: one hysteresis element minus the direction of the model.
     Bristle,
     /// Rate of change of the jerk: torsion of the gear between motor and link.
@@ -17,26 +17,26 @@ pub enum Lives {
     LoadRate,
 }
 
-impl Lives {
+impl FormErrorKind {
     pub fn name(self) -> &'static str {
         match self {
-            Lives::Bristle => "bristle",
-            Lives::Snap => "snap",
-            Lives::Jerk => "jerk",
-            Lives::LoadRate => "load_rate",
+            FormErrorKind::Bristle => "bristle",
+            FormErrorKind::Snap => "snap",
+            FormErrorKind::Jerk => "jerk",
+            FormErrorKind::LoadRate => "load_rate",
         }
     }
 
     /// Whether the ridge penalty shrinks the coefficient: such columns are many and resemble the model.
-    pub fn shrinks(self) -> bool {
-        self == Lives::Bristle
+    pub fn is_penalised(self) -> bool {
+        self == FormErrorKind::Bristle
     }
 }
 
 /// One column at the rows.
 #[derive(Debug, Clone)]
 pub struct ErrorColumn {
-    pub lives: Lives,
+    pub kind: FormErrorKind,
     pub values: Vec<f64>,
     /// RMS of the column, which scales the ridge penalty.
     pub scale: f64,
@@ -51,7 +51,7 @@ pub struct FormError {
     /// Time over which the filter spreads a reversal [s].
     pub near_s: f64,
     /// Absolute acceleration and jerk at the rows: a model has a larger error where they are large.
-    pub swift: [Vec<f64>; 2],
+    pub fast: [Vec<f64>; 2],
     /// Time step from row to row [s].
     pub row_s: f64,
     /// Time step of the original samples [s].

@@ -23,7 +23,7 @@ use crate::effect::Regime;
 use crate::effects::friction::presliding;
 use crate::preprocess::checks::unit_mismatch::DataErrors;
 use crate::preprocess::checks::{metadata, unit_mismatch};
-use crate::preprocess::design::replicates::Unlike;
+use crate::preprocess::design::replicates::DifferentMotion;
 use crate::preprocess::filter::{ABREAST, LowPass};
 use crate::preprocess::form_error::FormError;
 use crate::preprocess::memo::Memo;
@@ -61,7 +61,7 @@ pub struct Problem {
     /// between them.
     pub(crate) different_angle: HashSet<(usize, usize)>,
     /// Why there are no replicate pairs, if repeats are different motions.
-    pub(crate) unlike: Option<Unlike>,
+    pub(crate) different_motion: Option<DifferentMotion>,
     /// Number of the segment of each row, from its column or detected.
     pub segment: Vec<i64>,
     /// Number of the repeat of each row; the same everywhere if the run has no repeats.
@@ -140,9 +140,9 @@ pub struct Prepared {
     /// Constants of the set-up that were used to compute signals or the response.
     pub(crate) constants: Vec<GivenConstant>,
     /// Columns that contradict each other, in sentences.
-    pub(crate) clashes: DataErrors,
+    pub(crate) data_errors: DataErrors,
     /// Missing or wrong test conditions, in sentences.
-    pub(crate) doubts: Vec<String>,
+    pub(crate) warnings: Vec<String>,
     pub(crate) about: Preparation,
 }
 
@@ -160,16 +160,16 @@ impl Prepared {
             memory: None,
             load_scale: meta.gear_ratio.filter(|_| run.kind() == Kind::Friction).unwrap_or(1.0),
             constants: constants(run),
-            clashes: DataErrors::default(),
-            doubts: Vec::new(),
+            data_errors: DataErrors::default(),
+            warnings: Vec::new(),
             about,
         }
     }
 
     /// The problem that a model of these effects is judged on. Presliding replaces the direction by its state.
     pub(crate) fn judged(&self, effects: &[String]) -> &Problem {
-        let bends = effects.iter().any(|effect| effect == presliding::ID);
-        self.bristled.as_ref().filter(|_| bends).unwrap_or(&self.main)
+        let can_absorb = effects.iter().any(|effect| effect == presliding::ID);
+        self.bristled.as_ref().filter(|_| can_absorb).unwrap_or(&self.main)
     }
 
     /// Regimes that the main problem can judge: steady-state means show only steady-state effects.
@@ -229,7 +229,7 @@ impl Prepared {
 pub fn attention(run: &RunTable) -> Vec<String> {
     match run.len() < SHORTEST {
         true => Vec::new(),
-        false => unit_mismatch::clashes(run).all().cloned().chain(metadata::doubts(run)).collect(),
+        false => unit_mismatch::data_errors(run).all().cloned().chain(metadata::warnings(run)).collect(),
     }
 }
 
@@ -307,9 +307,9 @@ fn cutoff_hz(options: &Options, step_s: f64) -> Result<f64, ModelError> {
 }
 
 /// Number of evenly spread samples that determine the typical values of a run.
-const TELLING: usize = 65_536;
+const INFORMATIVE_ROWS: usize = 65_536;
 
 /// The median time step between samples.
 fn sample_s(time_s: &[f64]) -> f64 {
-    median(time_s.windows(2).step_by(time_s.len().div_ceil(TELLING)).map(|w| w[1] - w[0]))
+    median(time_s.windows(2).step_by(time_s.len().div_ceil(INFORMATIVE_ROWS)).map(|w| w[1] - w[0]))
 }

@@ -67,8 +67,8 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         let measured = prepared.main.view.average(torque.to_vec());
         prepared.main.view.points.set(Signal::Load, measured);
     }
-    prepared.main.view.felt = Some(torque.to_vec().into());
-    prepared.doubts.extend(zeros_rad.map(|apart| {
+    prepared.main.view.measured_load = Some(torque.to_vec().into());
+    prepared.warnings.extend(zeros_rad.map(|apart| {
         let apart = figure(apart, &prepared.unit());
         format!("motor and link have another zero in every repeat ({apart} RMS apart), as encoders that are zeroed before each: it is subtracted")
     }));

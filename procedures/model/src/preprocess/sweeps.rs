@@ -27,8 +27,8 @@ pub fn prepare(
     let n = if raw { 1 } else { samples.chunk(options.chunk_s.unwrap_or(chunk_s)) };
     let layout = layout(&samples, run, inputs, n, raw)?;
     let mut main = problem(&samples, layout);
-    let mut doubts = crate::preprocess::checks::metadata::doubts(run);
-    doubts.extend(past(&mut main, run.kind()));
+    let mut warnings = crate::preprocess::checks::metadata::warnings(run);
+    warnings.extend(past(&mut main, run.kind()));
     if run.kind() == Kind::Brake {
         let drive = brake_torque_of_current(&main);
         main.view.points.set(Signal::Drive, drive);
@@ -53,8 +53,8 @@ pub fn prepare(
         segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
         repeats_from: repeats_from.into(),
     };
-    let clashes = crate::preprocess::checks::unit_mismatch::clashes(run);
-    Ok(Prepared { clashes, doubts, ..Prepared::of(run, main, about) })
+    let data_errors = crate::preprocess::checks::unit_mismatch::data_errors(run);
+    Ok(Prepared { data_errors, warnings, ..Prepared::of(run, main, about) })
 }
 
 /// The chunks of all legs, of `n` samples each. A `raw` run keeps all of them.

@@ -26,13 +26,13 @@ pub fn fit_canonical<'p>(
     let (fixed, mut open): (Vec<_>, Vec<_>) = wanted.partition(|e| is_fixed(*e, model.problem));
     fixed.into_iter().for_each(|effect| enter(&mut model, effect));
     while !open.is_empty() {
-        let ground = PartialRegression::of(&model);
-        let best: Vec<Vec<(f64, &Regressor)>> = open.iter().map(|e| best_of_forms(*e, library, &ground)).collect();
+        let partial = PartialRegression::of(&model);
+        let best: Vec<Vec<(f64, &Regressor)>> = open.iter().map(|e| best_of_forms(*e, library, &partial)).collect();
         let share = |forms: &Vec<(f64, &Regressor)>| forms.iter().map(|f| f.0).fold(0.0, f64::max);
         let most = best.iter().map(share).enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |most| most.0);
         open.remove(most);
         let terms = best[most].iter().map(|(_, candidate)| candidate.term(model.problem)).collect();
-        model.terms.extend(choose(terms, &ground, model.problem));
+        model.terms.extend(choose(terms, &partial, model.problem));
         model.refine();
     }
     for _ in 0..PASSES {
@@ -53,11 +53,11 @@ fn is_fixed(effect: &dyn Effect, problem: &Problem) -> bool {
 fn best_of_forms<'l, 'p>(
     effect: &dyn Effect,
     library: &'l CandidateSet<'p>,
-    ground: &PartialRegression,
+    partial: &PartialRegression,
 ) -> Vec<(f64, &'l Regressor<'p>)> {
     let mut best: Vec<(f64, &Regressor)> = Vec::new();
     for candidate in library.candidates.iter().filter(|c| c.id() == effect.info().id) {
-        let share = ground.own(&candidate.columns).share;
+        let share = partial.own(&candidate.columns).share;
         match best.iter_mut().find(|b| b.1.form.name == candidate.form.name) {
             Some(b) if share > b.0 => *b = (share, candidate),
             Some(_) => {}
@@ -77,25 +77,25 @@ pub fn enter<'p>(terms: &mut LinearModel<'p>, effect: &'p dyn Effect) {
         terms.terms.push(Term::new(effect, form.clone(), form.grid[0].clone(), problem));
         return;
     }
-    let ground = PartialRegression::of(terms);
+    let partial = PartialRegression::of(terms);
     let mut best: Vec<Term<'p>> = Vec::new();
     for form in forms {
         let shapes = form.grid.iter().map(|shape| Term::new(effect, form.clone(), shape.clone(), problem));
-        let shares = shapes.map(|term| (ground.own(&term.columns).share, term));
+        let shares = shapes.map(|term| (partial.own(&term.columns).share, term));
         best.extend(shares.max_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1));
     }
-    terms.terms.extend(choose(best, &ground, problem));
+    terms.terms.extend(choose(best, &partial, problem));
 }
 
 /// The form that explains most. A form with more parameters has to explain sufficiently more. A physically impossible
 /// form is chosen only if no form is possible.
-fn choose<'p>(mut forms: Vec<Term<'p>>, ground: &PartialRegression, problem: &Problem) -> Option<Term<'p>> {
+fn choose<'p>(mut forms: Vec<Term<'p>>, partial: &PartialRegression, problem: &Problem) -> Option<Term<'p>> {
     forms.sort_by_key(Term::size);
     let polished = |term: Term<'p>| {
         let mut term = [term];
-        let sse = varpro(&mut term, &ground.basis, &ground.residual, problem);
+        let sse = varpro(&mut term, &partial.basis, &partial.residual, problem);
         let [term] = term;
-        (term.allows(&ground.own(&term.columns).coefficients()), sse, term)
+        (term.allows(&partial.own(&term.columns).coefficients()), sse, term)
     };
     let forms: Vec<(bool, f64, Term<'p>)> = forms.into_par_iter().map(polished).collect();
     let mut chosen: Option<(bool, f64, Term<'p>)> = None;

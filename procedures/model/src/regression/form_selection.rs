@@ -24,8 +24,8 @@ pub fn extend<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p>, optio
 fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, options: &Options) -> Option<Term<'p>> {
     let term = &terms.terms[at];
     let (part, form) = term.effect.extended(&term.form)?;
-    let ground = PartialRegression::of(terms);
-    let share = |c: &Regressor| ground.own(&c.columns).share;
+    let partial = PartialRegression::of(terms);
+    let share = |c: &Regressor| partial.own(&c.columns).share;
     let is_part = |c: &&Regressor| c.id() == term.id() && c.form.name == part && !term.shape.contains(&c.shape[0]);
     let parts = library.candidates.iter().filter(is_part).map(|c| (share(c), c));
     let (share_of_part, part) = parts.max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -40,15 +40,15 @@ fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, 
     }
     // A candidate that explains more is added first, unless it explains something else.
     let instead = |other: &Regressor| {
-        let mut with_other = ground.basis.clone();
+        let mut with_other = partial.basis.clone();
         for column in &other.term(terms.problem).columns {
             with_other.push(column);
         }
-        let left = PartialRegression::new(with_other.clone(), with_other.rest(&ground.residual), terms.problem);
-        left.own(&part.columns).share * left.energy < COMPONENT_OWN_SHARE * share_of_part * ground.energy
+        let left = PartialRegression::new(with_other.clone(), with_other.rest(&partial.residual), terms.problem);
+        left.own(&part.columns).share * left.energy < COMPONENT_OWN_SHARE * share_of_part * partial.energy
     };
     let is_weak = share_of_part < options.practical_share || others.into_iter().any(|(_, other)| instead(other));
-    if is_weak || significance(&part, library, &ground, options) > options.alpha {
+    if is_weak || significance(&part, library, &partial, options) > options.alpha {
         return None;
     }
     let shape = term.shape.iter().chain(&part.shape).copied().collect();
@@ -73,29 +73,29 @@ pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p
         }
         let basis = others.tangent();
         let rest = basis.rest(&terms.response());
-        let ground = PartialRegression::new(basis, rest, terms.problem);
+        let partial = PartialRegression::new(basis, rest, terms.problem);
         let sse = |term: &Term<'p>| {
             let mut one = [term.clone()];
-            let sse = varpro(&mut one, &ground.basis, &ground.residual, terms.problem);
+            let sse = varpro(&mut one, &partial.basis, &partial.residual, terms.problem);
             let [term] = one;
             (sse, term)
         };
         let mut forms: Vec<&str> = same.iter().map(|c| c.form.name).filter(|f| is_open(f)).collect();
         forms.dedup();
-        let share = |c: &&&Regressor| ground.own(&c.columns).share;
+        let share = |c: &&&Regressor| partial.own(&c.columns).share;
         let start = |form: &str| {
             let of_form = same.iter().filter(|c| c.form.name == form);
             of_form.max_by(|a, b| share(a).total_cmp(&share(b))).map(|c| c.term(terms.problem))
         };
         let mut best = sse(&term);
-        for trial in forms.into_iter().filter_map(start).chain(two_parts(&same, &ground, terms.problem)) {
+        for trial in forms.into_iter().filter_map(start).chain(two_parts(&same, &partial, terms.problem)) {
             let trial = sse(&trial);
             // An equally long form has to be better by a margin; a shorter form may be a little worse.
             let more = match trial.1.size() as f64 - best.1.size() as f64 {
                 0.0 => 1.0,
                 more => more,
             };
-            let possible = trial.1.allows(&ground.own(&trial.1.columns).coefficients());
+            let possible = trial.1.allows(&partial.own(&trial.1.columns).coefficients());
             if possible && trial.0 < best.0 * (1.0 - BETTER_FORM * more) {
                 best = trial;
             }
@@ -111,7 +111,7 @@ pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p
 
 /// The two components that explain most together, for an effect that is a sum of components. Two dry contacts look
 /// like one contact with gradual slip, and a third component added to that does not separate them.
-fn two_parts<'p>(same: &[&Regressor<'p>], ground: &PartialRegression, problem: &Problem) -> Option<Term<'p>> {
+fn two_parts<'p>(same: &[&Regressor<'p>], partial: &PartialRegression, problem: &Problem) -> Option<Term<'p>> {
     let smooth = |c: &&&Regressor| c.form.shape.iter().all(|s| s.is_smooth());
     let extends = |c: &&Regressor<'p>| c.effect.extended(&c.form).filter(|(part, _)| *part == c.form.name);
     let (part, form) = same.iter().filter(smooth).find_map(extends)?;
@@ -119,7 +119,7 @@ fn two_parts<'p>(same: &[&Regressor<'p>], ground: &PartialRegression, problem: &
     let mut best: Option<(f64, Vec<f64>)> = None;
     for (i, one) in parts.iter().enumerate() {
         for other in &parts[..i] {
-            let own = ground.own(&[&other.columns[..], &one.columns].concat());
+            let own = partial.own(&[&other.columns[..], &one.columns].concat());
             if best.as_ref().is_none_or(|b| own.share > b.0) && allows(one.effect, &form, &own.coefficients()) {
                 best = Some((own.share, [&other.shape[..], &one.shape].concat()));
             }

@@ -11,7 +11,7 @@ use crate::regression::partial_regression::PartialRegression;
 /// The residual of the model around reversals, and the hysteresis candidates.
 pub struct Reversals<'p> {
     pub problem: &'p Problem,
-    pub ground: PartialRegression,
+    pub partial: PartialRegression,
     pub library: CandidateSet<'p>,
 }
 
@@ -22,17 +22,17 @@ impl<'p> Reversals<'p> {
         terms.given = given;
         let mut library = CandidateSet::new(spec, problem, &[Regime::Hysteresis]);
         library.candidates.retain(|c| wanted(c.id()));
-        Self { problem, ground: PartialRegression::new(Basis::default(), terms.response(), problem), library }
+        Self { problem, partial: PartialRegression::new(Basis::default(), terms.response(), problem), library }
     }
 
     /// The effect in the form that explains most, and its partial R².
     pub fn best(&self) -> Option<(Term<'p>, f64)> {
-        let shares = self.library.candidates.iter().map(|c| self.ground.own(&c.columns).share);
+        let shares = self.library.candidates.iter().map(|c| self.partial.own(&c.columns).share);
         let (best, _) = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let mut term = [self.library.candidates[best].term(self.problem)];
-        let left = varpro(&mut term, &self.ground.basis, &self.ground.residual, self.problem);
+        let left = varpro(&mut term, &self.partial.basis, &self.partial.residual, self.problem);
         let [term] = term;
-        Some((term, 1.0 - left / self.ground.energy))
+        Some((term, 1.0 - left / self.partial.energy))
     }
 }
 

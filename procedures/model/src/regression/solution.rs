@@ -5,7 +5,7 @@ use crate::effects;
 use crate::effects::friction::{presliding, signal_delay};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
-use crate::preprocess::form_error::{ErrorColumn, FormError, Lives};
+use crate::preprocess::form_error::{ErrorColumn, FormError, FormErrorKind};
 use crate::regression::evidence::LEAST_VISIBLE;
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
 use crate::regression::weights::weights;
@@ -39,27 +39,27 @@ impl<'a> Nuisance<'a> {
 pub fn nuisance<'a>(
     model: &'a LinearModel,
     form_error: &'a FormError,
-    leaves_out: impl Fn(Lives) -> bool,
+    leaves_out: impl Fn(FormErrorKind) -> bool,
 ) -> Nuisance<'a> {
     let passes_load = model.given.iter().any(|g| *g != 0.0);
-    let is_out = |lives: Lives| match lives {
-        Lives::Jerk => model.contains(DELAY),
-        Lives::LoadRate => !passes_load,
-        Lives::Bristle | Lives::Snap => false,
+    let is_out = |kind: FormErrorKind| match kind {
+        FormErrorKind::Jerk => model.contains(DELAY),
+        FormErrorKind::LoadRate => !passes_load,
+        FormErrorKind::Bristle | FormErrorKind::Snap => false,
     };
     // On one sine the jerk is proportional to the velocity. A column without ridge penalty must not be collinear with
     // the effects.
     let effects = Basis::of(model.terms.iter().flat_map(|term| &term.columns));
     let is_own = |c: &ErrorColumn| {
         let rest = effects.rest(&c.values);
-        c.lives.shrinks() || dot(&rest, &rest) > LEAST_VISIBLE * dot(&c.values, &c.values)
+        c.kind.is_penalised() || dot(&rest, &rest) > LEAST_VISIBLE * dot(&c.values, &c.values)
     };
-    let is_nuisance = |c: &ErrorColumn| !is_out(c.lives) && !leaves_out(c.lives) && is_own(c);
+    let is_nuisance = |c: &ErrorColumn| !is_out(c.kind) && !leaves_out(c.kind) && is_own(c);
     let columns = form_error.columns.iter().enumerate().filter(|(_, c)| is_nuisance(c));
-    let error =
-        columns.map(|(at, c)| (at, BaseColumn { values: &c.values, scale: c.scale, shrinks: c.lives.shrinks() }));
+    let error = columns
+        .map(|(at, c)| (at, BaseColumn { values: &c.values, scale: c.scale, is_penalised: c.kind.is_penalised() }));
     let relatives = model.relatives.iter().flat_map(|relative: &Relative| &relative.columns);
-    let relative = |values: &'a Vec<f64>| BaseColumn { values, scale: rms(values), shrinks: true };
+    let relative = |values: &'a Vec<f64>| BaseColumn { values, scale: rms(values), is_penalised: true };
     Nuisance { error: error.collect(), relatives: relatives.map(relative).collect() }
 }
 
@@ -69,7 +69,7 @@ pub fn rms(values: &[f64]) -> f64 {
 
 /// The columns of the effects of a model.
 pub fn effect_columns<'a>(model: &'a LinearModel) -> Vec<BaseColumn<'a>> {
-    let column = |values: &'a Vec<f64>| BaseColumn { values, scale: rms(values), shrinks: false };
+    let column = |values: &'a Vec<f64>| BaseColumn { values, scale: rms(values), is_penalised: false };
     model.terms.iter().flat_map(|term| &term.columns).map(column).collect()
 }
 
@@ -254,10 +254,10 @@ pub fn effect_coefficient(model: &LinearModel, solution: &Solution, id: &str) ->
 }
 
 /// The ridge regression without one kind of form error.
-pub fn without(model: &LinearModel, solution: &Solution, lives: Lives) -> BlockedRidge {
+pub fn without(model: &LinearModel, solution: &Solution, kind: FormErrorKind) -> BlockedRidge {
     let mut columns = effect_columns(model);
     if let Some(form_error) = model.problem.form_error.as_deref() {
-        let nuisance = nuisance(model, form_error, |other| other == lives);
+        let nuisance = nuisance(model, form_error, |other| other == kind);
         columns.extend(nuisance.columns());
     }
     // The weights are smallest at the rows that show such an effect.

@@ -22,7 +22,7 @@ pub struct TwoStageModel<'p> {
     pub moving: Option<LinearModel<'p>>,
     /// Torque of the ramp effects at the rows of the main part, as an offset: a slow step over gear teeth accelerates
     /// as well.
-    wavering: Vec<f64>,
+    ramp_offset: Vec<f64>,
     /// Effects of the model that this data cannot show.
     pub hidden: Vec<Invisible>,
 }
@@ -52,7 +52,7 @@ impl<'p> TwoStageModel<'p> {
             effects,
             main: LinearModel::new(&prepared.main),
             moving: prepared.moving.as_ref().map(LinearModel::new),
-            wavering: vec![0.0; prepared.main.rows()],
+            ramp_offset: vec![0.0; prepared.main.rows()],
             hidden: Vec::new(),
         };
         let mut settled = Vec::new();
@@ -77,7 +77,7 @@ impl<'p> TwoStageModel<'p> {
             assembly.main.terms.clear();
             assembly.main = fit_canonical(&assembly.main, &settled, &library, options);
             assembly.enter_moving();
-            if !assembly.take_wavering() {
+            if !assembly.refresh_ramp_offset() {
                 break;
             }
         }
@@ -88,7 +88,7 @@ impl<'p> TwoStageModel<'p> {
     pub fn decided(prepared: &'p Prepared, spec: &'p ModelSpec, effects: Vec<String>) -> Result<Self, ModelError> {
         let main = LinearModel::new(prepared.judged(&effects));
         let mut assembly =
-            Self { prepared, spec, effects, main, moving: None, wavering: Vec::new(), hidden: Vec::new() };
+            Self { prepared, spec, effects, main, moving: None, ramp_offset: Vec::new(), hidden: Vec::new() };
         let mut effects_to_fit: Vec<&dyn Effect> = Vec::new();
         let view = &prepared.main.view;
         for id in &assembly.effects {
@@ -136,7 +136,7 @@ impl<'p> TwoStageModel<'p> {
 
     /// Sets the prediction of the steady-state part as the offset of the moving problem, and removes all other terms
     /// from it.
-    fn relay(&mut self) {
+    fn offset_moving(&mut self) {
         let Some(moving) = &mut self.moving else { return };
         moving.given.fill(0.0);
         moving.terms.clear();
@@ -163,7 +163,7 @@ impl<'p> TwoStageModel<'p> {
             self.hidden.extend(apart.map(|e| Invisible { effect: e.info().id.into(), why: why.clone() }));
             return;
         }
-        self.relay();
+        self.offset_moving();
         let Some(moving) = &mut self.moving else { return };
         ramps.into_iter().for_each(|effect| enter(moving, effect));
         moving.refine();
@@ -183,24 +183,24 @@ impl<'p> TwoStageModel<'p> {
     }
 
     /// Adds the torque of the ramp effects to the main part as an offset. Returns whether it is not zero there.
-    fn take_wavering(&mut self) -> bool {
-        let mut wavering = vec![0.0; self.wavering.len()];
+    fn refresh_ramp_offset(&mut self) -> bool {
+        let mut ramp_offset = vec![0.0; self.ramp_offset.len()];
         if let Some(moving) = &self.moving {
             let fitted = moving.terms.iter().zip(moving.linear().coefficients);
             for (term, coefficients) in fitted.filter(|(term, _)| term.effect.regime() == Regime::Transient) {
                 let columns = columns(term.effect, term.form.name, &term.shape, self.main.problem);
-                add(&mut wavering, &columns, &coefficients);
+                add(&mut ramp_offset, &columns, &coefficients);
             }
         }
-        add(&mut self.main.given, &[std::mem::replace(&mut self.wavering, wavering.clone())], &[-1.0]);
-        add(&mut self.main.given, &[wavering], &[1.0]);
-        self.wavering.iter().any(|torque| *torque != 0.0)
+        add(&mut self.main.given, &[std::mem::replace(&mut self.ramp_offset, ramp_offset.clone())], &[-1.0]);
+        add(&mut self.main.given, &[ramp_offset], &[1.0]);
+        self.ramp_offset.iter().any(|torque| *torque != 0.0)
     }
 
     /// Refits the model from scratch if ramp effects contribute to the main part. Otherwise the order of entry would
     /// change the last digits.
-    pub fn settled(self, options: &Options) -> Result<Self, ModelError> {
-        match self.wavering.iter().any(|torque| *torque != 0.0) {
+    pub fn canonical(self, options: &Options) -> Result<Self, ModelError> {
+        match self.ramp_offset.iter().any(|torque| *torque != 0.0) {
             true => Self::of_effects(self.prepared, self.spec, self.effects, options),
             false => Ok(self),
         }
@@ -210,7 +210,7 @@ impl<'p> TwoStageModel<'p> {
     pub fn of(&self, main: LinearModel<'p>, effects: Vec<String>) -> Self {
         let mut next = Self { main, effects, ..self.clone() };
         next.enter_moving();
-        next.take_wavering();
+        next.refresh_ramp_offset();
         next
     }
 }

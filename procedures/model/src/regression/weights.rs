@@ -21,13 +21,13 @@ pub fn weights(form_error: &FormError, residual: &[f64]) -> Vec<f64> {
     let middle = quantile(residual.iter().map(|e| e * e), 0.5);
     let floor = (EXACT * middle).max(f64::MIN_POSITIVE);
     let sizes: Vec<f64> = residual.iter().map(|e| (e * e + floor).ln()).collect();
-    let swift = form_error.swift.each_ref().map(|size| {
+    let fast = form_error.fast.each_ref().map(|size| {
         let still = STILL * size.iter().fold(0.0f64, |most, v| most.max(*v)) + 1e-12;
         size.iter().map(|v| (v + still).ln()).collect::<Vec<f64>>()
     });
     let turn: Vec<f64> = form_error.turn_s.iter().map(|t| (t.min(LATE_S) + SOON_S).ln()).collect();
     let one = vec![1.0; residual.len()];
-    let columns = [&one, &turn, &swift[0], &swift[1]];
+    let columns = [&one, &turn, &fast[0], &fast[1]];
     let expected = regressed(&columns, &sizes);
     let usual = quantile(expected.iter().copied(), 0.5);
     expected.into_iter().map(|e| (-0.5 * (e - usual)).exp().clamp(LEAST, MOST)).collect()

@@ -42,12 +42,12 @@ pub struct ParameterPair {
     pub differ: Option<bool>,
     /// Present if one interval is much wider than the other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub wider: Option<Wider>,
+    pub wider: Option<WiderInterval>,
 }
 
 /// Why a parameter is less certain in one of two models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Wider {
+pub struct WiderInterval {
     /// Whether the second model has the wider interval.
     pub second: bool,
     /// Ratio of the wider interval to the narrower one, above 1.

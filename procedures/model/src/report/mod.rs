@@ -6,7 +6,7 @@ pub(crate) mod fit;
 pub(crate) mod maps;
 pub(crate) mod residuals;
 
-pub use crate::report::comparison::{Comparison, ParameterPair, Wider};
+pub use crate::report::comparison::{Comparison, ParameterPair, WiderInterval};
 pub use crate::report::diagnosis::{
     Diagnosis, Discovery, Evidence, Experiment, Imitated, Invisible, LeftOut, NoiseFloor, RemovalReason, Silent, Step,
     Suggestion, UndecidedReason, Verdict,

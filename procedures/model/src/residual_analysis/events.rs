@@ -165,7 +165,7 @@ mod tests {
             replicate_pairs: (0..500).map(|i| (i, i + 500)).collect(),
             different_history: HashSet::new(),
             different_angle: HashSet::new(),
-            unlike: None,
+            different_motion: None,
             segment: vec![0; n],
             repeat: (0..n).map(|i| (i / 500) as i64).collect(),
             settled: false,

@@ -105,15 +105,16 @@ fn share_interval(all: &Pairs, of_block: &[Pairs]) -> [f64; 2] {
 /// Why there is no noise floor.
 fn unknown(prepared: &Prepared) -> String {
     let problem = &prepared.main;
-    if let Some(unlike) = problem.unlike {
-        let (column, unit) = (prepared.column_name(unlike.signal), prepared.column_unit(unlike.signal));
-        let say = |value: f64| figure(prepared.column_scale(unlike.signal) * value, &unit);
+    if let Some(different_motion) = problem.different_motion {
+        let (column, unit) =
+            (prepared.column_name(different_motion.signal), prepared.column_unit(different_motion.signal));
+        let say = |value: f64| figure(prepared.column_scale(different_motion.signal) * value, &unit);
         return format!(
             "no noise floor: the repeats are different motions; their {} differs by {} RMS at the same moment, and varies \
              by {} in the whole run",
             spoken(column),
-            say(unlike.apart),
-            say(unlike.spread)
+            say(different_motion.apart),
+            say(different_motion.spread)
         );
     }
     if !problem.different_history.is_empty() {

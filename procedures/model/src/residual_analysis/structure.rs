@@ -6,7 +6,7 @@ use crate::linear::basis::dot;
 use crate::linear::blocked_ridge::{BlockedRidge, ranges};
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
-use crate::preprocess::form_error::Lives;
+use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::evidence::errors;
 use crate::regression::solution::{DELAY, Solution, effect_columns, nuisance};
 use crate::regression::two_stage_model::TwoStageModel;
@@ -29,7 +29,7 @@ const MEANS_S: f64 = 1.0;
 
 /// Structure that remains.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Left {
+pub struct Unexplained {
     /// Signals over which it shows.
     pub over: Vec<Signal>,
     /// Share of the squared validation error that a function of these signals explains.
@@ -39,7 +39,7 @@ pub struct Left {
 }
 
 /// The significant unexplained structure. `end` is the last model of a search from `start`.
-pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> Option<Left> {
+pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> Option<Unexplained> {
     let model = &end.main;
     let ridge = &solution.ridge;
     let all = functions(model.problem);
@@ -64,7 +64,7 @@ pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> 
     let (axis, over, share) = found.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
     let grew = start.effects.len() < end.effects.len();
     let is_all = axis.filter(|_| grew).is_some_and(|axis| explains_all(axis, start, end, solution));
-    Some(Left { over, share, is_all })
+    Some(Unexplained { over, share, is_all })
 }
 
 fn taken(ridge: &BlockedRidge, axis: &Functions) -> Vec<f64> {
@@ -93,10 +93,10 @@ fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, so
     let Some(form_error) = plain.problem.form_error.as_deref() else { return false };
     // Form error that an added effect represents is no nuisance here.
     let is_added = |id: &str| end.main.contains(id) && !plain.contains(id);
-    let nuisance = nuisance(plain, form_error, |lives| match lives {
-        Lives::Jerk => is_added(DELAY),
-        Lives::Bristle => !std::ptr::eq(plain.problem, end.main.problem),
-        Lives::Snap | Lives::LoadRate => false,
+    let nuisance = nuisance(plain, form_error, |kind| match kind {
+        FormErrorKind::Jerk => is_added(DELAY),
+        FormErrorKind::Bristle => !std::ptr::eq(plain.problem, end.main.problem),
+        FormErrorKind::Snap | FormErrorKind::LoadRate => false,
     });
     columns.extend(nuisance.columns());
     let strength = Some(solution.ridge.strength);

@@ -10,7 +10,7 @@ const FEWEST: usize = 10;
 
 /// The residual of a steady-state model without the waves of its own effects where they pass too fast. The share of a
 /// fast wave in the motor current depends on the inertia and the drive's control, not on the joint.
-pub fn without_swift_waves(now: &LinearModel, mut residual: Vec<f64>) -> Vec<f64> {
+pub fn without_undersampled_harmonics(now: &LinearModel, mut residual: Vec<f64>) -> Vec<f64> {
     let view = &now.problem.view;
     for term in &now.terms {
         let Some(angle) = term.effect.wave() else { continue };

@@ -3,7 +3,7 @@
 use crate::Options;
 use crate::effect::Regime;
 use crate::linear::blocked_ridge::BlockedRidge;
-use crate::preprocess::form_error::Lives;
+use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::visible;
 use crate::regression::solution::{DELAY, Solution, effect_coefficient, without};
@@ -28,8 +28,8 @@ pub fn detection_limits<'p>(
     let blocks = solution.ridge.blocks.len() as f64;
     let chance = options.alpha / (2.0 * open.len().max(1) as f64);
     let critical = student::quantile(blocks - 1.0, 1.0 - chance).unwrap_or(3.0);
-    let without_jerk = without(&end.main, solution, Lives::Jerk);
-    let without_bristle = without(&end.main, solution, Lives::Bristle);
+    let without_jerk = without(&end.main, solution, FormErrorKind::Jerk);
+    let without_bristle = without(&end.main, solution, FormErrorKind::Bristle);
     let size = |form: &&Regressor<'p>| {
         let ridge = match form.effect.regime() {
             Regime::Hysteresis => &without_bristle,

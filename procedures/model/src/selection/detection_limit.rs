@@ -19,7 +19,7 @@ pub struct DetectionLimit<'p> {
 
 impl<'p> FloatingSearch<'_, 'p> {
     pub fn detection_limits(&self) -> Vec<DetectionLimit<'p>> {
-        detection_limits(&self.now, self.library, &self.withdrawn, self.bar())
+        detection_limits(&self.now, self.library, &self.withdrawn, self.threshold())
     }
 }
 
@@ -29,19 +29,20 @@ fn detection_limits<'p>(
     end: &LinearModel<'p>,
     library: &CandidateSet<'p>,
     withdrawn: &[&'p str],
-    bar: AcceptanceThreshold,
+    threshold: AcceptanceThreshold,
 ) -> Vec<DetectionLimit<'p>> {
-    let ground = PartialRegression::of(end);
+    let partial = PartialRegression::of(end);
     let n = end.problem.rows() as f64;
-    let least = bar.least_share(ground.energy) * ground.energy;
+    let least = threshold.least_share(partial.energy) * partial.energy;
     let is_out = |id| !end.contains(id) && !withdrawn.contains(&id);
     let candidates: Vec<&Regressor> = library.candidates.iter().filter(|c| is_out(c.id())).collect();
-    let looked_for: Vec<Tested> = candidates.into_par_iter().filter_map(|c| Tested::new(c, &ground)).collect();
+    let looked_for: Vec<Tested> = candidates.into_par_iter().filter_map(|c| Tested::new(c, &partial)).collect();
     let scores: Vec<&Score> = looked_for.iter().map(|looked| &looked.score).collect();
-    let clear = MaxTNull::new(&scores, bar.options.flips, bar.options.seed).quantile(1.0 - bar.options.alpha);
+    let clear =
+        MaxTNull::new(&scores, threshold.options.flips, threshold.options.seed).quantile(1.0 - threshold.options.alpha);
     let found = |looked: &&Tested| {
         let clear =
-            ground.deciding(&looked.candidate.columns).map_or(f64::INFINITY, |by| looked.score.needed(clear, by));
+            partial.deciding(&looked.candidate.columns).map_or(f64::INFINITY, |by| looked.score.needed(clear, by));
         ((clear * looked.noise).max(least.sqrt()) / looked.noise + DETECTION_POWER) * looked.scatter() / n.sqrt()
     };
     let middles: Vec<&Tested> = looked_for.chunk_by(Tested::is_formed_as).filter_map(Tested::middle).collect();
@@ -68,9 +69,9 @@ struct Tested<'a, 'p> {
 }
 
 impl<'a, 'p> Tested<'a, 'p> {
-    fn new(candidate: &'a Regressor<'p>, ground: &PartialRegression) -> Option<Self> {
-        let own = ground.own(&candidate.columns);
-        let sums = ground.sums(&candidate.columns, &own);
+    fn new(candidate: &'a Regressor<'p>, partial: &PartialRegression) -> Option<Self> {
+        let own = partial.own(&candidate.columns);
+        let sums = partial.sums(&candidate.columns, &own);
         let noise = sums.iter().zip(own.squares()).map(|(s, square)| (dot(s, s) / square).sqrt()).reduce(f64::max)?;
         Some(Self { candidate, score: Score::new(&sums), noise, visible: own.visible })
     }

@@ -22,8 +22,8 @@ pub fn encompasses(now: &LinearModel, one: &Term, other: &Term, options: &Option
         let mut with = now.clone();
         with.terms.push(included.clone());
         with.refine();
-        let ground = PartialRegression::of(&with);
-        (ground.own(&tested.columns).share, alone(tested, &ground, options))
+        let partial = PartialRegression::of(&with);
+        (partial.own(&tested.columns).share, alone(tested, &partial, options))
     };
     let ((needed, p_value), (needless, _)) = (left_for(one, other), left_for(other, one));
     needed >= options.practical_share && p_value <= options.alpha && needless < options.practical_share

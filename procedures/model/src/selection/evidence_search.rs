@@ -7,7 +7,7 @@
 use crate::effect::Regime;
 use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::Prepared;
-use crate::preprocess::form_error::Lives;
+use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::{Evidence, chance, errors, evidence};
 use crate::regression::linear_model::{LinearModel, Term};
@@ -15,13 +15,13 @@ use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_coefficien
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::RemovalReason;
 use crate::residual_analysis::maps::Maps;
-use crate::residual_analysis::structure::{self, Left};
+use crate::residual_analysis::structure::{self, Unexplained};
 use crate::selection::advance::{Path, SelectionStep};
 use crate::selection::block_limits;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
-use crate::selection::refused::{Decided, Refused};
+use crate::selection::refused::{EvidenceResult, Refused};
 use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, FLOOR_RATIO, LEFT_SHARE, SIMPLER_GAIN};
 use crate::{Effect, ModelError, ModelSpec, Options};
 use std::cell::OnceCell;
@@ -66,7 +66,7 @@ pub fn search<'p>(
     let mut search = Search { prepared, spec, options, path: Path::new(start, on_advance), libraries };
     // Contradicting columns make every effect spurious: none is tested.
     let mut refused = Vec::new();
-    if prepared.clashes.void.is_empty() {
+    if prepared.data_errors.fatal.is_empty() {
         if most > 0
             && let Some(step) = offset(&search.path.start, options)
         {
@@ -74,7 +74,7 @@ pub fn search<'p>(
         }
         refused = search.grow(most.min(MOST_NAMED))?;
     }
-    while let Some(id) = idle(search.path.end(), spec) {
+    while let Some(id) = insignificant(search.path.end(), spec) {
         search.remove(id, RemovalReason::Insignificant)?;
     }
     let left = search.left()?;
@@ -145,7 +145,7 @@ impl<'p> Search<'_, 'p> {
 
     /// Unexplained structure. If a function of one axis explains more than all added effects together, these effects
     /// are removed.
-    fn left(&mut self) -> Result<Option<Left>, ModelError> {
+    fn left(&mut self) -> Result<Option<Unexplained>, ModelError> {
         let of = |Self { path, .. }: &Self| {
             Solution::of(&path.end().main).and_then(|solution| structure::left(&path.start, path.end(), &solution))
         };
@@ -160,7 +160,7 @@ impl<'p> Search<'_, 'p> {
         Ok(of(self).or(left))
     }
 
-    fn finish(self, left: Option<Left>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
+    fn finish(self, left: Option<Unexplained>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
         let end = self.path.end();
         let now = end.main.clone();
         let detection_limits = Solution::of(&now).map_or_else(Vec::new, |solution| {
@@ -186,9 +186,9 @@ impl<'p> Search<'_, 'p> {
             maps,
             detection_limits,
             ties,
-            upheld: Vec::new(),
+            retained: Vec::new(),
             open: None,
-            decided: Some(Decided { left, refused }),
+            decided: Some(EvidenceResult { left, refused }),
         })
     }
 }
@@ -217,28 +217,28 @@ fn candidates<'l, 'p>(
     };
     let (mut all, hidden) = evidence(&solution.ridge, &of(&keeps_form_error), &near, forms);
     // Other candidates are judged without the form error that represents the same effect, and explain that error too.
-    let mut judge_without = |lives: Lives, of: &[&'l Regressor<'p>]| {
+    let mut judge_without = |kind: FormErrorKind, of: &[&'l Regressor<'p>]| {
         if !of.is_empty() {
-            let (found, _) = evidence(&without(&now.main, solution, lives), of, &near, forms);
+            let (found, _) = evidence(&without(&now.main, solution, kind), of, &near, forms);
             all.extend(found.into_iter().map(|found| Evidence { form_error_imitates: true, ..found }));
         }
     };
     if is_delayed(now, solution) {
-        judge_without(Lives::Jerk, &of(&|c| c.id() == DELAY));
+        judge_without(FormErrorKind::Jerk, &of(&|c| c.id() == DELAY));
     }
-    judge_without(Lives::Bristle, &of(&|c| c.effect.regime() == Regime::Hysteresis));
+    judge_without(FormErrorKind::Bristle, &of(&|c| c.effect.regime() == Regime::Hysteresis));
     // On one sine the snap is the acceleration with the opposite sign, and the jerk is the velocity.
-    for lives in free_error(now, solution) {
-        judge_without(lives, &hidden);
+    for kind in unpenalised_form_error(now, solution) {
+        judge_without(kind, &hidden);
     }
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     all
 }
 
 /// Form-error columns of a model that the ridge penalty does not shrink.
-fn free_error(now: &TwoStageModel, solution: &Solution) -> impl Iterator<Item = Lives> {
+fn unpenalised_form_error(now: &TwoStageModel, solution: &Solution) -> impl Iterator<Item = FormErrorKind> {
     let columns = now.main.problem.form_error.as_deref().map_or(&[][..], |form_error| &form_error.columns);
-    solution.error.iter().filter_map(|(at, _)| Some(columns.get(*at)?.lives)).filter(|lives| !lives.shrinks())
+    solution.error.iter().filter_map(|(at, _)| Some(columns.get(*at)?.kind)).filter(|kind| !kind.is_penalised())
 }
 
 /// A candidate that changes the direction of all friction terms has to explain as much as free form-error columns in
@@ -271,13 +271,14 @@ fn is_delayed(now: &TwoStageModel, solution: &Solution) -> bool {
     let model = &now.main;
     let Some(form_error) = model.problem.form_error.as_deref() else { return false };
     let inertia = effect_coefficient(model, solution, "inertia");
-    let jerk = solution.error.iter().find(|(at, _)| form_error.columns[*at].lives == Lives::Jerk).map(|(_, f)| *f);
+    let jerk =
+        solution.error.iter().find(|(at, _)| form_error.columns[*at].kind == FormErrorKind::Jerk).map(|(_, f)| *f);
     let (Some(inertia), Some(jerk)) = (inertia, jerk) else { return false };
     (jerk / inertia).abs() > DELAY_ROWS * form_error.sample_s
 }
 
 /// The added effect without which the validation error does not increase, if other effects were added too.
-fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
+fn insignificant<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     let added: Vec<&'p str> =
         end.effects.iter().filter(|e| !spec.contains(e)).filter_map(|e| Some(spec.find(e).ok()?.info().id)).collect();
     let form_error = end.main.problem.form_error.as_deref()?;
@@ -293,7 +294,7 @@ fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
             return Solution::weighted(model, form_error, weight.clone(), None).ridge.loss();
         }
         let mut columns = effect_columns(model);
-        let nuisance = nuisance(model, form_error, |lives| lives == Lives::Jerk);
+        let nuisance = nuisance(model, form_error, |kind| kind == FormErrorKind::Jerk);
         columns.extend(nuisance.columns());
         BlockedRidge::new(&columns, &model.response(), &weight, &model.problem.block, None).loss()
     };

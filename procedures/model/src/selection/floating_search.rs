@@ -92,28 +92,28 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     }
 
     pub(crate) fn step(&self, now: &LinearModel<'p>) -> Option<Found<'p>> {
-        step(now, self.library, &self.withdrawn, self.bar())
+        step(now, self.library, &self.withdrawn, self.threshold())
     }
 
-    pub(crate) fn bar(&self) -> AcceptanceThreshold<'_> {
+    pub(crate) fn threshold(&self) -> AcceptanceThreshold<'_> {
         AcceptanceThreshold { plain: self.plain, kind: self.library.kind, options: self.options }
     }
 
     /// Removes an effect that was found to be wrong.
     pub fn withdraw(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
         self.rejected_losses.push(validation_losses(&self.now));
-        self.give_back(id, why)
+        self.exclude(id, why)
     }
 
     /// Removes an effect that is not tried again.
-    fn give_back(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
+    fn exclude(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
         self.withdrawn.push(id);
         self.reasons.insert(id, why);
         self.remove(id, why)
     }
 
     /// Adds an effect that hardly changes the error, and keeps it.
-    pub fn uphold(&mut self, scored: ScoredCandidate<'p>) -> Move<'p> {
+    pub fn retain(&mut self, scored: ScoredCandidate<'p>) -> Move<'p> {
         self.retained_for_bias.push(scored.term.id());
         self.add(scored, Vec::new())
     }
@@ -139,22 +139,22 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     /// The next effect to add.
     fn best(&self) -> Option<Found<'p>> {
         let plain = self.step(&self.now);
-        if !self.now.terms.iter().any(|term| self.bends(term)) {
+        if !self.now.terms.iter().any(|term| self.can_absorb(term)) {
             return plain;
         }
         let than = plain
             .as_ref()
             .map_or_else(|| validation_losses(&self.now), |p| validation_losses(&self.model_with(p.0.term.id())));
-        self.behind_bent(&self.now, None, &than).or(plain)
+        self.masked_by(&self.now, None, &than).or(plain)
     }
 
     /// A given effect with several coefficients can absorb a missing effect completely: without a viscous torque a
     /// Stribeck peak becomes negative and wide. This step searches for a candidate without that given effect. The
     /// candidate is returned if the model with both has a significantly smaller validation error than `than`.
-    pub(crate) fn behind_bent(&self, now: &LinearModel<'p>, but: Option<&'p str>, than: &[f64]) -> Option<Found<'p>> {
-        now.terms.iter().filter(|term| self.bends(term)).find_map(|given| {
+    pub(crate) fn masked_by(&self, now: &LinearModel<'p>, but: Option<&'p str>, than: &[f64]) -> Option<Found<'p>> {
+        now.terms.iter().filter(|term| self.can_absorb(term)).find_map(|given| {
             let out: Vec<&str> = self.withdrawn.iter().copied().chain([given.id()]).chain(but).collect();
-            let found = step(&now.without(given.id()), self.library, &out, self.bar())?;
+            let found = step(&now.without(given.id()), self.library, &out, self.threshold())?;
             let losses = validation_losses(&self.canonical(now.terms.iter().map(Term::id).chain([found.0.term.id()])));
             let less = 1.0 - losses.iter().sum::<f64>() / than.iter().sum::<f64>();
             (less > self.options.practical_share && !is_tie(&losses, than)).then_some(found)
@@ -162,7 +162,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     }
 
     /// Whether a given effect has more than one free parameter, so that it can absorb another one.
-    fn bends(&self, term: &Term) -> bool {
+    fn can_absorb(&self, term: &Term) -> bool {
         self.initial_terms.contains(&term.id()) && term.size() > 1
     }
 
@@ -206,15 +206,15 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     /// Effects that explain nearly as much in place of a term, and are confounded with it.
     pub fn stand_ins(&self, term: &Term<'p>) -> Vec<&'p str> {
         let without = self.now.without(term.id());
-        let ground = PartialRegression::of(&without);
-        let enough = SIMPLER_GAIN * (1.0 - self.now.linear().sse / ground.energy);
+        let partial = PartialRegression::of(&without);
+        let enough = SIMPLER_GAIN * (1.0 - self.now.linear().sse / partial.energy);
         let mut near: Vec<(f64, &Regressor<'p>)> = Vec::new();
         for candidate in &self.library.candidates {
             let id = candidate.id();
             if id == term.id() || self.now.contains(id) || self.withdrawn.contains(&id) {
                 continue;
             }
-            let share = ground.own(&candidate.columns).share;
+            let share = partial.own(&candidate.columns).share;
             match near.iter_mut().find(|known| known.1.id() == id) {
                 Some(known) if share > known.0 => *known = (share, candidate),
                 None if share >= enough => near.push((share, candidate)),
@@ -234,21 +234,21 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     }
 
     /// Added effects that have to be justified by the error.
-    pub(crate) fn on_trial(&self) -> impl Iterator<Item = &Term<'p>> {
+    pub(crate) fn testable(&self) -> impl Iterator<Item = &Term<'p>> {
         self.added().filter(|term| !self.retained_for_bias.contains(&term.id()))
     }
 
     /// Effects that were removed and are not in the model, in the order of their removal.
-    pub fn given_back(&self) -> impl Iterator<Item = (&'p str, RemovalReason)> {
+    pub fn removals(&self) -> impl Iterator<Item = (&'p str, RemovalReason)> {
         let out = self.withdrawn.iter().copied().filter(|id| !self.now.contains(id));
         out.filter_map(|id| Some((id, *self.reasons.get(id)?)))
     }
 
     /// An effect of the last model that a pruning rule rejects. The rules run in this order.
     fn pruned(&self) -> Option<(&'p str, RemovalReason)> {
-        let infeasible = || Some((self.impossible(&self.now)?, RemovalReason::Infeasible));
+        let infeasible = || Some((self.infeasible(&self.now)?, RemovalReason::Infeasible));
         let cancelling = || Some((self.mutually_cancelling()?, RemovalReason::MutuallyCancelling));
-        let insignificant = || Some((self.idle()?, RemovalReason::Insignificant));
+        let insignificant = || Some((self.insignificant()?, RemovalReason::Insignificant));
         infeasible().or_else(cancelling).or_else(insignificant)
     }
 }
@@ -276,7 +276,7 @@ impl<'p> Iterator for FloatingSearch<'_, 'p> {
         let found = found.filter(|(scored, _)| !stands_in(scored));
         let Some((scored, ties)) = found else {
             if let Some((id, why)) = self.pruned() {
-                return Some(self.give_back(id, why));
+                return Some(self.exclude(id, why));
             }
             self.exchanges = self.exchanges.checked_sub(1)?;
             let (id, better) = self.swapped()?;

@@ -40,26 +40,26 @@ pub fn step<'p>(
     now: &LinearModel<'p>,
     library: &CandidateSet<'p>,
     withdrawn: &[&'p str],
-    bar: AcceptanceThreshold,
+    threshold: AcceptanceThreshold,
 ) -> Option<(ScoredCandidate<'p>, Vec<&'p str>)> {
-    let options = bar.options;
-    let ground = PartialRegression::of(now);
-    if now.is_negligible((ground.energy / now.problem.rows() as f64).sqrt(), bar.kind) {
+    let options = threshold.options;
+    let partial = PartialRegression::of(now);
+    if now.is_negligible((partial.energy / now.problem.rows() as f64).sqrt(), threshold.kind) {
         return None;
     }
     let is_open = |candidate: &&Regressor| !now.contains(candidate.id()) && !withdrawn.contains(&candidate.id());
     let open: Vec<&Regressor> = library.candidates.iter().filter(is_open).collect();
-    let gains: Vec<Orthogonalized> = open.par_iter().map(|candidate| ground.own(&candidate.columns)).collect();
+    let gains: Vec<Orthogonalized> = open.par_iter().map(|candidate| partial.own(&candidate.columns)).collect();
     let best = short_list(&open, &gains, options);
     if best.is_empty() {
         return None;
     }
-    let acceptable = acceptable(now, &best, &ground, bar);
-    let (mut ranked, present) = cross_validated(now, &acceptable, &ground.residual);
+    let acceptable = acceptable(now, &best, &partial, threshold);
+    let (mut ranked, present) = cross_validated(now, &acceptable, &partial.residual);
     let (winner, ties) = winner_and_ties(now, &ranked, present, library, options)?;
     let mut scored = ranked.swap_remove(winner);
-    let scores = open.par_iter().zip(&gains).map(|(candidate, own)| ground.score(&candidate.columns, own)).collect();
-    scored.p_value = family_wise(&scored.term.columns, scores, &ground, options);
+    let scores = open.par_iter().zip(&gains).map(|(candidate, own)| partial.score(&candidate.columns, own)).collect();
+    scored.p_value = family_wise(&scored.term.columns, scores, &partial, options);
     (scored.p_value <= options.alpha).then_some((scored, ties))
 }
 
@@ -88,21 +88,21 @@ fn short_list<'l, 'p>(
 fn acceptable<'p>(
     now: &LinearModel<'p>,
     best: &[&Regressor<'p>],
-    ground: &PartialRegression,
-    bar: AcceptanceThreshold,
+    partial: &PartialRegression,
+    threshold: AcceptanceThreshold,
 ) -> Vec<(Term<'p>, f64)> {
-    let PartialRegression { basis, residual, energy, .. } = ground;
-    let least_share = bar.least_share(*energy);
+    let PartialRegression { basis, residual, energy, .. } = partial;
+    let least_share = threshold.least_share(*energy);
     best.par_iter()
         .map(|candidate| {
             let mut term = [candidate.term(now.problem)];
             let sse = varpro(&mut term, basis, residual, now.problem);
             let [term] = term;
-            let possible =
-                term.allows(&ground.own(&term.columns).coefficients()) && bar.keeps_parameters_feasible(now, &term);
+            let possible = term.allows(&partial.own(&term.columns).coefficients())
+                && threshold.keeps_parameters_feasible(now, &term);
             let possible = possible
-                && !between_leg_variance::is_random_leg_effect(&term, now, ground, bar.kind, bar.options)
-                && !aliasing::is_none(&term, now, ground);
+                && !between_leg_variance::is_random_leg_effect(&term, now, partial, threshold.kind, threshold.options)
+                && !aliasing::is_none(&term, now, partial);
             let sse = if possible { sse } else { *energy };
             (term, 1.0 - sse / energy)
         })

@@ -14,12 +14,12 @@ use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::HYSTERESIS_SHARE;
 
 /// The hysteresis effect that this run supports, if there is one.
-pub fn memory<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<ScoredCandidate<'p>> {
+pub fn hysteresis_step<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<ScoredCandidate<'p>> {
     let problem = now.prepared.memory.as_ref()?;
     let is_out = |id: &str| !now.effects.iter().any(|e| e == id);
     let reversals = Reversals::new(problem, now.predict(problem), now.spec, is_out);
     let (term, share) = reversals.best()?;
-    let p_value = significance(&term, &reversals.library, &reversals.ground, options);
+    let p_value = significance(&term, &reversals.library, &reversals.partial, options);
     (share >= HYSTERESIS_SHARE && p_value <= options.alpha).then(|| ScoredCandidate::alone(term, share, p_value))
 }
 
@@ -27,8 +27,8 @@ pub fn memory<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<ScoredCa
 pub fn detection_limits<'p>(now: &TwoStageModel<'p>) -> Vec<DetectionLimit<'p>> {
     let is_meant = |id: &str| now.spec.find(id).is_ok_and(|e| now.is_apart(e)) && !now.effects.iter().any(|e| e == id);
     let Some(problem) = now.prepared.memory.as_ref() else { return Vec::new() };
-    let Reversals { ground, library, .. } = Reversals::new(problem, now.predict(problem), now.spec, is_meant);
-    let detectable_rms = (HYSTERESIS_SHARE / (1.0 - HYSTERESIS_SHARE) * ground.energy / problem.rows() as f64).sqrt();
+    let Reversals { partial, library, .. } = Reversals::new(problem, now.predict(problem), now.spec, is_meant);
+    let detectable_rms = (HYSTERESIS_SHARE / (1.0 - HYSTERESIS_SHARE) * partial.energy / problem.rows() as f64).sqrt();
     let mut seen: Vec<&str> = library.candidates.iter().map(|c| c.id()).collect();
     seen.dedup();
     seen.into_iter().map(|effect| DetectionLimit { effect, detectable_rms }).collect()

@@ -17,6 +17,8 @@ pub(crate) mod ramp_stage;
 pub(crate) mod refused;
 pub(crate) mod removal;
 pub(crate) mod staged_search;
+#[cfg(test)]
+mod tiny;
 
 use crate::preprocess::Prepared;
 use crate::selection::advance::SelectionStep;

@@ -6,7 +6,7 @@ use crate::report::diagnosis::Imitated;
 use crate::residual_analysis::maps::Maps;
 use crate::selection::advance::SelectionStep;
 use crate::selection::detection_limit::DetectionLimit;
-use crate::selection::refused::Decided;
+use crate::selection::refused::EvidenceResult;
 use crate::selection::removal::Withdrawn;
 
 /// The steps from the given model to the last one, with all findings.
@@ -24,11 +24,11 @@ pub struct ModelSelection<'p> {
     /// Effects of the last model with the effects that are confounded with them.
     pub ties: Vec<(&'p str, &'p str)>,
     /// Effects of the last model that hardly reduce the error, but prevent biased coefficients.
-    pub upheld: Vec<Imitated>,
+    pub retained: Vec<Imitated>,
     /// An effect that may be present as well.
     pub open: Option<Imitated>,
     /// Result of the evidence search, for runs that are judged sample by sample.
-    pub decided: Option<Decided<'p>>,
+    pub decided: Option<EvidenceResult<'p>>,
 }
 
 impl<'p> ModelSelection<'p> {

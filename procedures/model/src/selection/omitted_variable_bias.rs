@@ -28,15 +28,15 @@ impl<'p> FloatingSearch<'_, 'p> {
     ///
     /// `decides` returns whether a model identifies an effect.
     pub fn imitated(&self, decides: impl Fn(&LinearModel<'p>, &Term<'p>) -> bool + Sync) -> Option<Imitated<'p>> {
-        let bends = |term: &Term| term.form.shape.iter().any(|shape| shape.is_smooth());
-        if self.left == 0 || !self.now.terms.iter().any(bends) {
+        let can_absorb = |term: &Term| term.form.shape.iter().any(|shape| shape.is_smooth());
+        if self.left == 0 || !self.now.terms.iter().any(can_absorb) {
             return None;
         }
-        let ground = PartialRegression::of(&self.now);
+        let partial = PartialRegression::of(&self.now);
         let mut alike: Vec<(f64, &Regressor<'p>)> = Vec::new();
         let is_open = |id| !self.now.contains(id) && !self.withdrawn.contains(&id);
         for candidate in self.library.candidates.iter().filter(|c| is_open(c.id())) {
-            let own = ground.own(&candidate.columns);
+            let own = partial.own(&candidate.columns);
             match alike.iter_mut().find(|known| known.1.id() == candidate.id()) {
                 _ if own.visible > BIAS_TOLERANCE => {}
                 Some(known) if own.share > known.0 => *known = (own.share, candidate),
@@ -45,7 +45,7 @@ impl<'p> FloatingSearch<'_, 'p> {
             }
         }
         let (present, sse) = (validation_losses(&self.now), self.now.linear().sse);
-        let least_share = self.bar().least_share(sse);
+        let least_share = self.threshold().least_share(sse);
         let is_at_edge = self.added().any(Term::is_at_edge);
         let imitated = alike.into_par_iter().filter_map(|(_, candidate)| {
             let mut near = self.now.clone();

@@ -2,14 +2,14 @@
 
 use crate::effect::{Effect, Regime};
 use crate::regression::evidence::{Evidence, ONE_ERROR};
-use crate::residual_analysis::structure::Left;
+use crate::residual_analysis::structure::Unexplained;
 use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
 use crate::words::percent;
 
 /// Findings that remain after the decision.
-pub struct Decided<'p> {
+pub struct EvidenceResult<'p> {
     /// Structure that no effect explains.
-    pub left: Option<Left>,
+    pub left: Option<Unexplained>,
     pub refused: Vec<Refused<'p>>,
 }
 

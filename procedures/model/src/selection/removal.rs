@@ -14,5 +14,5 @@ pub struct Withdrawn<'p> {
 /// Effects that were removed and stayed out.
 pub fn all<'p>(search: &FloatingSearch<'_, 'p>) -> Vec<Withdrawn<'p>> {
     let of = |(effect, why)| Withdrawn { effect, why, validation_rms: validation_rms(&search.model_with(effect)) };
-    search.given_back().map(of).collect()
+    search.removals().map(of).collect()
 }

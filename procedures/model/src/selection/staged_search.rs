@@ -11,13 +11,13 @@ use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::{lack_of_fit, undersampled_harmonics};
 use crate::selection::advance::{Path, SelectionStep};
 use crate::selection::floating_search::{FloatingSearch, Move};
-use crate::selection::hysteresis_stage::memory;
+use crate::selection::hysteresis_stage::hysteresis_step;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::offset_terms;
 use crate::selection::omitted_variable_bias::{Imitated as Found, moved};
-use crate::selection::pruning::partial_explanation::{bump, half_explained};
-use crate::selection::pruning::spurious::borrowing;
-use crate::selection::pruning::unidentified::{Doubt, is_decided, undecided};
+use crate::selection::pruning::partial_explanation::{bump, partially_explained};
+use crate::selection::pruning::spurious::spurious;
+use crate::selection::pruning::unidentified::{Undetermined, is_identified, unidentified};
 use crate::selection::ramp_stage::delay;
 use crate::selection::removal;
 use crate::{ModelError, ModelSpec, Options};
@@ -41,7 +41,7 @@ pub fn search<'p>(
     let start = TwoStageModel::new(prepared, spec, options)?;
     let library = CandidateSet::new(spec, &prepared.main, prepared.regimes());
     // Contradicting columns make every effect spurious.
-    let most = if prepared.clashes.void.is_empty() { most } else { 0 };
+    let most = if prepared.data_errors.fatal.is_empty() { most } else { 0 };
     let offset = (most > 0).then(|| offset_terms::advance(&start, &library, options)).flatten();
     let mut path = Path::new(start, on_advance);
     if let Some(offset) = offset {
@@ -51,17 +51,17 @@ pub fn search<'p>(
     let mut search = FloatingSearch::new(path.end().main.clone(), &library, &prepared.baseline, left, options);
     let SteadyState { maps, residual, open } = steady_state(&mut search, &mut path, prepared, options);
     if let Some(last) = path.advances.last_mut() {
-        last.after = last.after.clone().settled(options)?;
+        last.after = last.after.clone().canonical(options)?;
     }
     let moves = |id: &str, was: &LinearModel<'p>, is: &LinearModel<'p>| imitated(id, was, is, spec, prepared);
     let open = open.and_then(|open| moves(open.scored.term.id(), &search.now, &open.with));
-    let upheld = search.retained_for_bias.iter().filter(|id| search.now.contains(id));
-    let upheld = upheld.filter_map(|id| moves(id, &search.now.without(id), &search.now)).collect();
+    let retained = search.retained_for_bias.iter().filter(|id| search.now.contains(id));
+    let retained = retained.filter_map(|id| moves(id, &search.now.without(id), &search.now)).collect();
     let withdrawn = removal::all(&search);
     let ties = open_ties(&search, &path.advances);
     if !search.unmodelled_structure {
         ramps(&mut path, most, options)?;
-        reversals(&mut path, most, prepared, options)?;
+        hysteresis(&mut path, most, prepared, options)?;
     }
     let detection_limits = search.detection_limits();
     let Path { start, advances, .. } = path;
@@ -75,7 +75,7 @@ pub fn search<'p>(
         maps,
         detection_limits,
         ties,
-        upheld,
+        retained,
         open,
         decided: None,
     })
@@ -91,9 +91,9 @@ fn steady_state<'p>(
     let mut effects = path.end().effects.clone();
     loop {
         let made = search.next().or_else(|| {
-            let undecided = || Some((undecided(search, prepared)?, RemovalReason::Unidentified));
+            let unidentified = || Some((unidentified(search, prepared)?, RemovalReason::Unidentified));
             let (id, why) =
-                search.follows_random_walk().map(|id| (id, RemovalReason::RandomWalk)).or_else(undecided)?;
+                search.follows_random_walk().map(|id| (id, RemovalReason::RandomWalk)).or_else(unidentified)?;
             Some(search.withdraw(id, why))
         });
         let made = match made {
@@ -106,11 +106,11 @@ fn steady_state<'p>(
                     search.unmodelled_structure = true;
                     search.withdraw(id, why)
                 } else {
-                    let is_decided = |with: &LinearModel<'p>, term: &Term<'p>| is_decided(with, term, prepared);
+                    let is_identified = |with: &LinearModel<'p>, term: &Term<'p>| is_identified(with, term, prepared);
                     let nothing_shows = axis.is_none();
                     let is_all = |with: &LinearModel| nothing_shows || leaves_nothing(with, prepared, options);
-                    match search.imitated(is_decided) {
-                        Some(found) if found.is_clear && is_all(&found.with) => search.uphold(found.scored),
+                    match search.imitated(is_identified) {
+                        Some(found) if found.is_clear && is_all(&found.with) => search.retain(found.scored),
                         open => {
                             let open = open.filter(|_| nothing_shows);
                             return SteadyState { maps, residual, open };
@@ -142,7 +142,7 @@ fn outside_the_library<'p>(
     prepared: &Prepared,
     options: &Options,
 ) -> Option<(&'p str, RemovalReason)> {
-    let whole = axis.and_then(|axis| taken_back(search, maps, axis, prepared, options));
+    let whole = axis.and_then(|axis| rejected_by_structure(search, maps, axis, prepared, options));
     let bump = || Some((bump(search, prepared, options)?, RemovalReason::PartialExplanation));
     whole.or_else(bump)
 }
@@ -157,14 +157,14 @@ fn ramps<'p>(path: &mut Path<'_, 'p>, most: usize, options: &Options) -> Result<
     if may_grow(path, most)
         && let Some((scored, after)) = delay(path.end(), options)
     {
-        let after = after.settled(options)?;
+        let after = after.canonical(options)?;
         path.push(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after });
     }
     Ok(())
 }
 
 /// Third stage: hysteresis effects, around the reversals of a run in steps.
-fn reversals<'p>(
+fn hysteresis<'p>(
     path: &mut Path<'_, 'p>,
     most: usize,
     prepared: &'p Prepared,
@@ -172,11 +172,11 @@ fn reversals<'p>(
 ) -> Result<(), ModelError> {
     let now = path.end();
     if may_grow(path, most)
-        && let Some(scored) = memory(now, options)
+        && let Some(scored) = hysteresis_step(now, options)
         && let effects = now.effects.iter().map(String::as_str).chain([scored.term.id()]).map(String::from).collect()
-        && let after = now.of(now.main.clone(), effects).settled(options)?
+        && let after = now.of(now.main.clone(), effects).canonical(options)?
         && let Some(moving) = &after.moving
-        && !Doubt::of(&scored.term, moving, &intervals(moving, prepared.motion).parameters, prepared).is_there()
+        && !Undetermined::of(&scored.term, moving, &intervals(moving, prepared.motion).parameters, prepared).any()
     {
         path.push(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after });
     }
@@ -184,15 +184,15 @@ fn reversals<'p>(
 }
 
 /// An added effect to remove because structure remains over an axis.
-fn taken_back<'p>(
+fn rejected_by_structure<'p>(
     search: &FloatingSearch<'_, 'p>,
     maps: &Maps,
     axis: &str,
     prepared: &Prepared,
     options: &Options,
 ) -> Option<(&'p str, RemovalReason)> {
-    let half = half_explained(search, axis, prepared, options).map(|id| (id, RemovalReason::PartialExplanation));
-    half.or_else(|| Some((borrowing(search, maps, axis, options)?, RemovalReason::Spurious)))
+    let half = partially_explained(search, axis, prepared, options).map(|id| (id, RemovalReason::PartialExplanation));
+    half.or_else(|| Some((spurious(search, maps, axis, options)?, RemovalReason::Spurious)))
 }
 
 /// Confounded pairs of the final model: ties from the time of addition that still hold, and new ones.
@@ -218,7 +218,7 @@ fn open_ties<'p>(search: &FloatingSearch<'_, 'p>, advances: &[SelectionStep<'p>]
 
 /// Residual maps of a model.
 fn maps_of(terms: &LinearModel, residual: Vec<f64>, prepared: &Prepared, options: &Options) -> Maps {
-    Maps::new(prepared, undersampled_harmonics::without_swift_waves(terms, residual), options)
+    Maps::new(prepared, undersampled_harmonics::without_undersampled_harmonics(terms, residual), options)
 }
 
 /// Whether no structure remains over any axis.

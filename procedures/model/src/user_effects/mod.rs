@@ -74,7 +74,7 @@ impl OwnEffect {
 
     /// Warnings that do not change results: contradicting units for this motion (or for both motions if it is
     /// unknown), and a formula of the response itself.
-    pub fn doubts(&self, motion: Option<Motion>) -> Vec<FormulaFault> {
+    pub fn unit_warnings(&self, motion: Option<Motion>) -> Vec<FormulaFault> {
         let response = self.formula.columns.iter().find_map(|(_, e)| e.place_of(Signal::Drive));
         let response = response.map(|at| Mistake::new(at, OF_RESPONSE));
         let found = |mistake: Mistake| mistake.found(self.id(), "formula", &self.definition.formula);

@@ -91,12 +91,12 @@ fn all_unknown_names_are_reported_at_once() {
     let fault = OwnEffect::inline(Kind::Friction, text).unwrap_err();
     let marked = "                    ^   ^^    ^^        ^^^^^";
     assert_eq!(fault.marked(), format!("{text}\n{marked}"));
-    let said = fault.to_string();
+    let text = fault.to_string();
     for words in ["µ is neither", "`µ [Nm] 0..1`, or use a signal", "w1 [Nm] 0..1` (character 25)", "w2 is", "tanh?"]
     {
-        assert!(said.contains(words), "{words}: {said}");
+        assert!(text.contains(words), "{words}: {text}");
     }
-    assert_eq!(said.matches("w1 is neither").count(), 1, "{said}");
+    assert_eq!(text.matches("w1 is neither").count(), 1, "{text}");
 }
 
 #[test]
@@ -144,8 +144,8 @@ fn a_non_finite_value_is_reported_with_its_point() {
     assert_eq!(first, "first where velocity = 0.0000 rad/s");
     assert!(effect.hidden(&view(&[1.0, 0.0, 2.0])).is_some_and(|why| why.contains("not finite")));
     let effect = OwnEffect::inline(Kind::Friction, "x: tau = a / 0; a [Nm]").unwrap();
-    let said = effect.check(&view(&[1.0, 2.0])).unwrap_err().to_string();
-    assert!(said.contains("names no signal") && !said.contains("where ;"), "{said}");
+    let text = effect.check(&view(&[1.0, 2.0])).unwrap_err().to_string();
+    assert!(text.contains("names no signal") && !text.contains("where ;"), "{text}");
 }
 
 #[test]

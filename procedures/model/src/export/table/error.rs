@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Number of steady-state samples for the mean of the table.
-const TELLING: usize = 16;
+const INFORMATIVE_ROWS: usize = 16;
 
 /// Interpolation error midway between neighbouring points: RMS and maximum. `None` without an axis.
 pub fn between(layout: &Layout, values: &[f64]) -> Result<Option<[f64; 2]>, ModelError> {
@@ -41,7 +41,7 @@ pub fn on_run(fit: &Fit, problem: &Problem) -> Result<Option<f64>, ModelError> {
     let column: Vec<f64> = match (axes(&layout, &view.samples), axes(&layout, &view.points)) {
         (Some(samples), _) if !view.chunks.is_empty() => {
             let mean = |c: &Range<usize>| {
-                let each = c.clone().step_by(c.len().div_ceil(TELLING));
+                let each = c.clone().step_by(c.len().div_ceil(INFORMATIVE_ROWS));
                 each.clone().map(|i| at(&samples, i)).sum::<f64>() / each.len() as f64
             };
             view.chunks.par_iter().map(mean).collect()
@@ -49,7 +49,7 @@ pub fn on_run(fit: &Fit, problem: &Problem) -> Result<Option<f64>, ModelError> {
         (_, Some(points)) => (0..view.len()).map(|i| at(&points, i)).collect(),
         _ => return Ok(None),
     };
-    let said = problem.reduce.apply(column);
-    let sse: f64 = problem.target.iter().zip(said).map(|(y, said)| (y - said).powi(2)).sum();
+    let predicted = problem.reduce.apply(column);
+    let sse: f64 = problem.target.iter().zip(predicted).map(|(y, predicted)| (y - predicted).powi(2)).sum();
     Ok(Some((sse / problem.rows() as f64).sqrt()))
 }

@@ -102,16 +102,16 @@ mod tests {
                     assert!(reported(slip, 1.0).is_some(), "{nm} Nm, a current {slip} times as large");
                 }
                 assert!(
-                    reported(1.0, 1e3).is_some_and(|said| said.contains("hysteresis brakes hold 0.1 to 220 Nm")),
+                    reported(1.0, 1e3).is_some_and(|text| text.contains("hysteresis brakes hold 0.1 to 220 Nm")),
                     "{nm} Nm"
                 );
             }
         }
         assert!(reported(13.0, 0.6, 1.0, 1e-3, false).is_some(), "a torque in kNm");
-        let said = reported(13.0, 0.6, 1e3, 1.0, true).unwrap();
-        assert!(said.starts_with("brake_current_a reaches 600 A, and the brake is rated for 0.6 A"), "{said}");
-        let said = reported(13.0, 0.6, 1e3, 1.0, false).unwrap();
-        assert!(said.starts_with("brake_current_a reaches 600 A, and hysteresis brakes take about one"), "{said}");
+        let text = reported(13.0, 0.6, 1e3, 1.0, true).unwrap();
+        assert!(text.starts_with("brake_current_a reaches 600 A, and the brake is rated for 0.6 A"), "{text}");
+        let text = reported(13.0, 0.6, 1e3, 1.0, false).unwrap();
+        assert!(text.starts_with("brake_current_a reaches 600 A, and hysteresis brakes take about one"), "{text}");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use jointbench_instrument::{Kind, Motion, RunTable};
 const OTHER_RATE: f64 = 1.2;
 
 /// The doubts about the test conditions, each in a sentence.
-pub fn doubts(run: &RunTable) -> Vec<String> {
+pub fn warnings(run: &RunTable) -> Vec<String> {
     [rate(run), gear(run), segments(run), crate::preprocess::checks::sensor_faults::spikes(run)]
         .into_iter()
         .flatten()
@@ -49,7 +49,7 @@ mod tests {
         let names = ["time_s", "motor_position_rad", "motor_current_a", "link_torque_nm"];
         let mut trace = Trace::new(names.map(Channel::new).to_vec());
         (0..40).for_each(|i| trace.push_row(&[0.004 * f64::from(i), 0.0, 0.0, 0.0]));
-        doubts(&RunTable::new(Meta { kind: Some(Kind::Friction), ..meta }, trace).unwrap()).join("; ")
+        warnings(&RunTable::new(Meta { kind: Some(Kind::Friction), ..meta }, trace).unwrap()).join("; ")
     }
 
     #[test]

@@ -103,7 +103,7 @@ pub fn spikes(run: &RunTable) -> Option<String> {
     };
     torques.iter().chain(&["motor_velocity_rad_s", "velocity_rad_s", "temperature_c"]).find_map(|name| {
         let values = run.column(name)?;
-        let every = values.len().div_ceil(crate::preprocess::TELLING);
+        let every = values.len().div_ceil(crate::preprocess::INFORMATIVE_ROWS);
         let usual = crate::preprocess::median(values.windows(2).step_by(every).map(|pair| (pair[1] - pair[0]).abs()));
         let (low, high) = middle_of(values.iter().step_by(every).copied().collect());
         let least = (ALONE * usual).max(ALONE_RANGE * (high - low));

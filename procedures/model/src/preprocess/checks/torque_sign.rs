@@ -86,8 +86,8 @@ mod tests {
     use crate::preprocess::checks::unit_mismatch;
     use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 
-    fn said(run: &RunTable) -> Vec<String> {
-        unit_mismatch::clashes(run).all().cloned().collect()
+    fn messages(run: &RunTable) -> Vec<String> {
+        unit_mismatch::data_errors(run).all().cloned().collect()
     }
 
     #[test]
@@ -109,7 +109,7 @@ mod tests {
                 torque_constant_nm_per_a: Some(0.05),
                 ..Meta::default()
             };
-            said(&RunTable::new(meta, trace).unwrap())
+            messages(&RunTable::new(meta, trace).unwrap())
         };
         let loaded = |current_scale, load_scale| rubbing(current_scale, load_scale, 0.0);
         assert_eq!(loaded(1.0, 1.0), Vec::<String>::new(), "a gear that loses three tenths");
@@ -154,6 +154,6 @@ mod tests {
             torque_constant_nm_per_a: Some(0.05),
             ..Meta::default()
         };
-        assert_eq!(said(&RunTable::new(meta, trace).unwrap()), Vec::<String>::new());
+        assert_eq!(messages(&RunTable::new(meta, trace).unwrap()), Vec::<String>::new());
     }
 }

@@ -28,13 +28,13 @@ const DRIVEN: f64 = 0.5;
 #[derive(Debug, Clone, Default)]
 pub struct DataErrors {
     /// Fatal contradictions: every fit to these columns is meaningless, so that no effect is named.
-    pub void: Vec<String>,
+    pub fatal: Vec<String>,
     pub others: Vec<String>,
 }
 
 impl DataErrors {
     pub fn all(&self) -> impl Iterator<Item = &String> {
-        self.void.iter().chain(&self.others)
+        self.fatal.iter().chain(&self.others)
     }
 
     pub fn is_empty(&self) -> bool {
@@ -43,18 +43,18 @@ impl DataErrors {
 }
 
 /// Two columns that contradict each other.
-struct Clash {
-    is_void: bool,
-    said: String,
+struct Contradiction {
+    is_fatal: bool,
+    text: String,
 }
 
-impl Clash {
-    fn void(said: String) -> Self {
-        Self { is_void: true, said }
+impl Contradiction {
+    fn fatal(text: String) -> Self {
+        Self { is_fatal: true, text }
     }
 }
 
-pub fn clashes(run: &RunTable) -> DataErrors {
+pub fn data_errors(run: &RunTable) -> DataErrors {
     let gear_ratio = run.meta().gear_ratio.filter(|_| run.meta().motion != Motion::Linear);
     let gear = gear_ratio.unwrap_or(f64::NAN);
     let pairs: &[(&str, &str, f64)] = match run.kind() {
@@ -73,17 +73,17 @@ pub fn clashes(run: &RunTable) -> DataErrors {
     let motions = pairs.iter().filter_map(|(one, other, ratio)| clash(run, &blocks, one, other, *ratio));
     let torques =
         (run.kind() == Kind::Friction).then(|| crate::preprocess::checks::torque_sign::clash(run, &blocks)).flatten();
-    let (void, gears): (Vec<Clash>, Vec<Clash>) = motions.partition(|clash| clash.is_void);
-    let said = |clashes: Vec<Clash>| clashes.into_iter().map(|clash| clash.said);
+    let (fatal, gears): (Vec<Contradiction>, Vec<Contradiction>) = motions.partition(|clash| clash.is_fatal);
+    let text = |found: Vec<Contradiction>| found.into_iter().map(|one| one.text);
     DataErrors {
-        void: said(void)
+        fatal: text(fatal)
             .chain(torques)
             .chain(driven(run, &blocks))
             .chain(crate::preprocess::checks::unsigned_current::unsigned(run, &blocks))
             .chain(noise(run, &blocks))
             .chain(too_fast(run))
             .collect(),
-        others: said(gears)
+        others: text(gears)
             .chain(dead_load(run))
             .chain(crate::preprocess::checks::brake_range::beyond(run))
             .chain(crate::preprocess::checks::sensor_faults::failed(run))
@@ -112,7 +112,7 @@ fn driven(run: &RunTable, blocks: &[Block]) -> Option<String> {
 }
 
 /// A contradiction unless `ratio · one` moves like `other`.
-fn clash(run: &RunTable, blocks: &[Block], one: &str, other: &str, ratio: f64) -> Option<Clash> {
+fn clash(run: &RunTable, blocks: &[Block], one: &str, other: &str, ratio: f64) -> Option<Contradiction> {
     let (a, b) = (run.column(one)?, run.column(other)?);
     let is_speed = one.ends_with("_rad_s");
     if is_held(run) {
@@ -121,18 +121,21 @@ fn clash(run: &RunTable, blocks: &[Block], one: &str, other: &str, ratio: f64) -
     if !is_speed && run.kind() != Kind::Friction {
         let one_rests = rests(one, a, other, b, ratio);
         if let Some(reported) = one_rests.or_else(|| rests(other, b, one, a, 1.0 / ratio)) {
-            return Some(Clash::void(reported));
+            return Some(Contradiction::fatal(reported));
         }
     }
     let ways = ways(blocks, a, b, is_speed, ratio);
     let times = alike(&ways).or_else(|| mostly(&ways))?;
     if (1.0 / CLASH..=CLASH).contains(&times) {
         let is_geared = !is_speed && ratio != 1.0;
-        return is_geared.then(|| other_gear(&ways, ratio)).flatten().map(|said| Clash { is_void: false, said });
+        return is_geared
+            .then(|| other_gear(&ways, ratio))
+            .flatten()
+            .map(|text| Contradiction { is_fatal: false, text });
     }
     let what = if ratio == 1.0 { String::new() } else { format!(" with the gear ratio of {ratio}") };
-    let said = format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign");
-    Some(Clash::void(said))
+    let text = format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign");
+    Some(Contradiction::fatal(text))
 }
 
 /// Travel of `ratio · one` and of `other` in each block of a run.
@@ -250,8 +253,8 @@ mod tests {
     use super::*;
     use jointbench_instrument::{Channel, Meta, Trace};
 
-    fn said(run: &RunTable) -> Vec<String> {
-        clashes(run).all().cloned().collect()
+    fn messages(run: &RunTable) -> Vec<String> {
+        data_errors(run).all().cloned().collect()
     }
 
     fn run(velocity_scale: f64, link_scale: f64) -> RunTable {
@@ -275,7 +278,9 @@ mod tests {
                 let [a, b, c] = row(t);
                 trace.push_row(&[t, a, b, c]);
             }
-            said(&RunTable::new(Meta { kind: Some(kind), gear_ratio: Some(50.0), ..Meta::default() }, trace).unwrap())
+            messages(
+                &RunTable::new(Meta { kind: Some(kind), gear_ratio: Some(50.0), ..Meta::default() }, trace).unwrap(),
+            )
         };
         let encoder = ["time_s", "reference_position_rad", "test_position_rad", "temperature_c"];
         let turn = |a: f64| (a + 3.0).rem_euclid(std::f64::consts::TAU) - 3.0;
@@ -308,7 +313,7 @@ mod tests {
                 trace.push_row(&[t, q, friction_a * v.signum() + gravity_a * q.cos() + held_a + scatter(i)]);
             }
             let meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(1.0), ..Meta::default() };
-            said(&RunTable::new(meta, trace).unwrap())
+            messages(&RunTable::new(meta, trace).unwrap())
         };
         let found = reported(0.0, 0.0, 0.0);
         assert!(matches!(&found[..], [one] if one.starts_with("motor_current_a is white noise")), "{found:?}");
@@ -322,13 +327,13 @@ mod tests {
 
     #[test]
     fn columns_of_one_motion_agree_or_are_reported() {
-        assert_eq!(said(&run(1.0, 1.0)), Vec::<String>::new());
-        assert_eq!(said(&run(1.1, 0.995)), Vec::<String>::new(), "late or filtered");
-        let gear = said(&run(1.0, 50.0 / 51.0));
+        assert_eq!(messages(&run(1.0, 1.0)), Vec::<String>::new());
+        assert_eq!(messages(&run(1.1, 0.995)), Vec::<String>::new(), "late or filtered");
+        let gear = messages(&run(1.0, 50.0 / 51.0));
         assert!(gear.len() == 1 && gear[0].contains("moves 51.00 times as far"), "{gear:?}");
-        let rpm = said(&run(9.549, 1.0));
+        let rpm = messages(&run(9.549, 1.0));
         assert!(rpm.len() == 1 && rpm[0].starts_with("motor_velocity_rad_s is 9.5"), "{rpm:?}");
-        let degrees = said(&run(-1.0, 57.296));
+        let degrees = messages(&run(-1.0, 57.296));
         assert!(
             degrees.len() == 2 && degrees[0].contains("is -1.00") && degrees[1].contains("57.296 times"),
             "{degrees:?}"

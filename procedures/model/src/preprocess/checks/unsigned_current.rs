@@ -49,8 +49,8 @@ mod tests {
                 trace.push_row(&[t, q, of(current)]);
             }
             let meta = Meta { kind: Some(Kind::Friction), ..Meta::default() };
-            let clashes = unit_mismatch::clashes(&RunTable::new(meta, trace).unwrap());
-            clashes.void.iter().any(|said| said.contains("as a magnitude"))
+            let data_errors = unit_mismatch::data_errors(&RunTable::new(meta, trace).unwrap());
+            data_errors.fatal.iter().any(|text| text.contains("as a magnitude"))
         };
         assert!(reported(f64::abs, 0.0));
         assert!(!reported(|signed| signed, 0.0));

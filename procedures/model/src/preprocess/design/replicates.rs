@@ -40,7 +40,7 @@ impl Same {
 
 /// Difference of an input between repeats that should agree.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unlike {
+pub struct DifferentMotion {
     pub signal: Signal,
     /// RMS of the difference of two repeats at the same moment.
     pub apart: f64,
@@ -148,8 +148,8 @@ pub fn are_apart(replicate_pairs: &[(usize, usize)], link: &[f64]) -> bool {
 }
 
 /// Keeps the replicate pairs of stretches (`of` numbers them for each row) whose inputs agree. If none is left,
-/// `unlike` reports the largest difference.
-pub fn believe(problem: &mut Problem, of: &[i64], inputs: &[Same]) {
+/// `different_motion` reports the largest difference.
+pub fn check_replicates(problem: &mut Problem, of: &[i64], inputs: &[Same]) {
     if inputs.is_empty() {
         return;
     }
@@ -158,7 +158,7 @@ pub fn believe(problem: &mut Problem, of: &[i64], inputs: &[Same]) {
     for (a, b) in std::mem::take(&mut problem.replicate_pairs) {
         pairs.entry((of[a].min(of[b]), of[a].max(of[b]))).or_default().push((a, b));
     }
-    let mut worst: Option<(f64, Unlike)> = None;
+    let mut worst: Option<(f64, DifferentMotion)> = None;
     for replicate_pairs in pairs.into_values() {
         let apart = |input: &Input| {
             replicate_pairs.iter().map(|t| input.half_square(*t)).sum::<f64>() / replicate_pairs.len() as f64
@@ -169,13 +169,13 @@ pub fn believe(problem: &mut Problem, of: &[i64], inputs: &[Same]) {
             None => problem.replicate_pairs.extend(replicate_pairs),
             Some((times, input)) if worst.is_none_or(|(most, _)| times > most) => {
                 let apart = (2.0 * apart(input)).sqrt();
-                worst = Some((times, Unlike { signal: input.signal, apart, spread: input.variance.sqrt() }));
+                worst = Some((times, DifferentMotion { signal: input.signal, apart, spread: input.variance.sqrt() }));
             }
             Some(_) => {}
         }
     }
     problem.replicate_pairs.sort_unstable();
-    problem.unlike = worst.map(|w| w.1).filter(|_| problem.replicate_pairs.is_empty());
+    problem.different_motion = worst.map(|w| w.1).filter(|_| problem.replicate_pairs.is_empty());
 }
 
 /// Mean square and variance.

@@ -52,9 +52,9 @@ pub fn trend(values: &[f64]) -> Vec<f64> {
     const NOISE: f64 = 6.0;
     /// Median of |x − 2y + z| of white noise, in standard deviations.
     const SECOND_DIFFERENCE: f64 = 0.6745 * 2.449;
-    let every = values.len().div_ceil(crate::preprocess::TELLING);
-    let bends = values.windows(3).step_by(every).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs());
-    let depth = NOISE * crate::preprocess::median(bends) / SECOND_DIFFERENCE;
+    let every = values.len().div_ceil(crate::preprocess::INFORMATIVE_ROWS);
+    let can_absorb = values.windows(3).step_by(every).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs());
+    let depth = NOISE * crate::preprocess::median(can_absorb) / SECOND_DIFFERENCE;
     let (mut low, mut high) = (0, 0);
     let mut sign = 0.0;
     let mut trend = vec![0.0; values.len()];

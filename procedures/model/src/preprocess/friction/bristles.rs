@@ -7,7 +7,7 @@
 use crate::hysteresis_operators::{dahl, stop};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::non_negative::non_negative;
-use crate::preprocess::TELLING;
+use crate::preprocess::INFORMATIVE_ROWS;
 use crate::report::fit::Bristles;
 use crate::stats::summary::{quantile, range};
 use crate::view::Start;
@@ -30,7 +30,7 @@ const TURN_SHARE: f64 = 1e-3;
 
 /// The step of the encoder: nearly the smallest difference between neighbouring samples of a moving joint.
 pub fn encoder_step(position: &[f64]) -> f64 {
-    let every = position.len().div_ceil(TELLING);
+    let every = position.len().div_ceil(INFORMATIVE_ROWS);
     let steps = position.windows(2).step_by(every).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 1e-7);
     quantile(steps, 0.01).max(1e-7)
 }
@@ -133,12 +133,12 @@ pub fn weights(elements: &[Vec<f64>], free: &[Vec<f64>], torque: &[f64]) -> Vec<
 }
 
 /// The direction of friction as the weighted sum of the element states.
-pub fn felt(states: &[Vec<f64>], bristles: &Bristles) -> Vec<f64> {
-    let mut felt = vec![0.0; states.first().map_or(0, Vec::len)];
+pub fn direction_state(states: &[Vec<f64>], bristles: &Bristles) -> Vec<f64> {
+    let mut direction_state = vec![0.0; states.first().map_or(0, Vec::len)];
     for (state, weight) in states.iter().zip(&bristles.weights).filter(|(_, weight)| **weight > 0.0) {
-        felt.iter_mut().zip(state).for_each(|(sum, z)| *sum += weight * z);
+        direction_state.iter_mut().zip(state).for_each(|(sum, z)| *sum += weight * z);
     }
-    felt
+    direction_state
 }
 
 #[cfg(test)]

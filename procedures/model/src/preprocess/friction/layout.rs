@@ -4,7 +4,7 @@ use crate::linear::basis::dot;
 use crate::preprocess::design::replicates::{Same, are_apart};
 use crate::preprocess::design::{blocks, replicates, segments};
 use crate::preprocess::filter::{LowPass, by_recording, derivative};
-use crate::preprocess::form_error::{ErrorColumn, FormError, Lives};
+use crate::preprocess::form_error::{ErrorColumn, FormError, FormErrorKind};
 use crate::preprocess::friction::bristles;
 use crate::preprocess::friction::signals::{Work, pad};
 use crate::preprocess::friction::work_rate::Even;
@@ -122,7 +122,7 @@ impl Layout {
             replicate_pairs: blocks::replicate_pairs(&self.run, &self.phase, &self.repeat, 0),
             different_history: HashSet::new(),
             different_angle: HashSet::new(),
-            unlike: None,
+            different_motion: None,
             segment: self.segment.clone().unwrap_or_else(|| self.rows.iter().map(|row| way(row) as i64).collect()),
             repeat: self.repeat.clone(),
             settled: false,
@@ -131,7 +131,7 @@ impl Layout {
             memo: Memo::default(),
         };
         let of = problem.repeat.clone();
-        replicates::believe(&mut problem, &of, &[Signal::Velocity, Signal::Load].map(Same::Value));
+        replicates::check_replicates(&mut problem, &of, &[Signal::Velocity, Signal::Load].map(Same::Value));
         let link = problem.reduce.apply(view.get(Signal::Link).to_vec());
         if are_apart(&problem.replicate_pairs, &link) {
             problem.different_angle = problem.replicate_pairs.iter().copied().collect();
@@ -143,18 +143,19 @@ impl Layout {
         let direction = self.reduce.apply(view.get(Signal::Direction).to_vec());
         let rms = |values: &[f64]| (dot(values, values) / values.len().max(1) as f64).sqrt();
         let bristle = |state: &Vec<f64>| ErrorColumn {
-            lives: Lives::Bristle,
+            kind: FormErrorKind::Bristle,
             values: state.iter().zip(&direction).map(|(z, s)| z - s).collect(),
             scale: rms(state),
         };
-        let slopes = [Lives::Jerk, Lives::Snap, Lives::LoadRate].into_iter().zip(&self.slopes[1..]);
-        let slopes = slopes.map(|(lives, values)| ErrorColumn { lives, values: values.clone(), scale: rms(values) });
+        let slopes =
+            [FormErrorKind::Jerk, FormErrorKind::Snap, FormErrorKind::LoadRate].into_iter().zip(&self.slopes[1..]);
+        let slopes = slopes.map(|(kind, values)| ErrorColumn { kind, values: values.clone(), scale: rms(values) });
         let size = |values: &[f64]| values.iter().map(|v| v.abs()).collect();
         FormError {
             columns: self.states.iter().map(bristle).chain(slopes).collect(),
             turn_s: self.rows.iter().map(|row| work.turn_s(*row)).collect(),
             near_s: 1.0 / self.cutoff_hz,
-            swift: [size(&self.slopes[0]), size(&self.slopes[1])],
+            fast: [size(&self.slopes[0]), size(&self.slopes[1])],
             row_s: self.row_s,
             sample_s: work.even.step_s / work.even.every as f64,
         }

@@ -13,7 +13,7 @@ use crate::effects::friction::presliding;
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::segments;
-use crate::preprocess::{Prepared, TELLING, filter, sample_s};
+use crate::preprocess::{INFORMATIVE_ROWS, Prepared, filter, sample_s};
 use crate::report::fit::Bristles;
 use crate::signal::{Signal, Signals};
 use crate::stats::summary::{median, peak};
@@ -37,9 +37,9 @@ pub fn prepare(run: &RunTable, options: &Options, bristles: Option<&Bristles>) -
         || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > samples.legs().len());
     // If presliding is known, ramps and reversals are as informative as steady-state motion, and there are more of
     // them.
-    let bends = run.meta().baseline.iter().any(|effect| effect == presliding::ID);
+    let can_absorb = run.meta().baseline.iter().any(|effect| effect == presliding::ID);
     match options.residual {
-        None if !in_steps || bends => trajectory::prepare(run, options, bristles),
+        None if !in_steps || can_absorb => trajectory::prepare(run, options, bristles),
         _ => steady_state::prepare(run, samples, plateaus, options),
     }
 }
@@ -100,7 +100,7 @@ fn motion(run: &RunTable, starts: &[usize], cutoff: f64) -> [(Signal, Vec<f64>);
         (slope(&acceleration), acceleration)
     };
     let ways = || {
-        let every = velocity.len().div_ceil(TELLING);
+        let every = velocity.len().div_ceil(INFORMATIVE_ROWS);
         let off = velocity.iter().zip(&smooth_velocity).step_by(every).map(|(a, b)| (a - b).abs());
         let noise = median(off);
         let fastest = peak(&smooth_velocity);

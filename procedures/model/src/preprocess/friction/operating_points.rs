@@ -58,7 +58,7 @@ pub fn prepare(run: &RunTable) -> Result<Prepared, ModelError> {
         segments_from: "operating points".into(),
         repeats_from: if repeats { "found" } else { "none" }.into(),
     };
-    Ok(Prepared { doubts: doubt.into_iter().collect(), ..Prepared::of(run, main, about) })
+    Ok(Prepared { warnings: doubt.into_iter().collect(), ..Prepared::of(run, main, about) })
 }
 
 fn read(run: &RunTable) -> Result<Source, ModelError> {

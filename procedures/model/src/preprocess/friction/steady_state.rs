@@ -116,9 +116,10 @@ pub fn prepare(
         main
     };
     let apart = |fastest| apart(&samples, &plateaus, fastest);
-    let checks =
-        || (crate::preprocess::checks::unit_mismatch::clashes(run), crate::preprocess::checks::metadata::doubts(run));
-    let ((main, (clashes, doubts)), (moving, memory)) =
+    let checks = || {
+        (crate::preprocess::checks::unit_mismatch::data_errors(run), crate::preprocess::checks::metadata::warnings(run))
+    };
+    let ((main, (data_errors, warnings)), (moving, memory)) =
         rayon::join(|| rayon::join(settled, checks), || rayon::join(|| apart(f64::INFINITY), || apart(slowest)));
     let repeats = main.repeat.iter().max().copied().unwrap_or(0) > main.repeat.iter().min().copied().unwrap_or(0);
     let about = Preparation {
@@ -135,7 +136,7 @@ pub fn prepare(
         segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
         repeats_from: if repeats { "column" } else { "none" }.into(),
     };
-    Ok(Prepared { clashes, doubts, moving, memory, ..Prepared::of(run, main, about) })
+    Ok(Prepared { data_errors, warnings, moving, memory, ..Prepared::of(run, main, about) })
 }
 
 /// The chunks of all steady states, of `n` samples each or of several times that in a long run.

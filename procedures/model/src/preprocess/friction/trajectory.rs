@@ -66,7 +66,8 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
         main
     };
     let main = problem(&view);
-    let bristled = (!states.is_empty()).then(|| problem(&bristled(&view, bristles::felt(&states, &bristles))));
+    let bristled =
+        (!states.is_empty()).then(|| problem(&bristled(&view, bristles::direction_state(&states, &bristles))));
     let about = Preparation {
         residual: ResidualKind::Raw,
         sample_rate_hz: 1.0 / sample_s(run.column("time_s").unwrap_or_default()),
@@ -81,9 +82,9 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
         repeats_from: layout.repeats_from.into(),
         bristles: Some(bristles),
     };
-    let clashes = crate::preprocess::checks::unit_mismatch::clashes(run);
-    let doubts = crate::preprocess::checks::metadata::doubts(run);
-    Ok(Prepared { bristled, clashes, doubts, ..Prepared::of(run, main, about) })
+    let data_errors = crate::preprocess::checks::unit_mismatch::data_errors(run);
+    let warnings = crate::preprocess::checks::metadata::warnings(run);
+    Ok(Prepared { bristled, data_errors, warnings, ..Prepared::of(run, main, about) })
 }
 
 /// The corner frequency from the options, or the default if the rate permits it.
@@ -118,10 +119,10 @@ fn set_direction(work: &mut Work, velocity: &[f64], band: f64) {
 }
 
 /// The view with the state of the presliding elements as the direction.
-fn bristled(view: &View, felt: Vec<f64>) -> View {
+fn bristled(view: &View, direction_state: Vec<f64>) -> View {
     let mut view = view.clone();
-    view.points.set(Signal::Direction, felt.clone());
-    view.samples.set(Signal::Direction, felt);
+    view.points.set(Signal::Direction, direction_state.clone());
+    view.samples.set(Signal::Direction, direction_state);
     view
 }
 

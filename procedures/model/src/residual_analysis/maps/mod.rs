@@ -124,8 +124,8 @@ impl Maps {
     }
 
     /// Regions with a significant residual, the worst first.
-    pub fn regions(&self, unit: &str, yardstick: Option<&ReferenceMagnitude>) -> Vec<Region> {
-        regions::regions(self, unit, yardstick)
+    pub fn regions(&self, unit: &str, reference: Option<&ReferenceMagnitude>) -> Vec<Region> {
+        regions::regions(self, unit, reference)
     }
 
     /// Why there is no such region.

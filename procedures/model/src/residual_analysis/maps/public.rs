@@ -5,7 +5,7 @@ use crate::report::fit::Fit;
 use crate::report::maps::{AxisMap, MapBin, MapCell, PairMap, ResidualMaps};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::maps::map::Map;
-use crate::residual_analysis::maps::regions::yardstick;
+use crate::residual_analysis::maps::regions::reference;
 use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
 
@@ -31,7 +31,7 @@ pub fn maps(run: &RunTable, fit: &Fit, options: &Options) -> Result<ResidualMaps
         residual: prepared.about.residual,
         axes: maps.axes.iter().map(|m| maps.public_axis(m)).collect(),
         pairs: maps.by_direction.iter().chain(&chosen_pairs).map(|m| maps.public_pair(m, maps.cells)).collect(),
-        regions: maps.regions(&unit, yardstick(fit, None).as_ref()),
+        regions: maps.regions(&unit, reference(fit, None).as_ref()),
         unit,
     })
 }

@@ -32,7 +32,7 @@ impl ReferenceMagnitude {
 }
 
 /// Coulomb friction if the model has it, otherwise the noise floor.
-pub fn yardstick(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<ReferenceMagnitude> {
+pub fn reference(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<ReferenceMagnitude> {
     let coulomb = fit.parameters.iter().find(|p| p.effect == "coulomb" && p.value > 0.0);
     let coulomb = coulomb.map(|p| ReferenceMagnitude { value: p.value, what: "the Coulomb friction" });
     coulomb.or_else(|| {
@@ -52,7 +52,7 @@ struct Stretch<'m> {
     count: usize,
 }
 
-pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&ReferenceMagnitude>) -> Vec<Region> {
+pub fn regions(maps: &Maps, unit: &str, reference: Option<&ReferenceMagnitude>) -> Vec<Region> {
     let mut stretches: Vec<Stretch> = maps.axes.iter().chain(&maps.by_direction).flat_map(|m| join(maps, m)).collect();
     if let Some(best) = unbanded(maps) {
         stretches.retain(|stretch| stretch.map.removable > AXIS_SHADOW * best.removable);
@@ -72,7 +72,7 @@ pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&ReferenceMagnitude>) 
         }
     }
     reported.sort_by(|(a, _), (b, _)| b.weight().total_cmp(&a.weight()));
-    reported.iter().map(|(stretch, _)| stretch.region(maps.kind, unit, yardstick)).collect()
+    reported.iter().map(|(stretch, _)| stretch.region(maps.kind, unit, reference)).collect()
 }
 
 /// The dominating map, if none of the bins of its axis has enough blocks for a band. Regions over other axes are then
@@ -159,12 +159,12 @@ impl Stretch<'_> {
         (0..self.map.x.bin.len()).filter(inside).collect()
     }
 
-    fn region(&self, kind: Kind, unit: &str, yardstick: Option<&ReferenceMagnitude>) -> Region {
+    fn region(&self, kind: Kind, unit: &str, reference: Option<&ReferenceMagnitude>) -> Region {
         let x = &self.map.x;
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
         let direction = self.map.y.as_ref().map(|y| if y.bins[self.y].centre > 0.0 { "positive" } else { "negative" });
         let side = if self.mean > 0.0 { "low" } else { "high" };
-        let measure = yardstick.map_or_else(String::new, |y| format!(", {}", y.says(self.mean.abs())));
+        let measure = reference.map_or_else(String::new, |y| format!(", {}", y.says(self.mean.abs())));
         let motion = direction.map_or_else(String::new, |d| format!(" {}", way(kind, d == "positive")));
         Region {
             axis: x.name.clone(),

@@ -26,11 +26,11 @@ pub fn least_share(term: &Term) -> f64 {
 }
 
 /// Whether the wave is missing in data where it has to be present.
-pub fn is_none(term: &Term, now: &LinearModel, ground: &PartialRegression) -> bool {
+pub fn is_none(term: &Term, now: &LinearModel, partial: &PartialRegression) -> bool {
     if term.effect.wave().is_none() || !now.problem.settled || term.columns.is_empty() {
         return false;
     }
-    let part = Part::of(term, now.problem, ground);
+    let part = Part::of(term, now.problem, partial);
     part.shows_at_one_speed(now.problem) || part.is_beat(term, now.problem)
 }
 
@@ -45,14 +45,14 @@ struct Part {
 }
 
 impl Part {
-    fn of(term: &Term, problem: &Problem, ground: &PartialRegression) -> Self {
+    fn of(term: &Term, problem: &Problem, partial: &PartialRegression) -> Self {
         let stretches = stretches(&problem.segment);
-        let coefficients = ground.own(&term.columns).coefficients();
+        let coefficients = partial.own(&term.columns).coefficients();
         let mut wave = vec![0.0; problem.rows()];
         for (column, coefficient) in term.columns.iter().zip(&coefficients) {
-            wave.iter_mut().zip(ground.basis.rest(column)).for_each(|(w, c)| *w += coefficient * c);
+            wave.iter_mut().zip(partial.basis.rest(column)).for_each(|(w, c)| *w += coefficient * c);
         }
-        let (found, expected) = (products(&wave, &ground.residual, &stretches), products(&wave, &wave, &stretches));
+        let (found, expected) = (products(&wave, &partial.residual, &stretches), products(&wave, &wave, &stretches));
         Self { stretches, coefficients, found, expected }
     }
 
@@ -81,23 +81,23 @@ impl Part {
         let view = &problem.view;
         let Some(angle) = term.effect.wave().and_then(|angle| view.samples.find(angle)) else { return false };
         let order = term.shape.first().copied().unwrap_or_default();
-        let is_swift = |rows: &Range<usize>| {
+        let is_fast = |rows: &Range<usize>| {
             let chunks = &view.chunks[rows.clone()];
             let way: f64 = chunks.iter().map(|c| (angle[c.end - 1] - angle[c.start]).abs()).sum();
             order * way > MEANS_FOLLOW_RAD * chunks.len() as f64
         };
-        let mut swift: Vec<usize> = (0..self.stretches.len()).filter(|k| is_swift(&self.stretches[*k])).collect();
-        let (whole, part): (f64, f64) = (self.found.iter().sum(), swift.iter().map(|k| self.found[*k]).sum());
+        let mut fast: Vec<usize> = (0..self.stretches.len()).filter(|k| is_fast(&self.stretches[*k])).collect();
+        let (whole, part): (f64, f64) = (self.found.iter().sum(), fast.iter().map(|k| self.found[*k]).sum());
         if part < ALIAS_SHARE * whole || problem.sampled.is_empty() {
             return false;
         }
         let mut rows = 0;
-        swift.retain(|k| {
+        fast.retain(|k| {
             rows += self.stretches[*k].len();
             rows <= MOST_ROWS
         });
-        let expected: Vec<f64> = swift.iter().map(|k| self.expected[*k]).collect();
-        let share = swift.iter().map(|k| self.share_of_samples(term, problem, &self.stretches[*k]));
+        let expected: Vec<f64> = fast.iter().map(|k| self.expected[*k]).collect();
+        let share = fast.iter().map(|k| self.share_of_samples(term, problem, &self.stretches[*k]));
         let found: Vec<f64> = share.zip(&expected).map(|(share, expected)| share * expected).collect();
         is_missing(&found, &expected)
     }
@@ -132,4 +132,24 @@ fn is_missing(found: &[f64], expected: &[f64]) -> bool {
     let share = sum / all;
     let error = found.iter().zip(expected).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt() / all;
     share < ALIAS_SHARE && 1.0 - share > ALIAS_ERRORS * error
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn a_wave_that_shows_at_one_speed_only_is_an_alias() {
+        let is_alias = |shows: fn(f64) -> bool| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| {
+                let wave = if shows(row.velocity.abs()) { (2.0 * row.angle).cos() } else { 0.0 };
+                5.0 * row.direction + wave + 0.1 * row.scatter
+            });
+            is_none(&tiny.term("cogging", vec![2.0]), &tiny.model(), &tiny.partial())
+        };
+        assert!(is_alias(|speed| speed == 6.0));
+        assert!(!is_alias(|_| true));
+    }
 }

@@ -25,7 +25,7 @@ use std::ops::Range;
 pub fn is_random_leg_effect(
     term: &Term,
     now: &LinearModel,
-    ground: &PartialRegression,
+    partial: &PartialRegression,
     kind: Kind,
     options: &Options,
 ) -> bool {
@@ -35,19 +35,19 @@ pub fn is_random_leg_effect(
     }
     let legs = stretches(&legs(now.problem));
     let steps = term.form.shape.iter().any(|shape| shape.search == ShapeSearch::Jump);
-    let own: Vec<Vec<f64>> = term.columns.iter().map(|column| ground.basis.rest(column)).collect();
+    let own: Vec<Vec<f64>> = term.columns.iter().map(|column| partial.basis.rest(column)).collect();
     if !steps && !own.iter().all(|column| is_between(column, &legs)) {
-        return !shows_within(&own, &legs, ground, now.problem, options)
-            && !shows_between(&own, term, &legs, ground, options);
+        return !shows_within(&own, &legs, partial, now.problem, options)
+            && !shows_between(&own, term, &legs, partial, options);
     }
     // The leg-constant columns of the model use degrees of freedom of the leg means.
     let taken = now.columns().into_iter().filter(|column| is_between(column, &legs)).count() as f64;
     let explained = own.len() as f64;
     let free = legs.len() as f64 - taken - explained;
     if free < 1.0 {
-        return steps && own.iter().all(|column| is_small(column, &ground.residual));
+        return steps && own.iter().all(|column| is_small(column, &partial.residual));
     }
-    let plain = means(&ground.residual, &legs);
+    let plain = means(&partial.residual, &legs);
     let left = Basis::of(&own.iter().map(|column| means(column, &legs)).collect::<Vec<_>>()).rest(&plain);
     let (before, after) = (dot(&plain, &plain), dot(&left, &left));
     let f = (before - after) / explained / (after / free).max(f64::MIN_POSITIVE);
@@ -58,22 +58,22 @@ pub fn is_random_leg_effect(
 /// Whether an effect of a model is significant within blocks, with a separate offset for each block.
 pub fn shows_within_blocks(term: &Term, now: &LinearModel, options: &Options) -> bool {
     let without = now.without(term.id());
-    let ground = PartialRegression::of(&without);
-    let own: Vec<Vec<f64>> = term.columns.iter().map(|column| ground.basis.rest(column)).collect();
-    shows_within(&own, &stretches(&without.problem.block), &ground, without.problem, options)
+    let partial = PartialRegression::of(&without);
+    let own: Vec<Vec<f64>> = term.columns.iter().map(|column| partial.basis.rest(column)).collect();
+    shows_within(&own, &stretches(&without.problem.block), &partial, without.problem, options)
 }
 
 /// Whether the effect is significant within legs, with a separate offset for each leg.
 fn shows_within(
     own: &[Vec<f64>],
     legs: &[Range<usize>],
-    ground: &PartialRegression,
+    partial: &PartialRegression,
     problem: &Problem,
     options: &Options,
 ) -> bool {
     let within = |column: &Vec<f64>| within(column, legs);
-    let basis = Basis::of(&ground.basis.vectors().iter().map(within).collect::<Vec<_>>());
-    let residual = basis.rest(&within(&ground.residual));
+    let basis = Basis::of(&partial.basis.vectors().iter().map(within).collect::<Vec<_>>());
+    let residual = basis.rest(&within(&partial.residual));
     let columns: Vec<Vec<f64>> = own.iter().map(within).collect();
     chance(&columns, &PartialRegression::new(basis, residual, problem), options) <= options.alpha
 }
@@ -83,14 +83,14 @@ fn shows_between(
     own: &[Vec<f64>],
     term: &Term,
     legs: &[Range<usize>],
-    ground: &PartialRegression,
+    partial: &PartialRegression,
     options: &Options,
 ) -> bool {
-    let mut taken = vec![0.0; ground.residual.len()];
-    for (column, coefficient) in own.iter().zip(ground.own(&term.columns).coefficients()) {
+    let mut taken = vec![0.0; partial.residual.len()];
+    for (column, coefficient) in own.iter().zip(partial.own(&term.columns).coefficients()) {
         taken.iter_mut().zip(column).for_each(|(t, v)| *t += coefficient * v);
     }
-    let (sums, squares) = (products(&taken, &ground.residual, legs), products(&taken, &taken, legs));
+    let (sums, squares) = (products(&taken, &partial.residual, legs), products(&taken, &taken, legs));
     jackknife_p_value(&sums, &squares).is_some_and(|chance| chance <= options.alpha)
 }
 
@@ -104,4 +104,26 @@ fn is_small(column: &[f64], residual: &[f64]) -> bool {
 fn is_between(column: &[f64], legs: &[Range<usize>]) -> bool {
     let of_legs = means(column, legs).into_iter().zip(legs);
     of_legs.map(|(mean, leg)| leg.len() as f64 * mean * mean).sum::<f64>() > BETWEEN_LEGS * dot(column, column)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::selection::tiny::Tiny;
+
+    #[test]
+    fn a_temperature_that_is_unrelated_to_the_scatter_of_legs_is_rejected() {
+        let is_random = |of_temperature: f64, of_legs: f64| {
+            let warm = |leg: usize| (2.1 * leg as f64).sin();
+            let tiny = Tiny::warmed(
+                Kind::Encoder,
+                &["offset"],
+                |row| 25.0 + warm(row.leg),
+                |row| of_temperature * warm(row.leg) + of_legs * row.leg_scatter + 0.1 * row.scatter,
+            );
+            let term = tiny.term("temperature_drift", Vec::new());
+            is_random_leg_effect(&term, &tiny.model(), &tiny.partial(), Kind::Encoder, &tiny.options)
+        };
+        assert!(is_random(0.0, 1.0) && !is_random(1.0, 0.1));
+    }
 }

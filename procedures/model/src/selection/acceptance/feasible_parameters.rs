@@ -18,3 +18,21 @@ impl AcceptanceThreshold<'_> {
         changes.all(|(t, (was, is))| !t.allows(was) || t.allows(is))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::selection::tiny::Tiny;
+
+    #[test]
+    fn a_candidate_that_makes_the_viscous_friction_negative_is_rejected() {
+        let passes = |viscous: f64| {
+            let tiny = Tiny::new(Kind::Friction, &["viscous"], |row| {
+                5.0 * row.direction + viscous * row.velocity + 0.1 * row.scatter
+            });
+            let threshold = AcceptanceThreshold { plain: 1.0, kind: Kind::Friction, options: &tiny.options };
+            threshold.keeps_parameters_feasible(&tiny.model(), &tiny.term("coulomb", Vec::new()))
+        };
+        assert!(passes(0.2) && !passes(-0.2));
+    }
+}

@@ -27,3 +27,19 @@ impl AcceptanceThreshold<'_> {
         self.options.practical_share.max((remainder / energy).min(UNMISTAKABLE_SHARE))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_candidate_has_to_explain_more_than_the_formula_error_of_the_others() {
+        let options = Options::default();
+        let least = |kind, energy| AcceptanceThreshold { plain: 100.0, kind, options: &options }.least_share(energy);
+        // Nothing explained yet; 99 explained with an error of 0.2 %; all but nothing explained.
+        assert_eq!(least(Kind::Friction, 100.0), options.practical_share);
+        assert!((least(Kind::Friction, 1.0) - 0.002 * 99.0).abs() < 1e-12);
+        assert_eq!(least(Kind::Friction, 1e-6), UNMISTAKABLE_SHARE);
+        assert_eq!(least(Kind::Encoder, 1.0), options.practical_share);
+    }
+}

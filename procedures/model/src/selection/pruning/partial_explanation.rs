@@ -11,7 +11,7 @@ use crate::thresholds::{PERIODS_SEEN, WHOLE_CURVE, WHOLE_EXPLANATION};
 
 /// An added effect that only resembles the missing one: structure remains over its axis, and a free function of that
 /// axis would explain much more. Example: a wave over the angle fitted to a bump at one angle.
-pub fn half_explained<'p>(
+pub fn partially_explained<'p>(
     search: &FloatingSearch<'_, 'p>,
     axis: &str,
     prepared: &Prepared,
@@ -67,5 +67,25 @@ fn least_share(term: &Term, problem: &Problem) -> f64 {
     match wave.is_some_and(|(angle, order)| order * problem.view.turns(angle) < PERIODS_SEEN) {
         true => WHOLE_CURVE,
         false => WHOLE_EXPLANATION,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn a_wave_explains_a_bump_over_the_angle_only_in_part() {
+        let removed = |over_angle: fn(f64) -> f64| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| {
+                5.0 * row.direction + over_angle(row.angle) + 0.05 * row.scatter
+            });
+            tiny.removed(&["gravity"], |search| {
+                super::partially_explained(search, "link_position_rad", &tiny.prepared, &tiny.options)
+            })
+        };
+        assert_eq!(removed(|angle| f64::from(u8::from((1.0..2.0).contains(&angle)))).as_deref(), Some("gravity"));
+        assert_eq!(removed(f64::cos), None);
     }
 }

@@ -20,3 +20,24 @@ impl<'p> FloatingSearch<'_, 'p> {
         explained.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn a_temperature_explains_nothing_of_a_wandering_offset() {
+        let removed = |of_temperature: f64, of_walk: f64| {
+            let tiny = Tiny::warmed(
+                Kind::Encoder,
+                &["offset"],
+                |row| 25.0 + 0.1 * row.leg as f64,
+                |row| of_temperature * row.leg as f64 + of_walk * row.walk + 0.1 * row.scatter,
+            );
+            tiny.removed(&["temperature_drift"], |search| search.follows_random_walk())
+        };
+        assert_eq!(removed(0.0, 1.0).as_deref(), Some("temperature_drift"));
+        assert_eq!(removed(1.0, 0.0), None);
+    }
+}

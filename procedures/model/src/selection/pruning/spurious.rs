@@ -12,19 +12,49 @@ use crate::thresholds::BIAS_TOLERANCE;
 /// An added effect that only follows structure over an axis that is not its own: together with a free function of
 /// that axis it explains nothing. Example: a wave whose mean changes from step to step follows any curve over speed a
 /// little.
-pub fn borrowing<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str, options: &Options) -> Option<&'p str> {
+pub fn spurious<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str, options: &Options) -> Option<&'p str> {
     let functions = maps.functions(axis);
-    let is_borrowed = |term: &&Term<'p>| {
+    let is_spurious = |term: &&Term<'p>| {
         let without = search.now.without(term.id());
         let mut basis = without.tangent();
         functions.iter().for_each(|f| {
             basis.push(f);
         });
         let left = basis.rest(&without.response());
-        let ground = PartialRegression::new(basis, left, search.now.problem);
-        let own = ground.own(&term.columns);
+        let partial = PartialRegression::new(basis, left, search.now.problem);
+        let own = partial.own(&term.columns);
         own.visible > BIAS_TOLERANCE
-            && (own.share < options.practical_share || alone(term, &ground, options) > options.alpha)
+            && (own.share < options.practical_share || alone(term, &partial, options) > options.alpha)
     };
-    search.added().filter(|term| term.effect.regime() != Regime::Hysteresis).find(is_borrowed).map(Term::id)
+    search.added().filter(|term| term.effect.regime() != Regime::Hysteresis).find(is_spurious).map(Term::id)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::residual_analysis::maps::Maps;
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn a_temperature_that_follows_structure_over_speed_is_spurious() {
+        let hump = |velocity: f64| f64::from(u8::from(velocity.abs() == 6.0));
+        let removed = |of_hump: f64, of_temperature: f64| {
+            let temperature = |row: crate::selection::tiny::Row| 4.0 * hump(row.velocity) + 3.0 * row.leg_scatter;
+            let tiny = Tiny::warmed(
+                Kind::Friction,
+                &["coulomb"],
+                |row| 25.0 + temperature(row),
+                |row| {
+                    let size = of_hump * hump(row.velocity) + of_temperature * temperature(row);
+                    (5.0 + size) * row.direction + 0.1 * row.scatter
+                },
+            );
+            tiny.removed(&["temperature_coulomb"], |search| {
+                let maps = Maps::new(&tiny.prepared, search.now.linear().residual, &tiny.options);
+                super::spurious(search, &maps, "motor_velocity_rad_s", &tiny.options)
+            })
+        };
+        assert_eq!(removed(4.0, 0.0).as_deref(), Some("temperature_coulomb"));
+        assert_eq!(removed(0.0, 1.0), None);
+    }
 }

@@ -21,8 +21,30 @@ impl<'p> FloatingSearch<'_, 'p> {
                 let clearly = scored.validation_losses < (1.0 - self.options.practical_share) * present;
                 scored.term.id() != id && clearly && !is_tie(&scored.losses, &losses)
             });
-            plain.or_else(|| self.behind_bent(&rest, Some(id), &losses)).map(|found| (id, found))
+            plain.or_else(|| self.masked_by(&rest, Some(id), &losses)).map(|found| (id, found))
         };
         ids.into_par_iter().find_map_first(better)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn an_effect_that_resembles_the_missing_one_is_swapped_for_it() {
+        let replacement = |drag: fn(f64) -> f64| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| {
+                3.0 + 5.0 * row.direction + drag(row.velocity) + 0.1 * row.scatter
+            });
+            tiny.removed(&["viscous", "direction_offset"], |search| {
+                let (removed, found) = search.swapped()?;
+                assert_eq!(removed, "viscous");
+                Some(found.0.term.id())
+            })
+        };
+        assert_eq!(replacement(|v| 0.1 * v * v.abs()).as_deref(), Some("viscous_quadratic"));
+        assert_eq!(replacement(|v| v), None);
     }
 }

@@ -10,63 +10,79 @@ use crate::thresholds::{NEEDED_WHERE_OPEN, NEEDED_WITHOUT_SIZE, NEEDED_WITHOUT_S
 
 /// Doubts about an effect that the data leaves open.
 #[derive(Clone, Copy, Default)]
-pub struct Doubt {
+pub struct Undetermined {
     /// All its coefficients can be zero, even if only because of a trade-off with its nonlinear parameters.
-    of_coefficients: bool,
+    coefficients: bool,
     /// All its coefficients can be zero with fixed nonlinear parameters, too. Otherwise the trade-off alone is no
     /// reason to doubt the effect.
-    of_size: bool,
+    size: bool,
     /// A nonlinear parameter lies at the bound of the identifiable range, or a coefficient beyond its physical bound.
-    of_shape: bool,
+    shape: bool,
 }
 
-impl Doubt {
+impl Undetermined {
     pub fn of(term: &Term, terms: &LinearModel, parameters: &[Parameter], prepared: &Prepared) -> Self {
         let own = |p: &&Parameter| p.effect == term.id();
         let sudden = term.effect.exponent_parameter();
         let mut others = parameters.iter().filter(own).filter(|p| sudden != Some(p.name.as_str()));
         // One of the two coefficients of a wave may be zero.
-        let is_there = |parameters: &[Parameter]| {
+        let any = |parameters: &[Parameter]| {
             let mut coefficients =
                 parameters.iter().filter(own).filter(|p| term.form.linear.contains(&p.name.as_str()));
             coefficients.any(|p| p.state != ParameterState::Unidentified)
         };
         let held = || intervals(&terms.held(term.id()), prepared.motion).parameters;
         Self {
-            of_coefficients: !is_there(parameters),
-            of_size: !is_there(parameters) && !is_there(&held()),
-            of_shape: others.any(|p| p.state == ParameterState::AtBound),
+            coefficients: !any(parameters),
+            size: !any(parameters) && !any(&held()),
+            shape: others.any(|p| p.state == ParameterState::AtBound),
         }
     }
 
-    pub fn is_there(self) -> bool {
-        self.of_size || self.of_shape
+    pub fn any(self) -> bool {
+        self.size || self.shape
     }
 }
 
 /// Whether a model identifies the size and shape of an effect.
-pub fn is_decided<'p>(with: &LinearModel<'p>, term: &Term<'p>, prepared: &Prepared) -> bool {
-    let doubt = Doubt::of(term, with, &intervals(with, prepared.motion).parameters, prepared);
-    !doubt.of_coefficients && !doubt.of_shape
+pub fn is_identified<'p>(with: &LinearModel<'p>, term: &Term<'p>, prepared: &Prepared) -> bool {
+    let undetermined = Undetermined::of(term, with, &intervals(with, prepared.motion).parameters, prepared);
+    !undetermined.coefficients && !undetermined.shape
 }
 
 /// An added effect whose size or shape the data does not determine, and whose removal hardly increases the validation
 /// error. If both are open, another cause is possible: then the effect has to be worth half of the error. If its size
 /// can be zero for any shape, it has to be worth a third. With structure from outside the library no size counts as
 /// identified, because a part of that structure can be in it.
-pub fn undecided<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
+pub fn unidentified<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
     let parameters = intervals(&search.now, prepared.motion).parameters;
     let present: f64 = validation_losses(&search.now).iter().sum();
     let open = search.added().filter_map(|term| {
-        let doubt = Doubt::of(term, &search.now, &parameters, prepared);
+        let undetermined = Undetermined::of(term, &search.now, &parameters, prepared);
         let more = validation_losses(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
-        let is_removed = match doubt.of_coefficients && doubt.of_shape {
+        let is_removed = match undetermined.coefficients && undetermined.shape {
             // An effect with open size and shape is removed if another effect is confounded with it.
             true => more < NEEDED_WITHOUT_SIZE_AND_SHAPE || !search.stand_ins(term).is_empty(),
-            false if doubt.of_size => more < NEEDED_WITHOUT_SIZE,
-            false => (search.unmodelled_structure || doubt.is_there()) && more < NEEDED_WHERE_OPEN,
+            false if undetermined.size => more < NEEDED_WITHOUT_SIZE,
+            false => (search.unmodelled_structure || undetermined.any()) && more < NEEDED_WHERE_OPEN,
         };
         is_removed.then_some((term.id(), more))
     });
     open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn an_effect_whose_size_may_be_zero_is_unidentified() {
+        let removed = |offset: f64| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| offset + 5.0 * row.direction + row.scatter);
+            tiny.removed(&["direction_offset"], |search| super::unidentified(search, &tiny.prepared))
+        };
+        assert_eq!(removed(0.0).as_deref(), Some("direction_offset"));
+        assert_eq!(removed(2.0), None);
+    }
 }

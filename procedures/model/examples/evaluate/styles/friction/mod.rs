@@ -60,7 +60,7 @@ fn recording(joint: &Joint, plan: &Plan, rows: Rows, alternatives: Vec<Part>) ->
     let part = |id, of: &dyn Fn(&Moment) -> f64| Part { id, values: moments.iter().map(of).collect() };
     let mut base =
         vec![part("inertia", &|m| joint.inertia() * m.acceleration), part("viscous", &|m| joint.oil * m.velocity)];
-    let bends = Part { id: "presliding", values: moments.iter().map(|m| m.dry).collect() };
+    let can_absorb = Part { id: "presliding", values: moments.iter().map(|m| m.dry).collect() };
     let has_load = joint.load != Load::None;
     if has_load {
         base.push(part("load_transmission", &|m| m.load));
@@ -71,12 +71,12 @@ fn recording(joint: &Joint, plan: &Plan, rows: Rows, alternatives: Vec<Part>) ->
     // Presliding is identified by its difference from instantaneous dry friction.
     if plan.hides("presliding") {
         let jumps = part("coulomb", &|m| joint.dry * m.velocity.signum());
-        let values = bends.values.iter().zip(&jumps.values).map(|(b, j)| b - j).collect();
+        let values = can_absorb.values.iter().zip(&jumps.values).map(|(b, j)| b - j).collect();
         hidden.push(Part { id: "presliding", values });
         base.push(jumps);
     } else {
         ids.push("presliding");
-        base.push(bends);
+        base.push(can_absorb);
     }
     for (id, law) in laws.iter().filter(|(id, _)| *id != "presliding") {
         let part = part(id, law);
