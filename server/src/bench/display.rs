@@ -7,7 +7,7 @@ use crate::live::Rows;
 use crate::view::{LiveMessage, Progress};
 use jiff::Timestamp;
 use jointbench_instrument::{Channel, Trace};
-use jointbench_model::export::Alongside;
+use jointbench_model::export::OnlinePrediction;
 use jointbench_procedure::{self as procedure, RunId};
 use std::time::{Duration, Instant};
 
@@ -20,7 +20,7 @@ const BENCH_EVERY: Duration = Duration::from_millis(500);
 
 pub(super) struct Display {
     /// The last model of the bench, evaluated with the live data. `None` after the first failure.
-    model: Option<Alongside>,
+    model: Option<OnlinePrediction>,
     health: Health,
     progress_at: Option<Instant>,
     bench_at: Option<Instant>,
@@ -28,7 +28,7 @@ pub(super) struct Display {
 }
 
 impl Display {
-    pub fn new(model: Option<Alongside>, rate_hz: f64) -> Self {
+    pub fn new(model: Option<OnlinePrediction>, rate_hz: f64) -> Self {
         Self { model, health: Health::new(rate_hz), progress_at: None, bench_at: None, began: Instant::now() }
     }
 
@@ -76,7 +76,7 @@ impl Display {
 
     /// Adds the measured and the predicted motor torque to the rows.
     fn with_model_torque(&mut self, rows: Trace) -> Trace {
-        let Some([measured, predicted]) = self.model.as_mut().and_then(|model| model.tell(&rows)) else {
+        let Some([measured, predicted]) = self.model.as_mut().and_then(|model| model.push(&rows)) else {
             self.model = None;
             return rows;
         };

@@ -11,7 +11,7 @@ use super::wire::{MemoryRead, Order};
 use crate::config::BenchDescription;
 use crate::live::Hub;
 use crate::store::{SafetyRecord, Store};
-use jointbench_model::export::Alongside;
+use jointbench_model::export::OnlinePrediction;
 use jointbench_procedure::{BenchFacts, Demand, Plan, RunId, Safe};
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -185,12 +185,12 @@ impl BenchHandle {
     }
 
     /// The last model of the bench for such a run, if it supports row-by-row evaluation.
-    async fn alongside(&self, run: RunId, plan: &Plan) -> Option<Alongside> {
+    async fn alongside(&self, run: RunId, plan: &Plan) -> Option<OnlinePrediction> {
         let last = self.shared.store.last_model(self.name(), &plan.kind.to_string(), run).await;
         let model = last.inspect_err(|fault| tracing::error!(run.id = run, %fault, "the last model cannot be read"));
         let fit = serde_json::from_value(model.ok()??.fit).ok()?;
         let constants = &self.shared.description.constants;
-        Alongside::new(fit, constants.torque_constant_nm_per_a, constants.gear_ratio)
+        OnlinePrediction::new(fit, constants.torque_constant_nm_per_a, constants.gear_ratio)
     }
 
     fn gone(&self) -> BenchError {

@@ -34,7 +34,7 @@ impl OwnEffects {
         for text in &self.own {
             all.push(OwnEffect::inline(kind, text)?);
         }
-        for fault in all.iter().flat_map(|own| own.doubts(Some(motion))) {
+        for fault in all.iter().flat_map(|own| own.unit_warnings(Some(motion))) {
             eprintln!("note: {}", Exit::from(fault).message);
         }
         Ok(all)

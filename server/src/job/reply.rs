@@ -2,7 +2,7 @@
 
 use crate::error::LabError;
 use jointbench_model::FormulaFault;
-use jointbench_model::formula::Also;
+use jointbench_model::formula::FurtherFault;
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -115,7 +115,8 @@ impl From<Formula> for FormulaFault {
     fn from(formula: Formula) -> Self {
         let Formula { effect, field, text, position, length, message, also } = formula;
         let field = FIELDS.into_iter().find(|known| *known == field).unwrap_or(FIELDS[0]);
-        let also = also.into_iter().map(|(position, length, message)| Also { position, length, message }).collect();
+        let also =
+            also.into_iter().map(|(position, length, message)| FurtherFault { position, length, message }).collect();
         Self { effect, field, text, position, length, message, also }
     }
 }
@@ -147,7 +148,7 @@ mod tests {
                 position: 1,
                 length: 2,
                 message: "no column oil".into(),
-                also: Box::new([Also { position: 3, length: 4, message: "nor this".into() }]),
+                also: Box::new([FurtherFault { position: 3, length: 4, message: "nor this".into() }]),
             })),
         ];
         for error in errors {

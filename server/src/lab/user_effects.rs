@@ -58,12 +58,12 @@ impl Lab {
             let columns: Vec<&str> = none.channels().iter().map(|channel| channel.name.as_str()).collect();
             own.missing(&columns).map_or(Ok(()), |fault| Err(LabError::Formula(fault.into())))?;
         }
-        let doubts: Vec<String> = own.doubts(motion).iter().map(ToString::to_string).collect();
+        let warnings: Vec<String> = own.unit_warnings(motion).iter().map(ToString::to_string).collect();
         let name = |p: &usize| own.definition().parameters[*p].name.clone();
         let mut check = EffectCheck {
             effect: Some(Effect { definition: Some(reread(own.definition())?), ..effect_view(&own.info()) }),
             mistake: None,
-            doubt: (!doubts.is_empty()).then(|| doubts.join("; ")),
+            doubt: (!warnings.is_empty()).then(|| warnings.join("; ")),
             linear: own.formula().columns.iter().map(|(p, _)| name(p)).collect(),
             shape: own.formula().shape.iter().map(name).collect(),
             signals: own.formula().signals.iter().map(|s| s.name.to_owned()).collect(),
