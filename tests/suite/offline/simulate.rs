@@ -31,7 +31,7 @@ fn the_stage_of_a_simulation_moves_to_its_reference() {
     let stream = TcpStream::connect(address).expect("the stage listens");
     stream.set_read_timeout(Some(Duration::from_secs(10))).expect("a socket");
     let mut replies = BufReader::new(stream.try_clone().expect("a socket"));
-    let mut send = |command: &str| (&stream).write_all(format!("{command}\n").as_bytes()).expect("sent");
+    let send = |command: &str| (&stream).write_all(format!("{command}\n").as_bytes()).expect("sent");
     let mut ask = |command: &str| {
         send(command);
         let mut reply = String::new();
