@@ -54,25 +54,29 @@ fn settings(description: &BenchDescription, arguments: &Simulate) -> Result<Mock
     })
 }
 
+/// The instruments and their addresses. A client may close the pipe after the line that it needs, so that it is
+/// written at once.
 fn print(benches: &[(String, MockBench)], arguments: &Simulate) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut text = String::new();
     for (name, bench) in benches {
         if !arguments.json {
-            writeln!(out, "bench {name}, {} s of simulation per second", arguments.pace)?;
+            text += &format!("bench {name}, {} s of simulation per second\n", arguments.pace);
         }
         for (instrument, address) in bench.addresses() {
             let address = address.to_string();
             if arguments.json {
                 let line = Simulated { bench: name.clone(), instrument, address };
-                writeln!(out, "{}", serde_json::to_string(&line)?)?;
+                text += &format!("{}\n", serde_json::to_string(&line)?);
             } else {
-                writeln!(out, "  {instrument:<14} {address}")?;
+                text += &format!("  {instrument:<14} {address}\n");
             }
         }
     }
     if !arguments.json {
-        writeln!(out, "Ctrl-C ends the simulation.")?;
+        text += "Ctrl-C ends the simulation.\n";
     }
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes())?;
     out.flush()
 }
 
