@@ -38,7 +38,8 @@ impl MockInstrument {
     pub const ENCODER_BENCH: [MockInstrument; 4] =
         [MockInstrument::CounterS1, MockInstrument::CounterS2, MockInstrument::Stage, MockInstrument::Thermometer];
 
-    const COUNT: usize = 9;
+    /// The disk is the last variant.
+    const COUNT: usize = MockInstrument::Disk as usize + 1;
 
     pub(super) fn label(self) -> &'static str {
         match self {

@@ -145,6 +145,7 @@ mod tests {
             }
         }
         let mut ids: Vec<_> = catalogue().iter().map(|procedure| procedure.id()).collect();
+        ids.sort_unstable();
         ids.dedup();
         assert_eq!(ids.len(), catalogue().len());
     }

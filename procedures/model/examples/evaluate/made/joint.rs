@@ -119,10 +119,11 @@ impl Joint {
                 self.scratch_width = dice.uniform(0.05, 0.14);
                 self.phase = dice.phase();
             }
-            _ => {
+            "hump" => {
                 self.resonance = dice.uniform(0.3, 0.7);
                 self.resonance_speed = *dice.pick(&speeds[speeds.len() / 3..speeds.len() - 2]);
             }
+            _ => panic!("{effect} has no arm here"),
         }
     }
 

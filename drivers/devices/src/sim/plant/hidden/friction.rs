@@ -93,11 +93,12 @@ impl HiddenFriction {
                 let fast_rad_s = 0.6 * sheet.max_motor_velocity_rad_s;
                 self.viscous_quadratic_nm_s2 = Some(of_coulomb(0.3, 0.5) / fast_rad_s.powi(2));
             }
-            _ => {
+            "cogging" => {
                 let size = of_coulomb(0.2, 0.4);
                 let harmonic = f64::from(draw.random_range(2..=7u8));
                 self.cogging_nm = Some(Wave { size, harmonic, phase_rad: draw.random_range(0.0..TAU) });
             }
+            _ => unreachable!("{name} has no arm here"),
         }
     }
 
