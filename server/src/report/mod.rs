@@ -108,7 +108,7 @@ impl Report {
         }
     }
 
-    /// What the store knows for the block of signatures. A run without these fields gets lines to fill in by hand.
+    /// Known fields of the block of signatures. A run without these fields gets lines to fill in by hand.
     fn signed(&self) -> SignOff<'_> {
         // `local` is a user without a token, and no name.
         SignOff { operator: self.run.summary.by.as_deref().filter(|by| *by != "local"), ..SignOff::default() }

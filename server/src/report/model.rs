@@ -48,29 +48,31 @@ impl Report {
             self.versions.iter().map(of_version).chain(self.suggestions().map(of_suggestion)).collect();
         let most = rows.iter().map(|row| row.rms).fold(f64::MIN_POSITIVE, f64::max);
         html! {
-            h3 { "Validation error before and after" }
-            @if self.versions.len() > 1 {
-                p.verdict {
-                    "Validation error of the initial model: " (scale.figure(baseline)) ". With the added effects: "
-                    (scale.figure(model.validation_rms)) " (" (change_of(baseline, model.validation_rms)) ")."
-                    @if let Some(floor) = model.noise_floor_rms { " Noise floor: " (scale.figure(floor)) "." }
-                }
-            }
-            table.errors {
-                tr { th { "Version" } th { "Change" } th.figure { "Validation error" } th.figure { "To initial" } td { } }
-                @for (place, row) in rows.iter().enumerate() {
-                    tr {
-                        td { (row.version) }
-                        td { (row.change) }
-                        td.figure { (scale.figure(row.rms)) }
-                        td.figure { @if place > 0 { (change_of(baseline, row.rms)) } }
-                        td width="35%" { (bar(row.rms / most)) }
+            section.whole {
+                h3 { "Validation error before and after" }
+                @if self.versions.len() > 1 {
+                    p.verdict {
+                        "Validation error of the initial model: " (scale.figure(baseline)) ". Of the selected model: "
+                        (scale.figure(model.validation_rms)) " (" (change_of(baseline, model.validation_rms)) ")."
+                        @if let Some(floor) = model.noise_floor_rms { " Noise floor: " (scale.figure(floor)) "." }
                     }
                 }
-                @if let Some(floor) = model.noise_floor_rms {
-                    tr {
-                        td { } td { "noise floor (repeatability)" } td.figure { (scale.figure(floor)) } td { }
-                        td { (bar(floor / most)) }
+                table.errors {
+                    tr { th { "Version" } th { "Change" } th.figure { "Validation error" } th.figure { "Relative to initial" } td { } }
+                    @for (place, row) in rows.iter().enumerate() {
+                        tr {
+                            td { (row.version) }
+                            td { (row.change) }
+                            td.figure { (scale.figure(row.rms)) }
+                            td.figure { @if place > 0 { (change_of(baseline, row.rms)) } }
+                            td width="35%" { (bar(row.rms / most)) }
+                        }
+                    }
+                    @if let Some(floor) = model.noise_floor_rms {
+                        tr {
+                            td { } td { "noise floor (repeatability)" } td.figure { (scale.figure(floor)) } td { }
+                            td { (bar(floor / most)) }
+                        }
                     }
                 }
             }

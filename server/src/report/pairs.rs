@@ -8,9 +8,9 @@ use serde_json::{Map, Value};
 
 pub fn pairs(values: &Map<String, Value>) -> Markup {
     html! {
-        table {
+        table.facts {
             @for (name, value) in values.iter().filter(|(_, value)| !plain(value).is_empty()) {
-                tr { td { (title(name)) } td { (plain(value)) } }
+                tr { th { (title(name)) } td { (plain(value)) } }
             }
         }
     }

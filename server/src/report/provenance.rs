@@ -8,8 +8,18 @@ use maud::{Markup, html};
 use serde_json::{Map, Value};
 
 /// Facts with a place of their own in the tables.
-const PLACED: [&str; 9] =
-    ["bench_description", "by", "calibrated", "constants", "imported", "instruments", "limits", "seed", "software"];
+const PLACED: [&str; 10] = [
+    "bench_description",
+    "by",
+    "calibrated",
+    "constants",
+    "imported",
+    "instruments",
+    "limits",
+    "seed",
+    "simulated",
+    "software",
+];
 
 impl Report {
     pub(super) fn provenance(&self) -> Markup {
@@ -83,7 +93,7 @@ impl Report {
                         @let role = text(one.get("role"));
                         @let day = calibrated.and_then(|days| days.get(&role));
                         tr {
-                            td { (title(&known(one.get("name").or(one.get("role"))))) }
+                            td { (known(one.get("name").or(one.get("role"))).replace('_', " ")) }
                             td { (text(of("maker"))) " " (text(of("model"))) }
                             td { (known(of("serial"))) }
                             td { (known(of("firmware"))) }

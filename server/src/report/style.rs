@@ -21,7 +21,8 @@ fn quoted(text: &str) -> String {
         let _ = match letter {
             'a'..='z' | 'A'..='Z' | '0'..='9' | ' ' => write!(quoted, "{letter}"),
             '\0' => Ok(()),
-            _ => write!(quoted, "\\{:06x}", letter as u32),
+            // The space ends the number.
+            _ => write!(quoted, "\\{:x} ", letter as u32),
         };
     }
     quoted + "\""
@@ -35,6 +36,6 @@ mod tests {
     fn a_name_does_not_end_the_style_sheet() {
         let text = sheet("Run 7: friction on \"</style><script>\"\\", "IMPORTED");
         assert!(!text.contains("</style>") && !text.contains("<script"), "{text}");
-        assert!(text.contains(r#"content: "Run 7\00003a friction on "#), "{text}");
+        assert!(text.contains(r#"content: "Run 7\3a  friction on \22 \3c \2f style"#), "{text}");
     }
 }
