@@ -5,10 +5,20 @@ use crate::program::Daemon;
 use std::path::Path;
 use std::process::Command;
 
+fn has(program: &str) -> bool {
+    Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success())
+}
+
+pub fn is_installed() -> bool {
+    ["chromium", "chromium-browser", "google-chrome"].into_iter().any(has)
+}
+
+pub fn is_required() -> bool {
+    std::env::var("JOINTBENCH_REQUIRE_BROWSER").as_deref() == Ok("1")
+}
+
 fn is_missing() -> Option<&'static str> {
-    let has =
-        |program: &str| Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
-    if !["chromium", "chromium-browser", "google-chrome"].iter().any(|name| has(name)) {
+    if !is_installed() {
         return Some("Chromium is not installed (Debian: apt-get install chromium)");
     }
     if !has("node") {
@@ -21,7 +31,7 @@ fn is_missing() -> Option<&'static str> {
 #[test]
 fn an_engineer_walks_from_start_to_undo() {
     if let Some(what) = is_missing() {
-        assert!(std::env::var("JOINTBENCH_REQUIRE_BROWSER").as_deref() != Ok("1"), "the browser is required: {what}");
+        assert!(!is_required(), "the browser is required: {what}");
         eprintln!("SKIPPED: {what}. The browser tests did NOT run.");
         return;
     }

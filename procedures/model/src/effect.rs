@@ -233,6 +233,11 @@ pub trait Effect: Sync {
         false
     }
 
+    /// Whether a user wrote the formula. The selection prefers an effect of the library that explains the same.
+    fn is_user_defined(&self) -> bool {
+        false
+    }
+
     /// Whether the effect is an offset term: it has the coefficient one and no parameters.
     fn is_offset(&self) -> bool {
         false

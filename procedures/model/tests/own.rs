@@ -107,6 +107,31 @@ fn a_formula_that_the_library_has_is_reported_as_its_copy() {
 }
 
 #[test]
+fn an_effect_of_the_library_comes_before_a_shorter_formula_that_explains_the_same() {
+    let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 9 }
+        .run(|m| (0.03 + 0.02 * (-m.velocity.abs() / 8.0).exp()) * m.velocity.signum() + 1.5e-4 * m.velocity);
+    // The law of the simulation with a fixed speed: one coefficient, where stribeck has three parameters.
+    let same = "peak: tau = a * exp(-abs(velocity) / 8) * direction; a [Nm]";
+    let found = diagnose(&run, &spec(&run, &[], same), &Options::default()).unwrap();
+    let named: Vec<&str> = found.suggestions.iter().map(|s| s.effect.as_str()).collect();
+    assert_eq!(named, ["stribeck"], "{}", found.summary);
+    assert_eq!(found.suggestions[0].confounded_with, ["peak"]);
+}
+
+#[test]
+fn many_formulas_do_not_displace_an_effect_of_the_library() {
+    let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 10 }
+        .run(|m| (0.03 + 0.06 * m.load.abs() / 50.0) * m.velocity.signum() + 1.5e-4 * m.velocity);
+    // Each contains the missing effect and a term that this run cannot show.
+    let copy =
+        |n: usize| format!("copy_{n}: tau = a * abs(load) * direction + b * sin({n} * link_position); a [1]; b [Nm]");
+    let copies = (1..=12).flat_map(|n| own(&copy(n))).collect();
+    let spec = ModelSpec::with_own(Kind::Friction, run.meta().baseline.iter(), copies).unwrap();
+    let found = diagnose(&run, &spec, &Options::default()).unwrap();
+    assert_eq!(found.suggestions.first().map(|s| s.effect.as_str()), Some("load_linear"), "{}", found.summary);
+}
+
+#[test]
 fn a_shape_may_be_negative() {
     let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 6 }
         .run(|m| 0.03 * m.velocity.signum() + 1.5e-4 * m.velocity + 0.02 * ((m.velocity + 15.0) / 9.0).tanh());

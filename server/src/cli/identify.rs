@@ -2,7 +2,8 @@
 
 use super::arguments::{Identify, Report};
 use super::exit::{Done, Exit};
-use super::files::write;
+use super::files::{writable, write};
+use super::pdf::Browser;
 use super::serve::runtime;
 use super::transfer::{Target, open};
 use crate::report::with_interval;
@@ -37,12 +38,18 @@ pub(super) fn ending(found: &Identification) -> Done {
 pub fn report(arguments: &Report) -> Done {
     let runtime = runtime()?;
     let run = arguments.run;
+    let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("run-{run}.html")));
+    writable(&path)?;
+    let is_pdf = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("pdf"));
+    let browser = if is_pdf { Some(Browser::find()?) } else { None };
     let page = match open(&runtime, &arguments.store, false)? {
         Target::Folder(lab) => runtime.block_on(lab.report(run, None))?.into_bytes(),
         Target::Daemon(client) => client.get_bytes(&format!("/runs/{run}/report"))?,
     };
-    let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("run-{run}.html")));
-    write(&path, &page)?;
+    match browser {
+        Some(browser) => browser.print(&page, &path)?,
+        None => write(&path, &page)?,
+    }
     println!("{}", path.display());
     Ok(())
 }

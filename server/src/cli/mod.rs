@@ -19,6 +19,7 @@ mod memory;
 mod model;
 mod offline;
 mod outcome;
+mod pdf;
 mod ports;
 mod print;
 mod progress;

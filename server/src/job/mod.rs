@@ -19,7 +19,7 @@ pub use parameters::{Alignment, ExportRequest, FileFormat, ImportRequest, Offer,
 pub use process::{Jobs, Streamed};
 pub(crate) use reply::{Head, Refusal};
 
-use crate::view::{EffectTrial, Exclusion};
+use crate::view::{EffectTrial, Exclusion, Region};
 use jointbench_procedure::DeferredPlan;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -44,6 +44,11 @@ pub enum Job {
     },
     Residuals {
         model: i64,
+    },
+    /// Residual of these versions over the axis of the region.
+    ResidualMap {
+        models: Vec<i64>,
+        region: Option<Region>,
     },
     CompareModels {
         first: i64,

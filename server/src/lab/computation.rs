@@ -30,6 +30,7 @@ impl Lab {
             Job::Diagnose { model, offer } => json(&self.diagnose_here(model, offer).await?),
             Job::NextRun { diagnosis, offer } => json(&self.next_run_here(diagnosis, offer).await?),
             Job::Residuals { model } => self.residuals_here(model).await,
+            Job::ResidualMap { models, region } => json(&self.residual_map_here(&models, region).await?),
             Job::CompareModels { first, second, run } => json(&self.compare_here(first, second, run).await?),
             Job::Worth { model } => json(&self.worth_here(model).await?),
             Job::WithEffect { model, effect } => json(&self.with_effect_here(model, &effect).await?),

@@ -7,6 +7,7 @@ use crate::view::{self, Run, RunEvent, RunList, Samples, reread, run_event, run_
 use jointbench_instrument::{Meta, RunTable};
 use jointbench_procedure::{Control, Demand, Plan};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 use std::time::Duration;
 use tokio::time::timeout;
 
@@ -176,6 +177,8 @@ impl Lab {
 fn new_run(bench: &BenchHandle, plan: &Plan, by: &str) -> Answer<NewRun> {
     let description = bench.description();
     let status = bench.status();
+    let calibrated: BTreeMap<&str, String> =
+        description.calibrated.iter().map(|(role, day)| (role.as_str(), day.to_string())).collect();
     let provenance = json!({
         "software": concat!("jointbench ", env!("CARGO_PKG_VERSION")),
         "by": by,
@@ -183,6 +186,7 @@ fn new_run(bench: &BenchHandle, plan: &Plan, by: &str) -> Answer<NewRun> {
         "limits": description.limits,
         "constants": description.constants,
         "instruments": status.instruments,
+        "calibrated": calibrated,
         "simulated": description.is_simulated(),
         "seed": description.seed(),
     });

@@ -85,6 +85,10 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     let page = of(&child["id"]).body_mut().read_to_string().unwrap();
     assert!(page.contains("+ Direction offset") && page.contains("noise floor"), "where the version came from");
     assert!(!page.contains("<script") && !page.contains("src="), "complete in itself");
+    for part in ["Validation error before and after", "initial model", "Instruments", "Serial number", "Sign-off"] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    assert!(page.contains("Residual map over") || page.contains("No residual map: "), "{page}");
     let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
     assert!(!page.contains("+ Direction offset"), "an idle version is only shown on request");
     let page = of(&model["id"]).body_mut().read_to_string().unwrap();

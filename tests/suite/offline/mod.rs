@@ -5,6 +5,7 @@ mod emps;
 mod maps;
 mod practice;
 mod refused;
+mod report;
 mod round_trip;
 mod simulate;
 mod user_effects;

@@ -250,12 +250,17 @@ fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> b
             < FLOOR_RATIO.powi(2) * solution.ridge.loss()
 }
 
-/// Candidates by decreasing error reduction; those that tie with the first one by increasing p-value.
+/// Candidates by decreasing error reduction; those that tie with the first one by increasing p-value. A formula of a
+/// user comes after the effects of the library that tie with it.
 fn in_turn<'e, 'l, 'p>(passing: &[&'e Evidence<'l, 'p>]) -> Vec<&'e Evidence<'l, 'p>> {
     let mut in_turn = passing.to_vec();
     if let Some(first) = passing.first() {
         let ties = passing.iter().take_while(|e| is_tied(first, e)).count();
         in_turn[..ties].sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
+        let is_own = |e: &Evidence| e.best.effect.is_user_defined();
+        if in_turn[..ties].iter().any(|e| is_own(e)) {
+            in_turn.sort_by_key(|e| is_own(e) || !is_tied(first, e));
+        }
     }
     in_turn
 }

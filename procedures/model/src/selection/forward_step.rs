@@ -63,7 +63,8 @@ pub fn step<'p>(
     (scored.p_value <= options.alpha).then_some((scored, ties))
 }
 
-/// The best grid point of each form of each effect, by decreasing partial R².
+/// The best grid point of each form of each effect, by decreasing partial R². Formulas of users have places of their
+/// own: many of them do not displace an effect of the library.
 fn short_list<'l, 'p>(
     open: &[&'l Regressor<'p>],
     gains: &[Orthogonalized],
@@ -79,9 +80,10 @@ fn short_list<'l, 'p>(
         }
     }
     best.sort_by(|a, b| gains[*b].share.total_cmp(&gains[*a].share));
-    best.truncate(SHORT_LIST);
     best.retain(|b| gains[*b].share > 0.5 * options.practical_share);
-    best.into_iter().map(|at| open[at]).collect()
+    let (of_users, of_library): (Vec<_>, Vec<_>) =
+        best.into_iter().map(|at| open[at]).partition(|candidate| candidate.effect.is_user_defined());
+    [of_library, of_users].into_iter().flat_map(|list| list.into_iter().take(SHORT_LIST)).collect()
 }
 
 /// The refined candidates that no acceptance rule refuses, each with its partial R².
@@ -147,7 +149,8 @@ fn cross_validated<'p>(
     (ranked, present)
 }
 
-/// Among equal candidates the one with the fewest columns wins, then the first one in the order of the library.
+/// Among equal candidates an effect of the library wins over a formula of a user, then the one with the fewest columns,
+/// then the first one in the order of the library.
 fn winner_and_ties<'p>(
     now: &LinearModel<'p>,
     ranked: &[ScoredCandidate<'p>],
@@ -157,14 +160,18 @@ fn winner_and_ties<'p>(
 ) -> Option<(usize, Vec<&'p str>)> {
     let first = ranked.first()?;
     let mut ties: Vec<usize> = (1..ranked.len()).filter(|i| is_tie(&first.losses, &ranked[*i].losses)).collect();
+    let is_own = |i: usize| ranked[i].term.effect.is_user_defined();
+    // A formula of a user has to explain more than an effect of the library, not only to fit this data slightly better.
+    let explains_the_same =
+        |i: usize| is_own(0) && !is_own(i) && !encompasses(now, &first.term, &ranked[i].term, options);
     let near = |i: &usize| {
         let gain = |i: usize| present - ranked[i].validation_losses;
         let as_good = ranked[*i].validation_losses < (1.0 + options.practical_share) * first.validation_losses;
-        as_good && gain(*i) >= SIMPLER_GAIN * gain(0)
+        gain(*i) >= SIMPLER_GAIN * gain(0) && (as_good || explains_the_same(*i))
     };
     let rank = |i: &usize| {
         let id = ranked[*i].term.id();
-        (ranked[*i].term.size(), library.candidates.iter().position(|c| c.id() == id))
+        (is_own(*i), ranked[*i].term.size(), library.candidates.iter().position(|c| c.id() == id))
     };
     let winner = ties.iter().copied().filter(near).chain([0]).min_by_key(rank).unwrap_or(0);
     ties.push(0);

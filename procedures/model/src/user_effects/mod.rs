@@ -167,6 +167,10 @@ impl Effect for OwnEffect {
         vec![Form { grid, ..self.form(view) }]
     }
 
+    fn is_user_defined(&self) -> bool {
+        true
+    }
+
     fn unseen(&self) -> &str {
         "its formula is zero or not finite on this data"
     }

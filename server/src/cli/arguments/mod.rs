@@ -104,7 +104,7 @@ pub enum Command {
     Convert(Convert),
     /// Print the result of a stored run: verdict, quantities and intervals
     Identify(Identify),
-    /// Write a report of a run as one HTML page
+    /// Write a report of a run as one HTML page or as PDF
     Report(Report),
     /// Back up the store to one file, also during a run, and verify the copy
     Backup(Backup),

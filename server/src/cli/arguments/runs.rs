@@ -119,7 +119,8 @@ pub struct Identify {
 pub struct Report {
     /// Number of the run
     pub run: i64,
-    /// File to write [default: run-N.html]
+    /// File to write: .html, or .pdf printed by an installed Chromium or Chrome (on PATH, or its path in
+    /// JOINTBENCH_CHROMIUM) [default: run-N.html]
     #[arg(short, long, visible_alias = "output", value_name = "REPORT.HTML")]
     pub out: Option<PathBuf>,
     #[command(flatten)]

@@ -1,0 +1,187 @@
+//! The model of a run: validation error before and after, residual map, parameters, diagnosis.
+
+use super::Report;
+use super::figure::svg;
+use super::number::with_interval;
+use crate::view::{Diagnosis, Model, ParameterState, Suggestion, Verdict};
+use jointbench_model::words::{self, Scale};
+use maud::{Markup, PreEscaped, html};
+use std::collections::BTreeSet;
+
+/// Suggestions and regions that a report lists.
+const MOST_LISTED: usize = 5;
+
+/// One row of the table of errors.
+struct ErrorRow {
+    version: String,
+    change: String,
+    rms: f64,
+}
+
+impl Report {
+    pub(super) fn model(&self, model: &Model) -> Markup {
+        html! {
+            h2 { "Model" }
+            p { (model.effects.iter().map(|id| self.titled(id)).collect::<Vec<_>>().join(" + ")) }
+            (self.before_and_after(model))
+            (self.residuals())
+            (self.parameters(model))
+            @if let Some(diagnosis) = &self.diagnosis { (self.diagnosed(diagnosis)) }
+        }
+    }
+
+    /// Validation error of each version, and of each suggested effect alone.
+    fn before_and_after(&self, model: &Model) -> Markup {
+        let baseline = self.versions.first().map_or(model.validation_rms, |first| first.validation_rms);
+        let scale = Scale::of(baseline, &model.fit.unit);
+        let of_version = |version: &Model| ErrorRow {
+            version: version.id.to_string(),
+            change: self.change(version),
+            rms: version.validation_rms,
+        };
+        let of_suggestion = |suggestion: &Suggestion| ErrorRow {
+            version: "suggested".to_owned(),
+            change: format!("+ {} alone", self.titled(&suggestion.effect)),
+            rms: suggestion.validation_rms,
+        };
+        let rows: Vec<ErrorRow> =
+            self.versions.iter().map(of_version).chain(self.suggestions().map(of_suggestion)).collect();
+        let most = rows.iter().map(|row| row.rms).fold(f64::MIN_POSITIVE, f64::max);
+        html! {
+            section.whole {
+                h3 { "Validation error before and after" }
+                @if self.versions.len() > 1 {
+                    p.verdict {
+                        "Validation error of the initial model: " (scale.figure(baseline)) ". Of the selected model: "
+                        (scale.figure(model.validation_rms)) " (" (change_of(baseline, model.validation_rms)) ")."
+                        @if let Some(floor) = model.noise_floor_rms { " Noise floor: " (scale.figure(floor)) "." }
+                    }
+                }
+                table.errors {
+                    tr { th { "Version" } th { "Change" } th.figure { "Validation error" } th.figure { "Relative to initial" } td { } }
+                    @for (place, row) in rows.iter().enumerate() {
+                        tr {
+                            td { (row.version) }
+                            td { (row.change) }
+                            td.figure { (scale.figure(row.rms)) }
+                            td.figure { @if place > 0 { (change_of(baseline, row.rms)) } }
+                            td width="35%" { (bar(row.rms / most)) }
+                        }
+                    }
+                    @if let Some(floor) = model.noise_floor_rms {
+                        tr {
+                            td { } td { "noise floor (repeatability)" } td.figure { (scale.figure(floor)) } td { }
+                            td { (bar(floor / most)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn residuals(&self) -> Markup {
+        let Some(map) = &self.residual_map else { return html! {} };
+        html! {
+            @if let Some((title, svg)) = map.figure.as_ref().and_then(|one| Some((&one.title, svg(one)?))) {
+                figure {
+                    figcaption { (title) }
+                    (PreEscaped(svg))
+                    p.quiet { "Mean of measured − model in each bin. The 95 % bands are simultaneous over all bins of all axes." }
+                }
+            }
+            @if let Some(why) = &map.why_not { p.quiet { "No residual map: " (why) } }
+        }
+    }
+
+    fn parameters(&self, model: &Model) -> Markup {
+        html! {
+            h3 { "Parameters" }
+            table {
+                tr { th { "Effect" } th { "Parameter" } th.figure { "Value" } th.figure { "95 % interval" } td { } }
+                @for parameter in &model.fit.parameters {
+                    @let ends = parameter.ci95[0].zip(parameter.ci95[1]).map(|(low, high)| [low, high]);
+                    @let (value, interval) = with_interval(parameter.value, ends, &parameter.unit);
+                    tr {
+                        td { (self.titled(&parameter.effect)) } td { (parameter.name) }
+                        td.figure { (value) } td.figure { (interval.unwrap_or_default()) }
+                        td { @if parameter.state != ParameterState::Ok { (parameter.note.clone().unwrap_or_default()) } }
+                    }
+                }
+            }
+            @for pair in &model.fit.trade_offs {
+                p.quiet { (format!("Parameter trade-off: {} and {} (correlation {:.2}).", pair.first, pair.second, pair.correlation)) }
+            }
+            @for note in &model.fit.notes { p.quiet { (note) } }
+        }
+    }
+
+    fn titled<'s>(&'s self, effect: &'s str) -> &'s str {
+        self.titles.get(effect).map_or(effect, String::as_str)
+    }
+
+    fn change(&self, version: &Model) -> String {
+        match version.parent {
+            None => "initial model".to_owned(),
+            Some(_) => {
+                let added = version.added.iter().map(|id| format!("+ {}", self.titled(id)));
+                let removed = version.removed.iter().map(|id| format!("− {}", self.titled(id)));
+                let reasons: BTreeSet<&str> = version.excluded.iter().map(|one| one.reason.as_str()).collect();
+                let without = reasons.into_iter().map(|reason| format!("without samples: {reason}"));
+                added.chain(removed).chain(without).collect::<Vec<_>>().join(", ")
+            }
+        }
+    }
+
+    /// Effects that the diagnosis suggests. A diagnosis with data problems is no basis for advice.
+    fn suggestions(&self) -> impl Iterator<Item = &Suggestion> {
+        let found = self.diagnosis.iter().map(|diagnosis| &diagnosis.finding);
+        let found = found.filter(|found| found.undecided.is_none() || found.verdict == Verdict::Adequate);
+        found.flat_map(|found| found.suggestions.iter().take(MOST_LISTED))
+    }
+
+    fn diagnosed(&self, diagnosis: &Diagnosis) -> Markup {
+        let found = &diagnosis.finding;
+        let verdict = match (found.verdict, &found.undecided) {
+            (Verdict::Adequate, Some(_)) => "Undecided",
+            (_, Some(_)) => "Data problem",
+            (Verdict::Adequate, None) => "Adequate",
+            (Verdict::MissingEffect, None) => "An effect is missing",
+            (Verdict::UnexplainedStructure, None) => "Unexplained structure",
+        };
+        let is_advice = found.undecided.is_none() || found.verdict == Verdict::Adequate;
+        html! {
+            h2 { "Diagnosis" }
+            p.verdict { strong { (verdict) ". " } (found.summary) }
+            @if !found.regions.is_empty() {
+                p { "Regions with significant residual:" }
+                ul { @for region in found.regions.iter().take(MOST_LISTED) { li { (region.sentence) } } }
+            }
+            @if self.suggestions().next().is_some() {
+                p { "Missing effects:" }
+                ul { @for suggestion in self.suggestions() { li { strong { (self.titled(&suggestion.effect)) } ": " (suggestion.why) } } }
+            }
+            @if let Some(experiment) = found.experiment.as_ref().filter(|_| is_advice) { p { "Recommended next run: " (experiment.why) } }
+        }
+    }
+}
+
+/// Relative change, such as `−92 %`.
+fn change_of(before: f64, after: f64) -> String {
+    let share = after / before - 1.0;
+    let sign = if share < 0.0 { "−" } else { "+" };
+    if share.is_finite() { format!("{sign}{}", words::percent(share.abs())) } else { String::new() }
+}
+
+fn bar(share: f64) -> Markup {
+    html! { span.bar style=(format!("width: {:.1}%", 100.0 * share)) {} }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::change_of;
+
+    #[test]
+    fn a_change_has_a_sign() {
+        assert_eq!([change_of(8.0, 1.0), change_of(1.0, 1.05), change_of(0.0, 0.0)], ["−88 %", "+5.0 %", ""]);
+    }
+}

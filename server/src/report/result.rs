@@ -1,0 +1,47 @@
+//! Result of the run's procedure.
+
+use super::figure::svg;
+use super::number::with_interval;
+use crate::view::{Identification, Identified, command};
+use maud::{Markup, PreEscaped, html};
+
+/// Verdict, quantities and figures of the procedure.
+pub fn result(found: &Identification) -> Markup {
+    let result = &found.result;
+    let verdict = match result.verdict {
+        Identified::Identified => "Identified",
+        Identified::IdentifiedWithWarning => "Identified with a warning",
+        Identified::Inconclusive => "Inconclusive",
+        Identified::Failed => "Failed",
+    };
+    html! {
+        h2 { "Result" }
+        p.verdict { strong { (verdict) ". " } (result.summary) }
+        @for warning in &result.warnings { p.verdict { strong { "Warning. " } (warning) } }
+        @if let Some(advice) = &result.advice { p.verdict { "Next: " (advice) } }
+        @if !result.quantities.is_empty() {
+            table {
+                tr { th { "Quantity" } th { "Symbol" } th.figure { "Value" } th.figure { "95 % interval" } th { "Name" } }
+                @for quantity in &result.quantities {
+                    @let (value, interval) = with_interval(quantity.value, quantity.ci95, &quantity.unit);
+                    tr {
+                        td { (quantity.title) } td { (quantity.symbol) }
+                        td.figure { (value) } td.figure { (interval.unwrap_or_default()) }
+                        td.quiet { code { (quantity.name) } }
+                    }
+                }
+            }
+        }
+        @if let Some(next) = &found.follow_up {
+            p {
+                "Next: " (next.why) ": " code { (command(&next.procedure, &next.parameters)) }
+            }
+        }
+        @for one in &result.figures {
+            @if let Some(svg) = svg(one) {
+                figure { figcaption { (one.title) } (PreEscaped(svg)) }
+            }
+        }
+        p.quiet { "Computed by " (found.software) "." }
+    }
+}
