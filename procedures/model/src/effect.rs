@@ -288,11 +288,9 @@ pub trait Effect: Sync {
             let meant = nearest(need, others).map(|near| format!("; did you mean {near}?"));
             return Some(format!("the run has no column {need}{}", meant.unwrap_or_default()));
         }
-        if let Some(turns) = view.constants.held_turns.filter(|_| self.needs_motion()) {
-            return Some(format!(
-                "one side of the joint is held and the link turns by {turns:.4} of a turn: its motion is the twist itself, \
-                 which it cannot explain; turn the joint under load"
-            ));
+        if view.constants.is_held && self.needs_motion() {
+            let why = "one side of the joint is held, so that the only motion is the deformation itself; move the joint under load";
+            return Some(why.into());
         }
         let still = |need: &&&str| view.find(Signal::named(need)).is_some_and(is_constant);
         if let Some(need) = info.needs.iter().find(still) {

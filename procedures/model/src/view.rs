@@ -31,8 +31,8 @@ pub struct Constants {
     pub speeds: Option<f64>,
     /// Range of reaches that its reversals can identify [rad].
     pub reaches: Option<[f64; 2]>,
-    /// Turns of the link, if one side of the joint is clamped and the motion of the other side is the twist itself.
-    pub held_turns: Option<f64>,
+    /// One side of the joint is clamped, and the motion of the other side is the twist itself.
+    pub is_held: bool,
     /// RMS quantization error of the response, if it stays within the same encoder counts, as for a clamped joint.
     pub rounding: f64,
 }

@@ -194,7 +194,7 @@ fn suggestions(
         };
         let info = scored.term.effect.info();
         let confounded_with = found.ties_of(id);
-        let tie = tie(&found.start, &alone, &confounded_with, spec, options)?;
+        let tie = tie(found, id, &confounded_with, spec, options)?;
         let evidence = if apart {
             format!("Around reversals it reduces the squared error by {}.", percent(scored.share))
         } else if let Some(retained) = found.retained.iter().find(|u| u.effect == id) {
@@ -233,10 +233,10 @@ fn suggestions(
     Ok(out)
 }
 
-/// The effects that are confounded with an added one, in a sentence.
+/// The effects that are confounded with an added one, in a sentence. Their contributions are compared in the final model.
 fn tie(
-    start: &TwoStageModel,
-    alone: &TwoStageModel,
+    found: &Findings,
+    id: &str,
     confounded_with: &[String],
     spec: &ModelSpec,
     options: &Options,
@@ -244,12 +244,17 @@ fn tie(
     if confounded_with.is_empty() {
         return Ok(String::new());
     }
-    let mut alike = Vec::new();
-    for scored in confounded_with {
-        let other = spec.with(scored)?;
-        let other = TwoStageModel::new(start.prepared, &other, options)?;
-        alike.push(format!("{:.2}", evidence::correlation(&start.main, &alone.main, &other.main)));
-    }
+    let others = found.end().effects.iter().filter(|effect| *effect != id).cloned();
+    let base = ModelSpec::with_own(spec.kind, others, spec.own.clone())?;
+    let prepared = found.start.prepared;
+    let without = TwoStageModel::new(prepared, &base, options)?;
+    let correlation = |rival: &String| {
+        let (own, other) = (base.with(id)?, base.with(rival)?);
+        let own = TwoStageModel::new(prepared, &own, options)?;
+        let other = TwoStageModel::new(prepared, &other, options)?;
+        Ok(format!("{:.2}", evidence::correlation(&without.main, &own.main, &other.main)))
+    };
+    let alike = confounded_with.iter().map(correlation).collect::<Result<Vec<String>, ModelError>>()?;
     Ok(format!(
         " Confounded with {}: each reduces the error equally well (correlation of the contributions {}).",
         list(confounded_with),

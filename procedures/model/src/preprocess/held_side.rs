@@ -3,17 +3,17 @@
 use crate::stats::summary::mean;
 use jointbench_instrument::{Kind, RunTable};
 
-/// The turns of the link, if one side of the joint is clamped. A free joint moves farther than it twists, on both
+/// Whether one side of the joint moves less than it twists. A free joint moves farther than it twists, on both
 /// sides. In a clamped joint the twist equals the motion of the other side, so that no function of that motion may
 /// explain it.
-pub fn held_turns(twist: &[f64], link: &[f64]) -> Option<f64> {
+pub fn moves_by_twist_only(twist: &[f64], link: &[f64]) -> bool {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         high - low
     };
     let of_link = range(&mut link.iter().copied());
     let of_motor = range(&mut twist.iter().zip(link).map(|(t, q)| t + q));
-    (of_link.min(of_motor) < range(&mut twist.iter().copied())).then_some(of_link / std::f64::consts::TAU)
+    of_link.min(of_motor) < range(&mut twist.iter().copied())
 }
 
 /// Whether one side of the joint is clamped: the motions of both sides are unrelated, and the twist follows the
@@ -27,6 +27,6 @@ pub fn is_held(run: &RunTable) -> bool {
     let (middle, centre) = (mean(&twist), mean(torque));
     let product =
         |f: fn(f64, f64) -> f64| twist.iter().zip(torque).map(|(q, t)| f(q - middle, t - centre)).sum::<f64>();
-    held_turns(&twist, link).is_some()
+    moves_by_twist_only(&twist, link)
         && product(|q, t| q * t).powi(2) > MOST * product(|q, _| q * q) * product(|_, t| t * t)
 }

@@ -4,7 +4,7 @@ use crate::linear::cholesky::Cholesky;
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::segments;
-use crate::preprocess::held_side::held_turns;
+use crate::preprocess::held_side::moves_by_twist_only;
 use crate::preprocess::{Prepared, filter, sample_s, sweeps};
 use crate::signal::{Signal, Signals};
 use crate::stats::summary::{mean, peak, range};
@@ -32,12 +32,12 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let cutoff_hz = crate::preprocess::cutoff_hz(options, step_s)?;
     let mut signals = Signals::new(run.len());
     signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
-    let held_turns = held_turns(&target, link);
-    let rounding = held_turns.map_or(0.0, |_| rounding(column("motor_position_rad"), link, torque, gear));
-    if held_turns.is_some() {
+    let is_held = moves_by_twist_only(&target, link);
+    let rounding = if is_held { rounding(column("motor_position_rad"), link, torque, gear) } else { 0.0 };
+    if is_held {
         signals.set(Signal::Direction, segments::trend(torque));
     }
-    let derived_velocity = held_turns.is_none() && motion(&mut signals, run, cutoff_hz, step_s);
+    let derived_velocity = !is_held && motion(&mut signals, run, cutoff_hz, step_s);
     for (name, signal) in [("temperature_c", Signal::Temperature), ("repeat", Signal::Repeat)] {
         if let Some(values) = run.column(name) {
             signals.set(signal, values.to_vec());
@@ -55,7 +55,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         repeat,
         derived_velocity,
         time_s,
-        constants: Constants { held_turns, rounding, ..Constants::default() },
+        constants: Constants { is_held, rounding, ..Constants::default() },
     };
     let smooth = smooth(&source, torque);
     source.signals.set(Signal::Load, smooth);
@@ -63,7 +63,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let mut prepared = sweeps::prepare(run, source, CHUNK_S, &inputs, options)?;
     // The legs of a clamped joint are those of its torque, which may have steps within a leg. Hysteresis operators
     // use the smoothed torque, all other terms the measured torque.
-    if held_turns.is_some() {
+    if is_held {
         let measured = prepared.main.view.average(torque.to_vec());
         prepared.main.view.points.set(Signal::Load, measured);
     }
