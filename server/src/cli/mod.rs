@@ -30,6 +30,7 @@ mod secrets;
 mod serve;
 mod simulate;
 mod transfer;
+mod units;
 mod user_effects;
 mod verify;
 
@@ -70,6 +71,7 @@ pub fn main() -> ExitCode {
         Command::Reset(arguments) => control::reset(&arguments),
         Command::ServoMemory(arguments) => memory::memory(&arguments),
         Command::Runs(arguments) => runs::runs(&arguments),
+        Command::Units(arguments) => units::units(&arguments),
         Command::Autopilot(arguments) => autopilot::autopilot(&arguments),
         Command::Diagnose(arguments) => offline::diagnose(&arguments),
         Command::Discover(arguments) => offline::discover(&arguments),

@@ -88,6 +88,8 @@ impl Report {
                 @if let Some(duration_s) = summary.duration_s { (format!(" in {duration_s:.1} s of bench time")) }
                 @if let Some(safe) = summary.safe { " · bench " (word(safe).replace('_', " ")) }
             }
+            @if let Some(unit) = &summary.unit { p { "Unit under test " b { (unit.line()) } } }
+            @if let Some(operator) = &summary.operator { p.quiet { "Operator " (operator) } }
             @if let Some(reason) = &summary.reason { p { (reason) } }
             @if !self.notes.is_empty() { ul.quiet { @for note in &self.notes { li { (note) } } } }
         }

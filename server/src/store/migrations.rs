@@ -7,7 +7,7 @@ use std::future::{self, Future};
 use std::pin::Pin;
 
 /// Name and text of every file in `migrations/`, in order. The list is manual because the macro compiles SQLite twice.
-const FILES: [(&str, &str); 21] = [
+const FILES: [(&str, &str); 22] = [
     ("0001_runs.sql", include_str!("../../../migrations/0001_runs.sql")),
     ("0002_models.sql", include_str!("../../../migrations/0002_models.sql")),
     ("0003_safety.sql", include_str!("../../../migrations/0003_safety.sql")),
@@ -29,6 +29,7 @@ const FILES: [(&str, &str); 21] = [
     ("0019_checksums.sql", include_str!("../../../migrations/0019_checksums.sql")),
     ("0020_store_log.sql", include_str!("../../../migrations/0020_store_log.sql")),
     ("0021_warnings.sql", include_str!("../../../migrations/0021_warnings.sql")),
+    ("0022_units.sql", include_str!("../../../migrations/0022_units.sql")),
 ];
 
 #[derive(Debug)]
