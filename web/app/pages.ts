@@ -5,6 +5,7 @@ export const pages = {
 	live: lazy(() => import('./run/LivePage.svelte')),
 	run: lazy(() => import('./run/RunPage.svelte')),
 	runs: lazy(() => import('./runs/Runs.svelte')),
+	units: lazy(() => import('./units/Units.svelte')),
 	workbench: lazy(() => import('./workbench/Workbench.svelte')),
 	pick: lazy(() => import('./workbench/RunPicker.svelte')),
 	alignment: lazy(() => import('./result/Alignment.svelte')),

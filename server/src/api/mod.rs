@@ -30,6 +30,7 @@ mod tables;
 mod throttle;
 mod tokens;
 mod transfer;
+mod units;
 mod user_effects;
 
 pub use auth::Transport;
@@ -163,6 +164,7 @@ fn measurements() -> OpenApiRouter<Lab> {
         .routes(routes!(identifications::trends))
         .routes(routes!(identifications::model_overlay))
         .routes(routes!(identifications::report))
+        .routes(routes!(units::list))
         .routes(routes!(transfer::export))
         .routes(routes!(transfer::export_meta))
 }

@@ -20,8 +20,8 @@ pub struct RunQuery {
     pub limit: Option<u32>,
     /// Number of newest runs to skip.
     pub offset: Option<u32>,
-    /// Words, and terms such as `kind:friction`, `tag:oil`, `-state:failed`, `duration>2min`, `after:2026-01-31`; all
-    /// must match.
+    /// Words, and terms such as `kind:friction`, `unit:SN123`, `tag:oil`, `-state:failed`, `duration>2min`,
+    /// `after:2026-01-31`; all must match.
     pub search: Option<String>,
     /// Sort column: `started`, `state`, `procedure`, `bench`, `duration`, `rows`, `safe`, `error` (validation error of
     /// the latest active model version) or `coulomb`; with a minus sign largest first. Newest first if omitted.
@@ -51,7 +51,7 @@ pub async fn start(
     Extension(caller): Extension<Caller>,
     Json(new): Json<NewRun>,
 ) -> Created<Run> {
-    created(lab.start_run(&new.bench, &new.procedure, &new.parameters, &caller.name).await?)
+    created(lab.start_run(&new, &caller.name).await?)
 }
 
 /// One run

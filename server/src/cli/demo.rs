@@ -11,10 +11,9 @@ use super::serve::{runtime, settings};
 use crate::config::BenchDescription;
 use crate::daemon::{Daemon, shutdown_signal};
 use crate::lab::{LOCAL, Lab};
-use crate::view::{Model, Run, RunState, Suggestion, reread};
+use crate::view::{Model, NewRun, Run, RunState, Suggestion, reread};
 use hidden::{Hidden, Setup};
 use jointbench_devices::MockSettings;
-use serde_json::Map;
 use std::time::Instant;
 
 /// Limit of added effects: the demo never hides more.
@@ -87,7 +86,8 @@ async fn show(lab: &Lab, hidden: &Hidden) -> Result<i64, Exit> {
 }
 
 async fn measure(lab: &Lab, &Setup { bench, procedure, .. }: &Setup) -> Result<Run, Exit> {
-    let run = lab.start_run(bench, procedure, &Map::new(), LOCAL).await?.summary.id;
+    let new = NewRun { bench: bench.to_owned(), procedure: procedure.to_owned(), ..NewRun::default() };
+    let run = lab.start_run(&new, LOCAL).await?.summary.id;
     let mut watch = lab.handle(bench)?.watch();
     let mut shown = RunProgress::begin();
     loop {

@@ -31,6 +31,7 @@ mod secrets;
 mod serve;
 mod simulate;
 mod transfer;
+mod units;
 mod user_effects;
 mod verify;
 
@@ -71,6 +72,7 @@ pub fn main() -> ExitCode {
         Command::Reset(arguments) => control::reset(&arguments),
         Command::ServoMemory(arguments) => memory::memory(&arguments),
         Command::Runs(arguments) => runs::runs(&arguments),
+        Command::Units(arguments) => units::units(&arguments),
         Command::Autopilot(arguments) => autopilot::autopilot(&arguments),
         Command::Diagnose(arguments) => offline::diagnose(&arguments),
         Command::Discover(arguments) => offline::discover(&arguments),

@@ -1,6 +1,6 @@
 //! `jointbench run`: a procedure on a running daemon.
 
-use super::arguments::Run as Arguments;
+use super::arguments::{Run as Arguments, UnitArguments};
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::junit::junit;
@@ -8,7 +8,7 @@ use super::outcome::{Found, ending, is_over};
 use super::progress::RunProgress;
 use super::require::{Requirement, RequirementResult};
 use super::{files, identify};
-use crate::view::{Bench, NewRun, Run, RunState};
+use crate::view::{Bench, NewRun, Run, RunState, Unit};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
 use std::time::{Duration, Instant};
@@ -123,7 +123,8 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
     let (id, procedure, bench) = (run.summary.id, &run.summary.procedure, &run.summary.bench);
     if !arguments.json {
         let goes_on = arguments.continues.map(|before| format!(", continues run {before}")).unwrap_or_default();
-        println!("run {id}: {procedure} on {bench}{goes_on}  {}", client.page(&format!("/runs/{id}")));
+        let unit = run.summary.unit.as_ref().map(|unit| format!(", unit {}", unit.line())).unwrap_or_default();
+        println!("run {id}: {procedure} on {bench}{unit}{goes_on}  {}", client.page(&format!("/runs/{id}")));
     }
     let waits =
         arguments.wait || arguments.junit.is_some() || arguments.timeout.is_some() || !arguments.require.is_empty();
@@ -170,7 +171,15 @@ fn new_run(client: &Client, arguments: &Arguments) -> Result<NewRun, Exit> {
         bench: choose_bench(client, arguments.bench.as_deref())?,
         procedure: arguments.procedure.clone().unwrap_or_default(),
         parameters: parameters(&arguments.set)?,
+        unit: unit(&arguments.unit),
+        operator: arguments.unit.operator.clone(),
     })
+}
+
+/// The daemon checks the texts.
+fn unit(arguments: &UnitArguments) -> Option<Unit> {
+    let UnitArguments { unit, part, revision, batch, operator: _ } = arguments;
+    Some(Unit { serial: unit.clone()?, part: part.clone(), revision: revision.clone(), batch: batch.clone() })
 }
 
 pub(super) fn choose_bench(client: &Client, named: Option<&str>) -> Result<String, Exit> {

@@ -58,6 +58,7 @@ pub fn runs(arguments: &Runs) -> Done {
 fn line(run: &RunSummary) -> String {
     let duration = run.duration_s.map(|s| format!("{s:.0} s")).unwrap_or_default();
     let day = local(&run.created_at, &TimeZone::system());
+    let unit = run.unit.as_ref().map(|unit| format!("  unit {}", unit.line())).unwrap_or_default();
     let reason = run.damaged.as_ref().or(run.reason.as_ref()).map(|reason| format!("  {reason}")).unwrap_or_default();
     let not_stored = run.not_stored.as_ref().map(|why| format!("  not yet stored: {why}")).unwrap_or_default();
     let (id, state, procedure, rows) = (run.id, word(run.state), &run.procedure, run.rows);
@@ -70,12 +71,12 @@ fn line(run: &RunSummary) -> String {
     let coulomb = run.model.as_ref().and_then(|model| model.coulomb.as_ref());
     let coulomb = coulomb.map(|one| words::figure(one.value, &one.unit)).unwrap_or_default();
     format!(
-        "{id:5}  {day}  {state:11}  {procedure:24}  {bench:BENCH$}  {duration:>7}  {rows:>9}  {error:>10}  {coulomb:>10}{reason}{not_stored}"
+        "{id:5}  {day}  {state:11}  {procedure:24}  {bench:BENCH$}  {duration:>7}  {rows:>9}  {error:>10}  {coulomb:>10}{unit}{reason}{not_stored}"
     )
 }
 
 /// Converts a time of the API (UTC) to local time.
-fn local(moment: &str, zone: &TimeZone) -> String {
+pub(super) fn local(moment: &str, zone: &TimeZone) -> String {
     match moment.parse::<Timestamp>() {
         Ok(moment) => moment.to_zoned(zone.clone()).strftime("%Y-%m-%d %H:%M").to_string(),
         Err(_) => moment.to_owned(),
@@ -83,7 +84,7 @@ fn local(moment: &str, zone: &TimeZone) -> String {
 }
 
 /// URL-encodes a text.
-fn encoded(text: &str) -> String {
+pub(super) fn encoded(text: &str) -> String {
     let byte = |byte: u8| match byte {
         b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' | b'~' => char::from(byte).to_string(),
         other => format!("%{other:02X}"),

@@ -6,7 +6,7 @@
 use super::computation::with_retries;
 use super::{Answer, Lab, LabError};
 use crate::view::{
-    AutopilotAction, AutopilotState, AutopilotStep, Experiment, Finding, LiveMessage, Model, NewAutopilot, Run,
+    AutopilotAction, AutopilotState, AutopilotStep, Experiment, Finding, LiveMessage, Model, NewAutopilot, NewRun, Run,
     RunState, Suggestion, reread,
 };
 use jointbench_instrument::Meta;
@@ -175,7 +175,13 @@ impl AutopilotTask {
             return Ok(Through::Cut(end));
         }
         let handle = self.lab.handle(&self.bench)?.clone();
-        let run = self.lab.start_run(&self.bench, &experiment.procedure, &experiment.parameters, &self.by).await?;
+        let new = NewRun {
+            bench: self.bench.clone(),
+            procedure: experiment.procedure.clone(),
+            parameters: experiment.parameters.clone(),
+            ..NewRun::default()
+        };
+        let run = self.lab.start_run(&new, &self.by).await?;
         let id = run.summary.id;
         self.made += 1;
         let step = AutopilotStep::new(

@@ -3,6 +3,7 @@
 use super::spreadsheet::defused_channels;
 use super::statistics::ROWS_AT_ONCE;
 use super::transfer::SIMULATED;
+use super::units::TestedUnit;
 use super::{Answer, Lab, LabError};
 use crate::job::{ExportRequest, FileFormat, Job, Streamed};
 use crate::store::RunRecord;
@@ -80,6 +81,7 @@ impl Lab {
         if record.simulated {
             meta.other.insert(SIMULATED.to_owned(), true.into());
         }
+        TestedUnit { unit: record.unit.clone(), operator: record.operator.clone() }.add_to(&mut meta)?;
         Ok((meta, record))
     }
 

@@ -27,6 +27,7 @@ mod tables;
 mod tokens;
 mod transfer;
 mod trends;
+mod units;
 mod user_effects;
 
 pub use crate::error::LabError;

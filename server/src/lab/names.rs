@@ -6,6 +6,8 @@ use crate::view::EffectDefinition;
 pub const LONGEST_TOKEN_NAME: usize = 40;
 pub const LONGEST_TAG: usize = 40;
 pub const LONGEST_NOTE: usize = 4000;
+/// Of a unit under test, and the name of an operator.
+pub const LONGEST_UNIT_TEXT: usize = 80;
 /// Of effects, their parameters and units.
 const LONGEST_ID: usize = 64;
 /// Of files and imported runs.

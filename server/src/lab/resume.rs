@@ -1,6 +1,7 @@
 //! Runs that continue an earlier run that ended too soon.
 
 use super::benches::previewed;
+use super::units::TestedUnit;
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
 use crate::store::{EventRecord, RunRecord};
@@ -49,7 +50,9 @@ impl Lab {
             }
             None => rest,
         };
-        self.launch(bench, rest, by).await
+        // Another person may continue the run.
+        let tested = TestedUnit { unit: record.unit, operator: None };
+        self.launch(bench, rest, tested, by).await
     }
 
     /// The steps of a run. For a continuing run: the restoring steps and the remaining steps.

@@ -1,5 +1,6 @@
 //! Runs: start, control, read.
 
+use super::units::TestedUnit;
 use super::{Answer, Lab, LabError};
 use crate::bench::{BenchHandle, Status, show_unstored_end};
 use crate::store::{NewRun, RunFilter, RunRecord, Search};
@@ -16,18 +17,13 @@ const STORES: Duration = Duration::from_secs(2);
 
 impl Lab {
     /// Plans, checks the limits, and passes the plan to the thread of the bench.
-    pub async fn start_run(
-        &self,
-        bench: &str,
-        procedure: &str,
-        parameters: &Map<String, Value>,
-        by: &str,
-    ) -> Answer<Run> {
-        let (bench, plan) = self.plan(bench, procedure, parameters).await?;
-        self.launch(bench, plan, by).await
+    pub async fn start_run(&self, new: &view::NewRun, by: &str) -> Answer<Run> {
+        let tested = TestedUnit::checked(new.unit.as_ref(), new.operator.as_deref())?;
+        let (bench, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
+        self.launch(bench, plan, tested, by).await
     }
 
-    pub(super) async fn launch(&self, bench: &BenchHandle, plan: Plan, by: &str) -> Answer<Run> {
+    pub(super) async fn launch(&self, bench: &BenchHandle, plan: Plan, tested: TestedUnit, by: &str) -> Answer<Run> {
         let preview = plan.preview(&bench.facts());
         let failed: Vec<String> = preview
             .checks
@@ -54,7 +50,7 @@ impl Lab {
         if let Some(faults) = bench.status().faults() {
             return Err(LabError::Bench(format!("bench {} is not ready: {faults}", bench.name())));
         }
-        let run = self.inner.store.create_run(&new_run(bench, &plan, by)?).await?;
+        let run = self.inner.store.create_run(&new_run(bench, &plan, tested, by)?).await?;
         let procedure = plan.procedure.clone();
         tracing::info!(run.id = run, bench = bench.name(), procedure, by, planned_s = plan.duration_s(), "run queued");
         claim.start(run, plan).await?;
@@ -174,7 +170,7 @@ impl Lab {
     }
 }
 
-fn new_run(bench: &BenchHandle, plan: &Plan, by: &str) -> Answer<NewRun> {
+fn new_run(bench: &BenchHandle, plan: &Plan, tested: TestedUnit, by: &str) -> Answer<NewRun> {
     let description = bench.description();
     let status = bench.status();
     let calibrated: BTreeMap<&str, String> =
@@ -198,5 +194,7 @@ fn new_run(bench: &BenchHandle, plan: &Plan, by: &str) -> Answer<NewRun> {
         parameters: plan.parameters.clone(),
         provenance: reread(&provenance)?,
         meta: reread(&plan.meta)?,
+        unit: tested.unit,
+        operator: tested.operator,
     })
 }

@@ -2,6 +2,7 @@
 //! daemon stores these rows block by block in one transaction.
 
 use super::statistics::ROWS_AT_ONCE;
+use super::units::TestedUnit;
 use super::{Answer, Lab, LabError, UPLOADS};
 use crate::job::{ImportRequest, Job};
 use crate::store::{BLOCK_ROWS, NewRun, RunFilter};
@@ -101,6 +102,7 @@ impl Lab {
         if simulated {
             meta.other.remove(SIMULATED);
         }
+        let tested = TestedUnit::taken_from(&mut meta);
         let provenance = json!({
             "software": concat!("jointbench ", env!("CARGO_PKG_VERSION")),
             "by": by,
@@ -114,6 +116,8 @@ impl Lab {
             parameters: serde_json::Map::new(),
             provenance: reread(&provenance)?,
             meta: reread(&meta)?,
+            unit: tested.unit,
+            operator: tested.operator,
         };
         let run = self.inner.store.import_parts(&new, parts(rows, channels, count)).await?;
         tracing::info!(run.id = run, name, rows = count, "run imported");

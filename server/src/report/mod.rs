@@ -103,6 +103,8 @@ impl Report {
                 @if let Some(duration_s) = summary.duration_s { (format!(" in {duration_s:.1} s of bench time")) }
                 @if let Some(safe) = summary.safe { " · bench " (word(safe).replace('_', " ")) }
             }
+            @if let Some(unit) = &summary.unit { p { "Unit under test " b { (unit.line()) } } }
+            @if let Some(operator) = &summary.operator { p.quiet { "Operator " (operator) } }
             @if let Some(reason) = &summary.reason { p { (reason) } }
             @if !self.notes.is_empty() { ul.quiet { @for note in &self.notes { li { (note) } } } }
         }
@@ -110,7 +112,15 @@ impl Report {
 
     /// Known fields of the block of signatures. A run without these fields gets lines to fill in by hand.
     fn signed(&self) -> SignOff<'_> {
+        let summary = &self.run.summary;
+        let unit = summary.unit.as_ref();
         // `local` is a user without a token, and no name.
-        SignOff { operator: self.run.summary.by.as_deref().filter(|by| *by != "local"), ..SignOff::default() }
+        let token = summary.by.as_deref().filter(|by| *by != "local");
+        SignOff {
+            unit: unit.and_then(|unit| unit.part.as_deref()),
+            serial: unit.map(|unit| unit.serial.as_str()),
+            operator: summary.operator.as_deref().or(token),
+            date: None,
+        }
     }
 }

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 /// Known fields of the block. A missing one becomes a line to fill in by hand.
 #[derive(Debug, Default)]
 pub struct SignOff<'a> {
-    /// Name or type of the unit under test.
+    /// Part of the unit under test.
     pub unit: Option<&'a str>,
     pub serial: Option<&'a str>,
     pub operator: Option<&'a str>,

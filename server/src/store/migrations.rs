@@ -29,6 +29,7 @@ const FILES: &[(&str, &str)] = &[
     ("0019_checksums.sql", include_str!("../../../migrations/0019_checksums.sql")),
     ("0020_store_log.sql", include_str!("../../../migrations/0020_store_log.sql")),
     ("0021_warnings.sql", include_str!("../../../migrations/0021_warnings.sql")),
+    ("0022_units.sql", include_str!("../../../migrations/0022_units.sql")),
 ];
 
 #[derive(Debug)]

@@ -32,6 +32,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 mod tokens;
+mod units;
 mod user_effects;
 mod values;
 mod verify;
@@ -44,7 +45,8 @@ pub use keeper::Loss;
 pub use order::Order;
 pub use records::{
     AutopilotRecord, CalibrationRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord,
-    RunFilter, RunRecord, SafetyRecord, TokenRecord, UserEffectRecord, VersionRecord, Window, WindowColumn,
+    RunFilter, RunRecord, SafetyRecord, TokenRecord, UnitRecord, UnitRunRecord, UserEffectRecord, VersionRecord,
+    Window, WindowColumn,
 };
 pub use result_cache::{Subject, packed, unpacked};
 pub use search::Search;

@@ -6,6 +6,15 @@ use jointbench_procedure::{RunId, RunState, Safe};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+/// A unit under test. The serial number identifies it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnitRecord {
+    pub serial: String,
+    pub part: Option<String>,
+    pub revision: Option<String>,
+    pub batch: Option<String>,
+}
+
 /// A new run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NewRun {
@@ -19,6 +28,9 @@ pub struct NewRun {
     pub provenance: Map<String, Value>,
     /// Metadata of the test conditions, as in `meta.json`.
     pub meta: Map<String, Value>,
+    pub unit: Option<UnitRecord>,
+    /// The person who started the run, as entered.
+    pub operator: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +53,8 @@ pub struct RunRecord {
     pub parameters: Map<String, Value>,
     pub provenance: Map<String, Value>,
     pub meta: Map<String, Value>,
+    pub unit: Option<UnitRecord>,
+    pub operator: Option<String>,
     /// Empty before the first commit with rows.
     pub channels: Vec<Channel>,
     pub tags: Vec<String>,
@@ -74,6 +88,8 @@ impl RunRecord {
             parameters: Map::new(),
             provenance: Map::new(),
             meta: Map::new(),
+            unit: None,
+            operator: None,
             channels: Vec::new(),
             tags: Vec::new(),
             note: None,
@@ -92,6 +108,17 @@ pub struct RunFilter {
     /// Query in the language of [`super::search`]; not case-sensitive.
     pub search: Option<String>,
     pub order: Order,
+}
+
+/// A run of a unit, for the list of units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UnitRunRecord {
+    pub run: RunId,
+    pub unit: UnitRecord,
+    pub procedure: String,
+    pub state: RunState,
+    pub created_at: String,
+    pub verdict: Option<String>,
 }
 
 /// A note on a run.

@@ -2,6 +2,7 @@
 
 use super::seal::{CHANNELS, EVENTS, RUN_STATES, RUNS};
 use super::search::Search;
+use super::units::{insert_unit, unit};
 use super::values::{json, now, word};
 use super::{EventRecord, NewRun, RunFilter, RunRecord, Store, StoreError};
 use jointbench_instrument::Channel;
@@ -41,6 +42,8 @@ fn record(row: &SqliteRow, channels: Vec<Channel>) -> Result<RunRecord, StoreErr
         parameters: json(row, "parameters")?,
         provenance: json(row, "provenance")?,
         meta: json(row, "meta")?,
+        unit: unit(row)?,
+        operator: row.try_get("operator")?,
         tags: json(row, "tags")?,
         note: row.try_get("note")?,
         verdict: row.try_get("verdict")?,
@@ -215,9 +218,11 @@ pub(super) async fn insert_run(writer: &mut SqliteConnection, new: &NewRun) -> R
     .bind(provenance)
     .bind(meta)
     .bind(checksum)
-    .execute(writer)
+    .execute(&mut *writer)
     .await?;
-    Ok(inserted.last_insert_rowid())
+    let run = inserted.last_insert_rowid();
+    insert_unit(writer, run, new.unit.as_ref(), new.operator.as_deref()).await?;
+    Ok(run)
 }
 
 /// Call it at the end of each transaction that changes the state of a run.

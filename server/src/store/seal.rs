@@ -37,6 +37,11 @@ pub const RUN_STATES: Sealed = Sealed {
     checksum: "state_checksum",
     ..sealed("runs", &["id", "state", "safe", "reason", "started_at", "finished_at", "rows"], &["id"])
 };
+/// The unit under test of a run, and its operator.
+pub const RUN_UNITS: Sealed = Sealed {
+    checksum: "unit_checksum",
+    ..sealed("run_units", &["id", "serial", "part", "revision", "batch", "operator"], &["id"])
+};
 pub const EVENTS: Sealed = sealed("events", &["run", "sequence", "at_s", "kind", "data"], &["run", "sequence"]);
 pub const CHANNELS: Sealed = sealed("channels", &["run", "place", "name", "resolution"], &["run", "place"]);
 pub const BLOCKS: Sealed =
@@ -91,9 +96,10 @@ pub const AUTOPILOT_STEPS: Sealed =
 pub const KEPT: Sealed = sealed("kept", &["subject", "id", "what", "software", "packed"], &["subject", "id", "what"]);
 
 /// Every checksum that [`super::verify`] compares. The cache (`kept`) is excluded: its results are computed again.
-pub const ALL: [&Sealed; 17] = [
+pub const ALL: [&Sealed; 18] = [
     &RUNS,
     &RUN_STATES,
+    &RUN_UNITS,
     &EVENTS,
     &CHANNELS,
     &BLOCKS,

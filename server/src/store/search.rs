@@ -1,8 +1,8 @@
 //! The query language of the list of runs.
 //!
-//! Terms are separated by blanks, and all must match. A word matches in bench, procedure, kind, state, reason, tags and
-//! notes. `key:value` matches one field; a prefix is enough if no run has the exact value. `rows>1000` and
-//! `duration>2min` compare. `-` before a term negates it; `"two words"` are one term.
+//! Terms are separated by blanks, and all must match. A word matches in bench, procedure, kind, state, reason, unit,
+//! part, batch, operator, tags and notes. `key:value` matches one field; a prefix is enough if no run has the exact
+//! value. `rows>1000` and `duration>2min` compare. `-` before a term negates it; `"two words"` are one term.
 
 use super::StoreError;
 use jointbench_instrument::Kind;
@@ -11,12 +11,21 @@ use serde::de::{DeserializeOwned, IntoDeserializer, value};
 use sqlx::{QueryBuilder, Sqlite};
 
 /// Fields with their column; a prefix of the value is enough.
-const FIELDS: [(&str, &str); 5] =
-    [("bench", "bench"), ("procedure", "procedure"), ("kind", "kind"), ("state", "state"), ("safe", "safe")];
+const FIELDS: [(&str, &str); 9] = [
+    ("bench", "bench"),
+    ("procedure", "procedure"),
+    ("kind", "kind"),
+    ("state", "state"),
+    ("safe", "safe"),
+    ("unit", "serial"),
+    ("part", "part"),
+    ("batch", "batch"),
+    ("operator", "operator"),
+];
 /// Numeric fields with their column.
 const NUMBERS: [(&str, &str); 3] = [("id", "id"), ("rows", "rows"), ("duration", "duration_s")];
-const KEYS: &str =
-    "bench: procedure: kind: state: safe: tag: note: simulated:yes after:2026-01-31 before: id> rows> duration>2min";
+const KEYS: &str = "bench: procedure: kind: state: safe: unit: part: batch: operator: tag: note: simulated:yes \
+    after:2026-01-31 before: id> rows> duration>2min";
 /// Units of a duration in seconds; the default is seconds.
 const DURATIONS: [(&str, f64); 4] = [("min", 60.0), ("h", 3600.0), ("m", 60.0), ("s", 1.0)];
 
@@ -92,7 +101,7 @@ impl Condition {
             }
             Condition::Field(column, value) => {
                 let column = format!("lower({column})");
-                query.push("CASE WHEN EXISTS (SELECT 1 FROM runs WHERE ").push(&column).push(" = ");
+                query.push("CASE WHEN EXISTS (SELECT 1 FROM runs_told WHERE ").push(&column).push(" = ");
                 query.push_bind(value.clone()).push(") THEN ").push(&column).push(" = ").push_bind(value.clone());
                 query.push(" ELSE instr(").push(&column).push(", ").push_bind(value.clone()).push(") = 1 END");
             }

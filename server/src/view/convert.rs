@@ -1,6 +1,6 @@
 //! Converts records of the store and types of the lower crates to views.
 
-use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyRecord};
+use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyRecord, UnitRecord};
 use crate::view;
 use jointbench_instrument::Motion;
 use jointbench_procedure::{Control, EventKind, RunState, Safe};
@@ -66,6 +66,8 @@ pub fn run_summary(record: &RunRecord) -> view::RunSummary {
         duration_s: record.duration_s.and_then(view::finite),
         simulated: record.simulated,
         by: record.provenance.get("by").and_then(Value::as_str).map(str::to_owned),
+        unit: record.unit.clone().map(unit_view),
+        operator: record.operator.clone(),
         tags: record.tags.clone(),
         note: record.note.clone(),
         verdict: record.verdict.as_ref().and_then(|verdict| reread(verdict).ok()),
@@ -75,6 +77,11 @@ pub fn run_summary(record: &RunRecord) -> view::RunSummary {
         not_stored: None,
         damaged: record.damaged.clone(),
     }
+}
+
+pub fn unit_view(record: UnitRecord) -> view::Unit {
+    let UnitRecord { serial, part, revision, batch } = record;
+    view::Unit { serial, part, revision, batch }
 }
 
 pub fn run_view(record: RunRecord, progress: Option<view::Progress>) -> view::Run {

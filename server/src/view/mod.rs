@@ -20,6 +20,7 @@ mod procedure;
 mod run;
 mod table;
 mod token;
+mod unit;
 mod user_effect;
 
 pub use autopilot::*;
@@ -39,6 +40,7 @@ pub use procedure::*;
 pub use run::*;
 pub use table::*;
 pub use token::*;
+pub use unit::*;
 pub use user_effect::*;
 
 /// `None` for NaN and infinity, which JSON cannot carry.

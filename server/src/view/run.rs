@@ -1,6 +1,6 @@
 //! Runs, their journal and their samples.
 
-use super::{FittedParameter, Identified};
+use super::{FittedParameter, Identified, Unit};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -54,6 +54,12 @@ pub struct RunSummary {
     pub simulated: bool,
     /// User who started or imported it: name of the token, or `local`.
     pub by: Option<String>,
+    /// The unit under test.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// Person who started it, as entered.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub operator: Option<String>,
     pub tags: Vec<String>,
     /// The last note.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -166,7 +172,7 @@ pub struct Progress {
 }
 
 /// A run to start. Omitted parameters take the defaults of the procedure.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({"bench": "joint-a-mock", "procedure": "friction", "parameters": {"repeats": 3}}))]
 pub struct NewRun {
@@ -175,6 +181,12 @@ pub struct NewRun {
     #[serde(default)]
     #[schema(value_type = Object)]
     pub parameters: Map<String, Value>,
+    /// The unit under test; it needs a serial number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// Person who starts the run; at most 80 characters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub operator: Option<String>,
 }
 
 /// One entry of the journal of a run, which is append-only.

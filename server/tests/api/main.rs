@@ -24,4 +24,5 @@ mod servo_memory;
 mod spreadsheets;
 mod tables;
 mod tls;
+mod units;
 mod user_effects;

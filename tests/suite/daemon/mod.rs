@@ -123,6 +123,36 @@ fn runs_are_listed_and_ended_from_the_command_line() {
 }
 
 #[test]
+fn units_are_started_and_listed_from_the_command_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = bench(folder.path(), "b", 20.0);
+    let daemon = Daemon::serve(&folder.path().join("data"), &config);
+    let command = |arguments: &[&str]| run(&[arguments, &["--daemon", daemon.base.as_str()]].concat());
+    assert!(stdout(&command(&["units"])).contains("start one with --unit SERIAL"));
+    for (vain, why) in [
+        (&["--batch", "7"][..], "--unit <SERIAL>"),
+        (&["--unit", " ", "--batch", "7"], "the serial number is missing"),
+        (&["--unit", "SN1", "--operator", "a\u{7}"], "operator: write 1 to 80 characters"),
+    ] {
+        let vain = command(&[&["run", "friction"], vain].concat());
+        assert_eq!(vain.status.code(), Some(2));
+        assert!(stderr(&vain).contains(why), "{}", stderr(&vain));
+    }
+    let unit = ["--unit", "SN123", "--part", "P", "--revision", "B", "--batch", "7", "--operator", "A. Smith"];
+    let begun = command(&[&["run", "friction"], &unit[..]].concat());
+    assert!(stdout(&begun).contains("unit SN123, part P, revision B, batch 7"), "{}", stdout(&begun) + &stderr(&begun));
+    assert_eq!(daemon.get("/runs/1")["operator"], "A. Smith");
+    assert!(command(&["stop"]).status.success());
+    let listed = stdout(&command(&["units", "part:P"]));
+    let [head, row] = listed.lines().collect::<Vec<_>>()[..] else { panic!("{listed}") };
+    assert!(head.contains("first verdict") && row.starts_with("SN123  P     B         7      1"), "{listed}");
+    let json: Value = serde_json::from_str(&stdout(&command(&["units", "--json"]))).expect("JSON");
+    assert_eq!((&json["total"], &json["units"][0]["serial"]), (&json!(1), &json!("SN123")), "{json}");
+    assert!(stdout(&command(&["units", "unit:X"])).contains("no unit matches"));
+    assert!(stdout(&command(&["runs", "unit:SN123"])).contains("unit SN123, part P"));
+}
+
+#[test]
 fn a_run_that_takes_too_long_is_aborted_and_its_limits_are_skipped() {
     let folder = tempfile::tempdir().expect("a folder");
     let config = bench(folder.path(), "b", 20.0);

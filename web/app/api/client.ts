@@ -1,5 +1,5 @@
 import { callApi } from './request';
-import type { EffectDefinition, NewAutopilot, NewModel } from './types';
+import type { EffectDefinition, NewAutopilot, NewModel, NewRun } from './types';
 
 export const BASE = '/api/v1';
 
@@ -38,8 +38,9 @@ export const api = {
 	liveComparison: (id: number, signal?: Signal) => callApi('get', '/api/v1/runs/{id}/beside', { path: { id } }, signal),
 	/** Results of complete runs. Some may arrive in a later answer. */
 	trends: (search: string, signal?: Signal) => callApi('get', '/api/v1/trends', { query: { search } }, signal),
-	start: (bench: string, procedure: string, parameters: Values) =>
-		callApi('post', '/api/v1/runs', { body: { bench, procedure, parameters } }),
+	start: (run: NewRun) => callApi('post', '/api/v1/runs', { body: run }),
+	/** Units under test and their first-pass yield. */
+	units: (query: { search?: string; typing?: boolean }, signal?: Signal) => callApi('get', '/api/v1/units', { query }, signal),
 	control: (id: number, what: 'pause' | 'resume' | 'stop' | 'abort') =>
 		callApi('post', `/api/v1/runs/{id}/${what}`, { path: { id } }),
 	/** Starts a run with the remaining steps of this run. */

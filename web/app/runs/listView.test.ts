@@ -47,10 +47,10 @@ it('remembers the base, and lets the address have the last word', () => {
 });
 
 it('writes the list as a table', () => {
-	const run = { id: 3, state: 'failed', procedure: 'friction', kind: 'friction', bench: 'a', simulated: true, created_at: '2026-01-02T03:04:05Z', duration_s: 1.5, rows: 7, safe: null, reason: 'no "contact", twice', tags: ['cold', 'new oil'], model: { validation_rms: 0.002, unit: 'Nm', coulomb: { value: 0.03, ci95: [0.029, null] } } };
+	const run = { id: 3, state: 'failed', procedure: 'friction', kind: 'friction', bench: 'a', simulated: true, created_at: '2026-01-02T03:04:05Z', duration_s: 1.5, rows: 7, safe: null, reason: 'no "contact", twice', tags: ['cold', 'new oil'], unit: { serial: 'SN1', batch: '7' }, operator: 'A. Smith', model: { validation_rms: 0.002, unit: 'Nm', coulomb: { value: 0.03, ci95: [0.029, null] } } };
 	const { head, rows } = runsTable([run as unknown as RunSummary]);
 	expect(head.slice(-5)).toEqual(['held_out_rms', 'unit', 'coulomb', 'coulomb_low', 'coulomb_high']);
 	expect(rows).toEqual([
-		[3, 'failed', 'friction', 'friction', 'a', 'true', '2026-01-02T03:04:05Z', 1.5, 7, null, 'no "contact", twice', 'cold new oil', null, 0.002, 'Nm', 0.03, 0.029, null],
+		[3, 'failed', 'friction', 'friction', 'a', 'true', '2026-01-02T03:04:05Z', 1.5, 7, null, 'no "contact", twice', 'cold new oil', null, 'SN1', null, null, '7', 'A. Smith', 0.002, 'Nm', 0.03, 0.029, null],
 	]);
 });

@@ -4,7 +4,7 @@ import { withQuery } from '../state/route';
 /**
  * Columns of the list in addition to the number and state of a run. The user selects them, and the browser stores them.
  */
-export const COLUMNS = ['procedure', 'bench', 'started', 'duration', 'rows', 'safe', 'error', 'change', 'Coulomb', 'note'] as const;
+export const COLUMNS = ['procedure', 'unit', 'bench', 'started', 'duration', 'rows', 'safe', 'error', 'change', 'Coulomb', 'note'] as const;
 export type Column = (typeof COLUMNS)[number];
 
 const HIDDEN = 'jointbench.runs.hidden';
@@ -87,11 +87,12 @@ export function toggleSavedView(view: string, kept: Pick<Storage, 'getItem' | 's
 }
 
 const FIELDS = ['id', 'state', 'procedure', 'kind', 'bench', 'simulated', 'created_at', 'duration_s', 'rows', 'safe', 'reason', 'tags', 'note'] as const;
+const UNIT_FIELDS = ['serial', 'part', 'revision', 'batch'] as const;
 
 /** The list as a table for other programs. */
 export function runsTable(runs: readonly RunSummary[]): Table {
 	const cell = (value: unknown) => (Array.isArray(value) ? value.join(' ') : typeof value === 'number' ? value : value == null ? null : String(value));
 	const model = ({ model }: RunSummary) => [model?.validation_rms, model?.unit, model?.coulomb?.value, ...(model?.coulomb?.ci95 ?? [null, null])];
-	const head = [...FIELDS, 'held_out_rms', 'unit', 'coulomb', 'coulomb_low', 'coulomb_high'];
-	return { head, rows: runs.map((run) => [...FIELDS.map((field) => run[field]), ...model(run)].map(cell)) };
+	const head = [...FIELDS, ...UNIT_FIELDS, 'operator', 'held_out_rms', 'unit', 'coulomb', 'coulomb_low', 'coulomb_high'];
+	return { head, rows: runs.map((run) => [...FIELDS.map((field) => run[field]), ...UNIT_FIELDS.map((field) => run.unit?.[field]), run.operator, ...model(run)].map(cell)) };
 }

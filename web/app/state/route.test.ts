@@ -8,6 +8,7 @@ it.each([
 	['/workbench/3', 'workbench', 3],
 	['/workbench', 'workbench', null],
 	['/live', 'live', null],
+	['/units', 'units', null],
 	['/log', 'log', null],
 	['/settings', 'settings', null],
 	['/settings/1', 'lost', null],

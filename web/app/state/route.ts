@@ -1,8 +1,8 @@
 /** The address defines the view: page, object and settings. Pure functions; the router holds the present address. */
-export type Page = 'bench' | 'live' | 'run' | 'runs' | 'workbench' | 'alignment' | 'log' | 'settings' | 'lost';
+export type Page = 'bench' | 'live' | 'run' | 'runs' | 'units' | 'workbench' | 'alignment' | 'log' | 'settings' | 'lost';
 
 /** The pages with a tab, in the order of their keys. */
-export const TABS = ['Bench', 'Live', 'Workbench', 'Runs', 'Alignment', 'Log', 'Settings'];
+export const TABS = ['Bench', 'Live', 'Workbench', 'Runs', 'Units', 'Alignment', 'Log', 'Settings'];
 export const hrefOf = (tab: string): string => (tab === TABS[0] ? '/' : `/${tab.toLowerCase()}`);
 
 export interface Route {
@@ -17,7 +17,7 @@ export function parseRoute(path: string): Route {
 	const whole = run === null || (Number.isInteger(run) && run > 0);
 	if (rest.length || !whole) return { page: 'lost', run: null };
 	if (first === '' && run === null) return { page: 'bench', run };
-	if (run === null && (first === 'live' || first === 'alignment' || first === 'log' || first === 'settings')) return { page: first, run };
+	if (run === null && (first === 'live' || first === 'units' || first === 'alignment' || first === 'log' || first === 'settings')) return { page: first, run };
 	if (first === 'runs') return { page: run === null ? 'runs' : 'run', run };
 	if (first === 'workbench') return { page: 'workbench', run };
 	return { page: 'lost', run: null };

@@ -5,12 +5,14 @@ mod control;
 mod model;
 mod place;
 mod runs;
+mod units;
 
 pub use columns::Columns;
 pub use control::{Control, Reset, ServoMemory, Stop};
 pub use model::{Model, ModelCommand};
 pub use place::{Place, Reach, ServedTokens};
 pub use runs::{Backup, Convert, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
+pub use units::{UnitArguments, Units};
 
 use super::log::LogForm;
 use super::ports::Ports;
@@ -82,6 +84,9 @@ pub enum Command {
     ServoMemory(ServoMemory),
     /// List the runs of a daemon or of a folder
     Runs(Runs),
+    /// List the units under test with their verdicts, and first-pass yield by part, revision and batch
+    #[command(after_help = units::UNITS)]
+    Units(Units),
     /// Measure, diagnose and repeat on a running daemon, until no effect is missing
     #[command(after_help = AUTOPILOT)]
     Autopilot(Autopilot),
@@ -201,6 +206,8 @@ pub struct Run {
     /// Bench to run on; optional if the daemon has only one
     #[arg(long, value_name = "NAME")]
     pub bench: Option<String>,
+    #[command(flatten)]
+    pub unit: UnitArguments,
     /// Wait for the end; Ctrl-C stops waiting, not the run
     #[arg(long)]
     pub wait: bool,

@@ -7,8 +7,8 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Runs {
-    /// Words, and terms such as kind:friction, state:failed or rows>1000; all must match. Excluded terms, such as
-    /// -tag:oil, follow after --
+    /// Words, and terms such as kind:friction, unit:SN123, state:failed or rows>1000; all must match. Excluded terms,
+    /// such as -tag:oil, follow after --
     #[arg(value_name = "TERM")]
     pub search: Vec<String>,
     /// Maximum number of runs

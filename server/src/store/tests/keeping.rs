@@ -89,8 +89,10 @@ fn rows_come_back_however_they_came() {
 fn what_was_measured_never_changes() {
     block_on(async {
         let (_folder, store) = fresh().await;
-        let run = store.create_run(&new_run()).await.unwrap();
+        let run = store.create_run(&new_run_of_unit("SN1")).await.unwrap();
         store.commit(run, RunState::Running, &[note(0.0, "first")], rows(0, 40_000)).await.unwrap();
+        let later = store.create_run(&new_run()).await.unwrap();
+        commit(&store, later, RunState::Running, Trace::default()).await;
         for (sql, why) in [
             ("UPDATE events SET data = '{}'", "only appended to"),
             ("DELETE FROM events", "only appended to"),
@@ -104,6 +106,11 @@ fn what_was_measured_never_changes() {
             ("UPDATE channels SET resolution = 1.0", "channels never change"),
             ("DELETE FROM runs", "never deleted"),
             ("UPDATE runs SET provenance = '{}'", "never changes"),
+            ("UPDATE run_units SET serial = 'SN2'", "the unit of a run never changes"),
+            ("UPDATE run_units SET unit_checksum = NULL", "the unit of a run never changes"),
+            ("DELETE FROM run_units", "the unit of a run never changes"),
+            ("INSERT INTO run_units (id, serial) VALUES (2, 'SN2')", "set when the run is created"),
+            ("INSERT INTO run_units (id, part) VALUES (2, 'P')", "set when the run is created"),
         ] {
             let refused = sqlx::query(sql).execute(&store.writer).await.unwrap_err().to_string();
             assert!(refused.contains(why), "{sql}: {refused}");
@@ -187,6 +194,27 @@ fn runs_are_found_by_field_tag_note_and_number() {
         assert_eq!(store.notes(2).await.unwrap()[1].at_s, Some(1.5));
         assert_eq!(store.tags().await.unwrap(), ["Oil"]);
         assert!(matches!(store.save_note(99, None, "?").await, Err(StoreError::NoRun(99))));
+    });
+}
+
+#[test]
+fn runs_have_their_units() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        for new in [new_run_of_unit("SN1"), new_run(), new_run_of_unit("SN2"), new_run_of_unit("SN1")] {
+            let run = store.create_run(&new).await.unwrap();
+            let record = store.run(run).await.unwrap();
+            assert_eq!((record.unit, record.operator), (new.unit, new.operator));
+        }
+        let units = async |search: &str| {
+            let runs = store.unit_runs(search).await.unwrap();
+            runs.into_iter().map(|run| (run.run, run.unit.serial)).collect::<Vec<_>>()
+        };
+        let [one, two, again] = [(1, "SN1"), (3, "SN2"), (4, "SN1")].map(|(run, serial)| (run, serial.to_owned()));
+        assert_eq!(units("").await, [one.clone(), two.clone(), again.clone()]);
+        assert_eq!(units("id:4").await, [one, again], "all runs of the unit");
+        assert_eq!(units("unit:sn2 batch:7 operator:a").await, [two]);
+        assert!(units("id:2").await.is_empty());
     });
 }
 

@@ -8,7 +8,7 @@ mod opening;
 mod verifying;
 mod viewing;
 
-use super::{NewRun, Store};
+use super::{NewRun, Store, UnitRecord};
 use jointbench_instrument::{Channel, Trace};
 use jointbench_procedure::{Event, EventKind, RunId, RunState};
 use std::future::Future;
@@ -34,7 +34,14 @@ fn new_run() -> NewRun {
         parameters: object(r#"{"speeds": 12, "dwell_s": 0.30000000000000004}"#),
         provenance: object(r#"{"seed": 7, "software": "0.1.0"}"#),
         meta: object(r#"{"kind": "friction", "gear_ratio": 50.0}"#),
+        ..NewRun::default()
     }
+}
+
+fn new_run_of_unit(serial: &str) -> NewRun {
+    let part = Some("P".to_owned());
+    let unit = UnitRecord { serial: serial.into(), part, revision: None, batch: Some("7".into()) };
+    NewRun { unit: Some(unit), operator: Some("A. Smith".into()), ..new_run() }
 }
 
 /// Rows of a run from `first` on: time, encoder, and noise without a step.

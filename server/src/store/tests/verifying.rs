@@ -10,7 +10,7 @@ use std::time::Duration;
 /// A store with two runs, one of them active, and related records.
 async fn furnished() -> (TempDir, Store) {
     let (folder, store) = fresh().await;
-    store.import(&new_run(), &[note(0.0, "from a file")], rows(0, 70_000)).await.unwrap();
+    store.import(&new_run_of_unit("SN1"), &[note(0.0, "from a file")], rows(0, 70_000)).await.unwrap();
     let run = store.create_run(&new_run()).await.unwrap();
     store.commit(run, RunState::Running, &[note(0.0, "armed")], rows(0, 40_000)).await.unwrap();
     let model = store.save_model(&super::damage::model(1)).await.unwrap();
@@ -36,8 +36,8 @@ fn a_store_in_use_is_whole() {
         let report = verify(folder.path()).await.unwrap();
         assert!(report.is_whole(), "{report:?}");
         assert_eq!((report.runs, report.rows, report.without_checksum), (2, 110_000, 0));
-        // 3 blocks and 1 with 3 channels, a tail piece, 2 runs twice, 6 channels, 2 events, and 8 single records.
-        assert_eq!(report.records, 4 * 3 + 1 + 4 + 6 + 2 + 8);
+        // 3 blocks and 1 with 3 channels, a tail piece, 2 runs twice, 6 channels, 2 events, and 9 single records.
+        assert_eq!(report.records, 4 * 3 + 1 + 4 + 6 + 2 + 9);
         assert!(store.check(Duration::ZERO).await.unwrap().is_whole());
         let nothing = verify(&folder.path().join("elsewhere")).await.unwrap_err();
         assert!(matches!(nothing, StoreError::NoStore { .. }) && nothing.is_setup(), "{nothing}");
@@ -47,10 +47,11 @@ fn a_store_in_use_is_whole() {
 #[test]
 fn every_kind_of_damage_is_found_where_it_is() {
     block_on(async {
-        let cases: [(&'static str, Option<i64>, &str); 17] = [
+        let cases: [(&'static str, Option<i64>, &str); 18] = [
             ("UPDATE runs SET meta = '{}' WHERE id = 1", Some(1), "runs"),
             ("UPDATE runs SET reason = 'another' WHERE id = 2", Some(2), "runs"),
             ("UPDATE runs SET rows = 9, state_checksum = NULL WHERE id = 2", Some(2), "runs"),
+            ("UPDATE run_units SET serial = 'SN2'", Some(1), "run_units"),
             ("UPDATE events SET at_s = 7.0 WHERE run = 2", Some(2), "events"),
             ("UPDATE channels SET resolution = 1.0 WHERE run = 1 AND place = 1", Some(1), "channels"),
             ("UPDATE blocks SET data = x'00' WHERE run = 1 AND channel = 0 AND first_row = 32768", Some(1), "blocks"),

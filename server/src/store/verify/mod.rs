@@ -84,7 +84,7 @@ impl Store {
 /// Checks one run with all its records.
 async fn check_run(database: &mut SqliteConnection, run: RunId, report: &mut VerifyReport) {
     report.runs += 1;
-    for sealed in [&seal::RUNS, &seal::RUN_STATES, &seal::CHANNELS, &seal::EVENTS] {
+    for sealed in [&seal::RUNS, &seal::RUN_STATES, &seal::RUN_UNITS, &seal::CHANNELS, &seal::EVENTS] {
         check_rows(database, sealed, Some(run), report).await;
     }
     samples::check(database, run, report).await;

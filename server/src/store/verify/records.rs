@@ -49,7 +49,7 @@ pub fn what(fault: &StoreError) -> String {
 /// The key of a row, and the condition that selects the rows of a run.
 fn keys(sealed: &Sealed) -> (&'static str, &'static str) {
     match sealed.table {
-        "runs" => ("id", "id = ?1"),
+        "runs" | "run_units" => ("id", "id = ?1"),
         "channels" => ("place", "run = ?1"),
         "events" => ("sequence", "run = ?1"),
         "diagnoses" => ("id", "model IN (SELECT id FROM models WHERE run = ?1)"),

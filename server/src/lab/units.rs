@@ -1,0 +1,267 @@
+//! Units under test: the unit of a new run, the list of units and their first-pass yield.
+
+use super::names::{LONGEST_UNIT_TEXT, checked};
+use super::{Answer, Lab, LabError};
+use crate::store::{Search, UnitRecord, UnitRunRecord};
+use crate::view::{FirstPassYield, Identified, Unit, UnitList, UnitSummary, YieldGroup, reread, unit_view};
+use jointbench_instrument::Meta;
+use jointbench_procedure::RunState;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Limit of the listed units.
+const MOST: usize = 1000;
+/// Two-sided 95 % quantile of the standard normal distribution.
+const Z95: f64 = 1.959_963_984_540_054;
+/// Keys of the metadata of exported runs.
+const UNIT: &str = "unit";
+const OPERATOR: &str = "operator";
+
+/// The unit under test of a new run, and the person who starts it.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct TestedUnit {
+    pub unit: Option<UnitRecord>,
+    pub operator: Option<String>,
+}
+
+impl TestedUnit {
+    /// Checks the texts of a user.
+    pub fn checked(unit: Option<&Unit>, operator: Option<&str>) -> Answer<Self> {
+        Ok(Self { unit: unit.map(checked_unit).transpose()?, operator: optional("operator", operator)? })
+    }
+
+    /// Moves the unit of an exported run from the metadata of its file. Other values of these keys stay there.
+    pub fn taken_from(meta: &mut Meta) -> Self {
+        let unit: Option<Unit> = meta.other.get(UNIT).and_then(|unit| reread(unit).ok());
+        let operator: Option<String> = meta.other.get(OPERATOR).and_then(|operator| reread(operator).ok());
+        let Ok(tested) = Self::checked(unit.as_ref(), operator.as_deref()) else { return Self::default() };
+        for (key, there) in [(UNIT, tested.unit.is_some()), (OPERATOR, tested.operator.is_some())] {
+            if there {
+                meta.other.remove(key);
+            }
+        }
+        tested
+    }
+
+    /// Adds the unit to the metadata of an export.
+    pub fn add_to(self, meta: &mut Meta) -> Answer<()> {
+        if let Some(unit) = self.unit {
+            meta.other.insert(UNIT.to_owned(), reread(&unit_view(unit))?);
+        }
+        if let Some(operator) = self.operator {
+            meta.other.insert(OPERATOR.to_owned(), operator.into());
+        }
+        Ok(())
+    }
+}
+
+fn checked_unit(unit: &Unit) -> Answer<UnitRecord> {
+    if unit.serial.trim().is_empty() {
+        let missing = "unit: the serial number is missing: enter it, or omit part, revision and batch";
+        return Err(LabError::Invalid(missing.to_owned()));
+    }
+    Ok(UnitRecord {
+        serial: checked("serial", &unit.serial, LONGEST_UNIT_TEXT)?.to_owned(),
+        part: optional("part", unit.part.as_deref())?,
+        revision: optional("revision", unit.revision.as_deref())?,
+        batch: optional("batch", unit.batch.as_deref())?,
+    })
+}
+
+/// An empty text is no text.
+fn optional(what: &str, text: Option<&str>) -> Answer<Option<String>> {
+    let text = text.filter(|text| !text.trim().is_empty());
+    text.map(|text| checked(what, text, LONGEST_UNIT_TEXT).map(str::to_owned)).transpose()
+}
+
+impl Lab {
+    /// The units that have a run that matches the search, and the first-pass yield of these units.
+    pub async fn units(&self, search: &str) -> Answer<UnitList> {
+        Ok(unit_list(&self.inner.store.unit_runs(search).await?))
+    }
+
+    /// The same for an incomplete search: its unknown terms are ignored and reported.
+    pub async fn units_while_typing(&self, search: &str) -> Answer<UnitList> {
+        let (understood, refused) = Search::understood(search);
+        Ok(UnitList { unclear: refused.map(|fault| fault.to_string()), ..self.units(&understood).await? })
+    }
+}
+
+fn unit_list(runs: &[UnitRunRecord]) -> UnitList {
+    let mut by_serial: BTreeMap<&str, Vec<&UnitRunRecord>> = BTreeMap::new();
+    for run in runs {
+        by_serial.entry(&run.unit.serial).or_default().push(run);
+    }
+    let mut units: Vec<UnitSummary> = by_serial.values().filter_map(|runs| summary(runs)).collect();
+    units.sort_by_key(|unit| Reverse(unit.newest_run));
+    let total = units.len() as u64;
+    units.truncate(MOST);
+    UnitList { total, units, yields: yields(by_serial.values()), unclear: None }
+}
+
+/// `runs`: all runs of one unit, in order.
+fn summary(runs: &[&UnitRunRecord]) -> Option<UnitSummary> {
+    let newest = runs.last()?;
+    let named = |text: fn(&UnitRecord) -> &Option<String>| runs.iter().rev().find_map(|run| text(&run.unit).clone());
+    let mut complete = runs.iter().filter(|run| is_complete(run));
+    let first_verdict = complete.clone().next().and_then(|run| verdict(run));
+    Some(UnitSummary {
+        serial: newest.unit.serial.clone(),
+        part: named(|unit| &unit.part),
+        revision: named(|unit| &unit.revision),
+        batch: named(|unit| &unit.batch),
+        runs: runs.len() as u64,
+        first_verdict,
+        newest_verdict: complete.next_back().and_then(|run| verdict(run)),
+        newest_run: newest.run,
+        newest_at: newest.created_at.clone(),
+    })
+}
+
+/// An imported run has no verdict.
+fn is_complete(run: &UnitRunRecord) -> bool {
+    run.state == RunState::Completed && jointbench_procedure::procedure(&run.procedure).is_some()
+}
+
+fn verdict(run: &UnitRunRecord) -> Option<Identified> {
+    run.verdict.as_ref().and_then(|verdict| reread(verdict).ok())
+}
+
+fn yields<'r>(units: impl Iterator<Item = &'r Vec<&'r UnitRunRecord>>) -> Vec<FirstPassYield> {
+    /// Group, part, revision, batch and procedure.
+    type Key<'r> = (YieldGroup, Option<&'r str>, Option<&'r str>, Option<&'r str>, &'r str);
+    let mut counts: BTreeMap<Key<'_>, (u64, u64)> = BTreeMap::new();
+    for runs in units {
+        let mut begun = BTreeSet::new();
+        let first_runs = runs.iter().filter(|run| is_complete(run) && begun.insert(run.procedure.as_str()));
+        // A verdict is available shortly after the end of its run.
+        for (run, verdict) in first_runs.filter_map(|run| Some((run, verdict(run)?))) {
+            let [part, revision, batch] =
+                [&run.unit.part, &run.unit.revision, &run.unit.batch].map(|text| text.as_deref());
+            for (group, revision, batch) in [
+                (YieldGroup::Part, None, None),
+                (YieldGroup::Revision, revision, None),
+                (YieldGroup::Batch, revision, batch),
+            ] {
+                let (units, passed) = counts.entry((group, part, revision, batch, &run.procedure)).or_default();
+                *units += 1;
+                *passed += u64::from(verdict.is_identified());
+            }
+        }
+    }
+    let owned = |text: Option<&str>| text.map(str::to_owned);
+    let row = |((group, part, revision, batch, procedure), (units, passed)): (Key<'_>, (u64, u64))| FirstPassYield {
+        group,
+        part: owned(part),
+        revision: owned(revision),
+        batch: owned(batch),
+        procedure: procedure.to_owned(),
+        units,
+        passed,
+        fraction: passed as f64 / units as f64,
+        ci95: wilson(passed, units),
+    };
+    counts.into_iter().map(row).collect()
+}
+
+/// 95 % interval of a fraction (Wilson 1927): valid for few units and for fractions of 0 and 1.
+fn wilson(passed: u64, units: u64) -> [f64; 2] {
+    let (n, fraction) = (units as f64, passed as f64 / units as f64);
+    let z2_n = Z95 * Z95 / n;
+    let centre = fraction + z2_n / 2.0;
+    let half = Z95 * (fraction * (1.0 - fraction) / n + z2_n / (4.0 * n)).sqrt();
+    [-1.0, 1.0].map(|side| ((centre + side * half) / (1.0 + z2_n)).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(run: i64, serial: &str, batch: Option<&str>, state: RunState, verdict: Option<&str>) -> UnitRunRecord {
+        UnitRunRecord {
+            run,
+            unit: UnitRecord {
+                serial: serial.into(),
+                part: Some("P".into()),
+                revision: None,
+                batch: batch.map(str::to_owned),
+            },
+            procedure: "friction".into(),
+            state,
+            created_at: "2026-01-31T00:00:00Z".into(),
+            verdict: verdict.map(str::to_owned),
+        }
+    }
+
+    #[test]
+    fn the_interval_agrees_with_published_values() {
+        // Newcombe 1998, table I: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
+        for (passed, units, expected) in [
+            (81, 263, [0.2553, 0.3662]),
+            (15, 148, [0.0624, 0.1605]),
+            (0, 20, [0.0, 0.1611]),
+            (1, 29, [0.0061, 0.1718]),
+        ] {
+            let found = wilson(passed, units);
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).abs() < 5e-5, "{passed} of {units}: {found} {expected}");
+            }
+        }
+        assert_eq!(wilson(3, 3)[1], 1.0);
+    }
+
+    #[test]
+    fn the_first_complete_run_of_a_unit_decides() {
+        use RunState::{Aborted, Completed};
+        let list = unit_list(&[
+            run(1, "A", Some("7"), Aborted, Some("failed")),
+            run(2, "A", Some("7"), Completed, Some("identified_with_warning")),
+            run(3, "B", Some("7"), Completed, Some("inconclusive")),
+            run(4, "B", None, Completed, Some("identified")),
+            run(5, "C", Some("8"), Completed, None),
+        ]);
+        let serials: Vec<_> = list.units.iter().map(|unit| unit.serial.as_str()).collect();
+        assert_eq!((list.total, serials), (3, vec!["C", "B", "A"]), "newest first");
+        let b = &list.units[1];
+        assert_eq!((b.runs, b.newest_run, b.batch.as_deref()), (2, 4, Some("7")));
+        assert_eq!((b.first_verdict, b.newest_verdict), (Some(Identified::Inconclusive), Some(Identified::Identified)));
+        let one = &list.units[2];
+        assert_eq!(
+            (one.first_verdict, one.first_verdict),
+            (one.newest_verdict, Some(Identified::IdentifiedWithWarning))
+        );
+        let figures: Vec<_> =
+            list.yields.iter().map(|one| (one.group, one.batch.as_deref(), one.passed, one.units)).collect();
+        let expected =
+            [(YieldGroup::Part, None, 1, 2), (YieldGroup::Revision, None, 1, 2), (YieldGroup::Batch, Some("7"), 1, 2)];
+        assert_eq!(figures, expected, "C has no verdict yet");
+    }
+
+    #[test]
+    fn a_part_needs_a_serial_number() {
+        let unit = |serial: &str| Unit { serial: serial.into(), part: Some(" ".into()), ..Unit::default() };
+        let refused = TestedUnit::checked(Some(&unit(" ")), None).unwrap_err().to_string();
+        assert!(refused.contains("the serial number is missing: enter it"), "{refused}");
+        let tested = TestedUnit::checked(Some(&unit(" SN1 ")), Some("")).unwrap();
+        let unit = tested.unit.unwrap();
+        assert_eq!(
+            (unit.serial.as_str(), unit.part, tested.operator),
+            ("SN1", None, None),
+            "trimmed, and empty is none"
+        );
+    }
+
+    #[test]
+    fn a_unit_returns_from_the_metadata_of_an_export() {
+        let unit = Unit { serial: "SN1".into(), batch: Some("7".into()), ..Unit::default() };
+        let tested = TestedUnit::checked(Some(&unit), Some("A. Smith")).unwrap();
+        let mut meta = Meta::default();
+        tested.clone().add_to(&mut meta).unwrap();
+        assert_eq!(meta.other["unit"], serde_json::json!({"serial": "SN1", "batch": "7"}));
+        assert_eq!(TestedUnit::taken_from(&mut meta), tested);
+        assert!(meta.other.is_empty());
+        meta.other.insert("unit".into(), "Nm".into());
+        assert_eq!(TestedUnit::taken_from(&mut meta), TestedUnit::default());
+        assert_eq!(meta.other["unit"], "Nm", "another meaning of the key stays in the metadata");
+    }
+}

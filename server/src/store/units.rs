@@ -1,0 +1,72 @@
+//! The unit under test of each run.
+
+use super::seal::{RUN_UNITS, intact_records};
+use super::search::Search;
+use super::values::word;
+use super::{Store, StoreError, UnitRecord, UnitRunRecord};
+use jointbench_procedure::RunId;
+use sqlx::sqlite::SqliteRow;
+use sqlx::{QueryBuilder, Row, SqliteConnection};
+
+impl Store {
+    /// All runs of the units that have a run that matches the search, in order.
+    pub async fn unit_runs(&self, search: &str) -> Result<Vec<UnitRunRecord>, StoreError> {
+        let search = Search::parse(search)?;
+        let mut query = QueryBuilder::new(
+            "SELECT id, serial, part, revision, batch, operator, unit_checksum, procedure, state, created_at, \
+             (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict \
+             FROM runs_told WHERE serial IN (SELECT serial FROM runs_told",
+        );
+        search.push(&mut query);
+        query.push(") ORDER BY id");
+        Ok(intact_records(&query.build().fetch_all(&self.readers).await?, unit_run).into_iter().flatten().collect())
+    }
+}
+
+fn unit_run(row: &SqliteRow) -> Result<Option<UnitRunRecord>, StoreError> {
+    let Some(unit) = unit(row)? else { return Ok(None) };
+    Ok(Some(UnitRunRecord {
+        run: row.try_get("id")?,
+        unit,
+        procedure: row.try_get("procedure")?,
+        state: word(row.try_get("state")?)?,
+        created_at: row.try_get("created_at")?,
+        verdict: row.try_get("verdict")?,
+    }))
+}
+
+/// The unit of a row of `runs_told`.
+pub(super) fn unit(row: &SqliteRow) -> Result<Option<UnitRecord>, StoreError> {
+    RUN_UNITS.check(row)?;
+    let Some(serial) = row.try_get("serial")? else { return Ok(None) };
+    let (part, revision, batch) = (row.try_get("part")?, row.try_get("revision")?, row.try_get("batch")?);
+    Ok(Some(UnitRecord { serial, part, revision, batch }))
+}
+
+/// Stores the unit and the operator of a new run; no row if the run has neither.
+pub(super) async fn insert_unit(
+    writer: &mut SqliteConnection,
+    run: RunId,
+    unit: Option<&UnitRecord>,
+    operator: Option<&str>,
+) -> Result<(), StoreError> {
+    if unit.is_none() && operator.is_none() {
+        return Ok(());
+    }
+    let serial = unit.map(|unit| unit.serial.as_str());
+    let [part, revision, batch] = match unit {
+        Some(unit) => [&unit.part, &unit.revision, &unit.batch].map(Option::as_deref),
+        None => [None; 3],
+    };
+    let texts = [serial, part, revision, batch, operator];
+    let cells = std::iter::once(run.into()).chain(texts.map(Into::into)).collect::<Vec<_>>();
+    let mut insert = sqlx::query(
+        "INSERT INTO run_units (id, serial, part, revision, batch, operator, unit_checksum) VALUES (?, ?, ?, ?, ?, ?, ?)",
+    )
+    .bind(run);
+    for text in texts {
+        insert = insert.bind(text);
+    }
+    insert.bind(RUN_UNITS.seal(&cells)).execute(writer).await?;
+    Ok(())
+}

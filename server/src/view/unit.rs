@@ -1,0 +1,95 @@
+//! Units under test.
+
+use super::Identified;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// A unit under test. The serial number identifies it.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Unit {
+    /// At most 80 characters, as every text of a unit.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub serial: String,
+    /// Part number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub part: Option<String>,
+    /// Revision of the part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub revision: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub batch: Option<String>,
+}
+
+impl Unit {
+    /// For a line of text: `SN123, part P, revision B, batch 7`.
+    pub fn line(&self) -> String {
+        let named = [("part", &self.part), ("revision", &self.revision), ("batch", &self.batch)];
+        let named = named.iter().filter_map(|(name, text)| Some(format!(", {name} {}", text.as_ref()?)));
+        std::iter::once(self.serial.clone()).chain(named).collect()
+    }
+}
+
+/// A unit with its results. Part, revision and batch are those of the newest run that names them.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct UnitSummary {
+    pub serial: String,
+    pub part: Option<String>,
+    pub revision: Option<String>,
+    pub batch: Option<String>,
+    /// Number of runs, in any state.
+    pub runs: u64,
+    /// Verdict of the first complete run.
+    pub first_verdict: Option<Identified>,
+    /// Verdict of the newest complete run.
+    pub newest_verdict: Option<Identified>,
+    pub newest_run: i64,
+    /// Start of the newest run.
+    #[schema(format = DateTime)]
+    pub newest_at: String,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum YieldGroup {
+    /// All units of a part.
+    Part,
+    /// All units of a revision of a part.
+    Revision,
+    /// All units of a batch of a revision of a part.
+    Batch,
+}
+
+/// First-pass yield: the fraction of units whose first complete run of a procedure was identified, with or without a
+/// warning. A unit counts with the part, revision and batch of that run. Stopped and failed runs do not count.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FirstPassYield {
+    pub group: YieldGroup,
+    pub part: Option<String>,
+    /// `null` for a group by part.
+    pub revision: Option<String>,
+    /// `null` for a group by part or by revision.
+    pub batch: Option<String>,
+    pub procedure: String,
+    /// Number of units with such a run.
+    pub units: u64,
+    /// Number of units that passed.
+    pub passed: u64,
+    /// `passed / units`.
+    pub fraction: f64,
+    /// Wilson interval of the fraction.
+    pub ci95: [f64; 2],
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct UnitList {
+    /// Number of units that match the search.
+    pub total: u64,
+    /// The units with the newest runs first, at most 1000.
+    pub units: Vec<UnitSummary>,
+    /// Of all units that match the search.
+    pub yields: Vec<FirstPassYield>,
+    /// Ignored terms of an incomplete search.
+    pub unclear: Option<String>,
+}
