@@ -7,7 +7,7 @@ use crate::store::{NewRun, RunFilter, RunRecord, Search};
 use crate::view::{self, Run, RunEvent, RunList, Samples, reread, run_event, run_summary, run_view};
 use jointbench_instrument::{Meta, RunTable};
 use jointbench_procedure::{Control, Demand, Plan};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::Duration;
 use tokio::time::timeout;
