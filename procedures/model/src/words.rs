@@ -13,11 +13,16 @@ pub fn prefix(size: f64) -> (f64, &'static str) {
     }
 }
 
+/// Factor and prefix of a value of this size; none for a unit without prefixes.
+pub fn prefix_of(size: f64, unit: &str) -> (f64, &'static str) {
+    if is_prefixed(unit) { prefix(size) } else { (1.0, "") }
+}
+
 /// A value with its unit, three digits, and a prefix: `6.1 mNm`. The unit `1` is omitted.
 pub fn figure(value: f64, unit: &str) -> String {
     let unit = if unit == "1" { "" } else { unit };
     let size = value.abs();
-    let (scale, prefix) = if is_prefixed(unit) { prefix(size) } else { (1.0, "") };
+    let (scale, prefix) = prefix_of(size, unit);
     let scaled = value * scale;
     if scaled != 0.0 && scaled.abs() < 0.01 {
         return format!("{scaled:.2e} {prefix}{unit}").trim_end().to_owned();
@@ -39,7 +44,7 @@ pub struct Scale {
 impl Scale {
     /// The unit in which `value` is written.
     pub fn of(value: f64, unit: &str) -> Self {
-        let (scale, prefix) = if is_prefixed(unit) { prefix(value.abs()) } else { (1.0, "") };
+        let (scale, prefix) = prefix_of(value.abs(), unit);
         let unit = if unit == "1" { "" } else { unit };
         Self { scale, unit: format!("{prefix}{unit}") }
     }

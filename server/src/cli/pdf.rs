@@ -67,8 +67,8 @@ impl Browser {
         self.wait(&mut started.map_err(|fault| self.failed(&fault.to_string()))?, most)?;
         let is_whole = |pdf: Vec<u8>| pdf.starts_with(b"%PDF-") && pdf.trim_ascii_end().ends_with(b"%%EOF");
         if !fs::read(&printed).is_ok_and(is_whole) {
-            let said = String::from_utf8_lossy(&fs::read(&messages).unwrap_or_default()).into_owned();
-            return Err(self.failed(said.lines().rfind(|line| !line.trim().is_empty()).unwrap_or_default()));
+            let stderr = String::from_utf8_lossy(&fs::read(&messages).unwrap_or_default()).into_owned();
+            return Err(self.failed(stderr.lines().rfind(|line| !line.trim().is_empty()).unwrap_or_default()));
         }
         fs::rename(&printed, path).map_err(unwritten)
     }

@@ -89,7 +89,7 @@ fn drawn_map(drawn: &[(i64, ResidualMaps)], region: Option<&Region>) -> Option<F
     let curves: Vec<(i64, Vec<[f64; 3]>)> =
         drawn.iter().map(|(id, maps)| (*id, curve(maps, &axis.axis, direction))).collect();
     let extremes = curves.iter().flat_map(|(_, points)| points).map(|[_, mean, half]| mean.abs() + half);
-    let (factor, prefix) = prefixed(extremes.fold(0.0, f64::max), &first.unit);
+    let (factor, prefix) = words::prefix_of(extremes.fold(0.0, f64::max), &first.unit);
     let series: Vec<FigureSeries> = curves
         .iter()
         .enumerate()
@@ -131,12 +131,6 @@ fn curve(maps: &ResidualMaps, axis: &str, direction: Option<&str>) -> Vec<[f64; 
         .filter_map(|cell| Some((pair.x_bins.get(cell.x)?, cell)))
         .filter_map(|([from, to], cell)| Some([(from + to) / 2.0, cell.mean, cell.half_width?]))
         .collect()
-}
-
-/// Factor and prefix of a residual, as in the tables.
-fn prefixed(size: f64, unit: &str) -> (f64, &'static str) {
-    let takes_prefix = ["Nm", "N", "rad", "m"].contains(&unit);
-    if takes_prefix { words::prefix(size) } else { (1.0, "") }
 }
 
 /// A version and its ancestors, the oldest first. The default is the last version that is neither idle nor only tried.

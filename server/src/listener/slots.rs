@@ -134,7 +134,7 @@ mod tests {
         taken.iter().for_each(|slot| slot.progress.enter(Stage::Answer));
         assert!(taken[..3].iter().all(|slot| slot.admits(Demand::Ordinary)));
         assert!(taken[3].admits(Demand::Vital) && !taken[3].admits(Demand::Ordinary));
-        assert!(slots.take().is_none(), "nobody is closed while it is answered");
+        assert!(slots.take().is_none(), "a connection is not closed while it is answered");
     }
 
     #[test]

@@ -58,7 +58,6 @@ impl Report {
             ("End state", Some(word(summary.state).replace('_', " "))),
             ("Samples", Some(format!("{} rows, {} channels", summary.rows, self.run.channels.len()))),
             ("Data integrity", Some("stored records have checksums, verified at each read".to_owned())),
-            ("Data checksum", of("checksum")),
             ("User", of("by").or_else(|| summary.by.clone())),
             ("Random seed", of("seed")),
             ("Measured or imported with", of("software")),

@@ -12,7 +12,7 @@ struct Simulation(Child);
 
 impl Drop for Simulation {
     fn drop(&mut self) {
-        // It may have ended; nobody needs its exit code.
+        // The process may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }

@@ -32,7 +32,7 @@ export function fieldAfter(field: UnitField): UnitField {
 	return UNIT_FIELDS[UNIT_FIELDS.indexOf(field) + 1] ?? field;
 }
 
-/** Unit and operator of a new run. Without a serial number the run has no unit, whatever part and batch are stored. */
+/** Unit and operator of a new run. Without a serial number the run has no unit; stored values of part and batch are then unused. */
 export function unitOf(texts: UnitTexts): Pick<NewRun, 'unit' | 'operator'> {
 	const filled = (fields: readonly UnitField[]) => Object.fromEntries(fields.map((field) => [field, texts[field].trim()]).filter(([, text]) => text));
 	const serial = texts.serial.trim();

@@ -30,15 +30,15 @@ it('takes a campaign apart into its parts, and nothing else', () => {
 	const axis = { label: 'torque', unit: 'Nm' };
 	const loop = { name: 'stiffness.torsion_over_torque', title: 'Torsion over torque', form: 'cartesian' as const, x: axis, y: axis, series: [] };
 	const summary = 'The run did not come to its end (stopped), this is what its part says:\nStiffness: It is 678 Nm/rad; it is: linear.\nFriction compensation (failed): The run ended before this part.';
-	const told = [
+	const campaign = [
 		{ id: 'stiffness', title: 'Stiffness', verdict: 'identified' as const, summary: 'It is 678 Nm/rad; it is: linear.' },
 		{ id: 'compensation', title: 'Friction compensation', verdict: 'failed' as const, summary: 'The run ended before this part.' },
 	];
-	const { lead, parts } = campaignParts({ summary, quantities: [k], figures: [loop], parts: told });
+	const { lead, parts } = campaignParts({ summary, quantities: [k], figures: [loop], parts: campaign });
 	expect(lead).toBe('The run did not come to its end (stopped), this is what its part says:');
 	expect(parts).toEqual([
-		{ ...told[0], quantities: [{ ...k, title: 'Stiffness of the joint' }], figures: [loop] },
-		{ ...told[1], quantities: [], figures: [] },
+		{ ...campaign[0], quantities: [{ ...k, title: 'Stiffness of the joint' }], figures: [loop] },
+		{ ...campaign[1], quantities: [], figures: [] },
 	]);
 	expect(campaignParts({ summary: 'PASS: every way is consistent.', quantities: [], figures: [] }).parts).toEqual([]);
 });
