@@ -1,7 +1,6 @@
 // Every screen, light and dark, for the documentation:
 //   node web/e2e/screenshots.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Writes into docs/screens of the repository, or into $JB_SCREENS. The README shows `workbench-missing-light.png` as docs/workbench.png,
-// of the bench joint-a-mock with effects = ["load_linear"].
+// Writes into docs/screens of the repository, or into $JB_SCREENS.
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { expect, open, settings, runStory } from './browser.mjs';
