@@ -1,6 +1,7 @@
 //! Contradictions between columns: angles that wrap after a turn, and velocities whose unit differs from the slope of
 //! their position. Corrections are proposed to the user, never applied.
 
+use crate::ProposedOption;
 use crate::column::Column;
 use crate::note::Note;
 use jointbench_instrument::{Kind, RunTable};
@@ -61,7 +62,7 @@ pub fn idle_velocity(columns: &[Column], kind: Kind) -> Option<(usize, Note)> {
         let message = format!(
             "{speed} stays at 0 in every row, while {angle} moves by {moved:.3} rad: the column is omitted, and the velocity is the slope of the position"
         );
-        (place, Note::with(message, format!("--leave {speed}")))
+        (place, Note::with(message, ProposedOption::new("leave", speed)))
     })
 }
 
@@ -91,12 +92,12 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
     if (mean / DEGREES - 1.0).abs() < SAME_LEAP {
         let message =
             format!("{name} leaps by {mean:.1} {} times: perhaps it is in degrees within a turn", leaps.len());
-        return Some(Note::with(message, format!("--unit {name}=deg --unwrap {name}")));
+        return Some(Note::with(message, ProposedOption::new("unit", format!("{name}=deg")).and("unwrap", name)));
     }
     let period = if is_turn { String::new() } else { format!("={mean:.4}") };
     let message =
         format!("{name} leaps by {mean:.3} rad {} times, as an angle that begins anew after a turn", leaps.len());
-    Some(Note::with(message, format!("--unwrap {name}{period}")))
+    Some(Note::with(message, ProposedOption::new("unwrap", format!("{name}{period}"))))
 }
 
 /// Degrees in a turn, and the tolerance at its ends.
@@ -111,7 +112,7 @@ fn in_degrees(run: &RunTable, name: &str) -> Option<Note> {
     let is_turn = |from: f64| (low - from).abs() < END_TOLERANCE && (high - from - DEGREES).abs() < END_TOLERANCE;
     [0.0, -DEGREES / 2.0].into_iter().any(is_turn).then(|| {
         let message = format!("{name} ranges from {low:.1} to {high:.1} rad: perhaps it is in degrees");
-        Note::with(message, format!("--unit {name}=deg"))
+        Note::with(message, ProposedOption::new("unit", format!("{name}=deg")))
     })
 }
 
@@ -130,7 +131,7 @@ fn taken_power(run: &RunTable) -> Option<Note> {
     (sum < -TAKES * both).then(|| {
         let message =
             "motor_current_a opposes nearly all motion, and a motor drives its joint: perhaps it has the other sign";
-        Note::with(message, "--scale motor_current_a=-1")
+        Note::with(message, ProposedOption::new("scale", "motor_current_a=-1"))
     })
 }
 
@@ -161,17 +162,17 @@ fn slope(run: &RunTable, speed: &str, angle: &str) -> Option<Note> {
     }
     let gear = run.meta().gear_ratio.unwrap_or(f64::NAN);
     let is = |wanted: f64| (ratio / wanted - 1.0).abs() < NEAR;
+    let unit = |column: &str, unit: &str| ProposedOption::new("unit", format!("{column}={unit}"));
+    let scale = |column: &str, factor: f64| ProposedOption::new("scale", format!("{column}={factor}"));
     let (guess, option) = match () {
-        () if is(60.0 / TAU) => ("it is in rpm".to_owned(), format!("--unit {speed}=rpm")),
-        () if is(360.0 / TAU) => ("it is in deg/s".to_owned(), format!("--unit {speed}=deg/s")),
-        () if is(1.0 / TAU) => ("it is in turns/s".to_owned(), format!("--unit {speed}=rev/s")),
-        () if is(TAU / 360.0) => (format!("{angle} is in degrees"), format!("--unit {angle}=deg")),
-        () if is(TAU) => (format!("{angle} is in turns"), format!("--unit {angle}=rev")),
-        () if is(-1.0) => ("it has the other sign".to_owned(), format!("--scale {speed}=-1")),
-        () if is(gear) => (format!("{angle} is that of the other side of the gear"), format!("--scale {angle}={gear}")),
-        () if is(1.0 / gear) => {
-            ("it is that of the other side of the gear".to_owned(), format!("--scale {speed}={gear}"))
-        }
+        () if is(60.0 / TAU) => ("it is in rpm".to_owned(), unit(speed, "rpm")),
+        () if is(360.0 / TAU) => ("it is in deg/s".to_owned(), unit(speed, "deg/s")),
+        () if is(1.0 / TAU) => ("it is in turns/s".to_owned(), unit(speed, "rev/s")),
+        () if is(TAU / 360.0) => (format!("{angle} is in degrees"), unit(angle, "deg")),
+        () if is(TAU) => (format!("{angle} is in turns"), unit(angle, "rev")),
+        () if is(-1.0) => ("it has the other sign".to_owned(), scale(speed, -1.0)),
+        () if is(gear) => (format!("{angle} is that of the other side of the gear"), scale(angle, gear)),
+        () if is(1.0 / gear) => ("it is that of the other side of the gear".to_owned(), scale(speed, gear)),
         () => return None,
     };
     Some(Note::with(format!("{speed} is {ratio:.3} times the slope of {angle}: perhaps {guess}"), option))
@@ -216,7 +217,7 @@ mod tests {
             RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap()
         };
         assert_eq!(proposals(&run(1.0)), []);
-        assert_eq!(proposals(&run(-1.0))[0].option.as_deref(), Some("--scale motor_current_a=-1"));
+        assert_eq!(proposals(&run(-1.0))[0].option, Some(ProposedOption::new("scale", "motor_current_a=-1")));
     }
 
     #[test]

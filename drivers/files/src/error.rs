@@ -1,6 +1,6 @@
 //! Why and where a file is refused.
 
-use crate::note::shell;
+use crate::ProposedOption;
 use crate::text::Decimal;
 use jointbench_instrument::{Kind, TableFault};
 use std::{fmt, io};
@@ -71,16 +71,16 @@ pub enum FileFault {
         gaps: String,
     },
     #[error("numbers stand where the line of column names is expected; a {kind} run needs {}", kind.required_columns().join(", "))]
-    NoNames { kind: Kind, options: Vec<String> },
+    NoNames { kind: Kind, options: Vec<ProposedOption> },
     /// A question that the file does not answer, and the options that answer it.
     #[error("{message}")]
-    Choice { message: String, options: Vec<String> },
+    Choice { message: String, options: Vec<ProposedOption> },
     /// A time that does not rise, the probable cause, and the options that correct it.
     #[error("{fault}; {message}")]
-    Time { fault: TableFault, message: String, options: Vec<String> },
+    Time { fault: TableFault, message: String, options: Vec<ProposedOption> },
     /// Columns that the file seems to contain under other names.
     #[error("{fault}; {message}")]
-    Proposed { fault: TableFault, message: &'static str, options: Vec<String> },
+    Proposed { fault: TableFault, message: &'static str, options: Vec<ProposedOption> },
     #[error(
         "expected {expected} values as in the line of column names, found {found}{}",
         if found > expected { ": where numbers have commas, semicolons or tabs stand between the columns" } else { "" }
@@ -105,7 +105,7 @@ pub enum FileFault {
     #[error("no column holds numbers: name the columns with --names, or remove the lines above them")]
     NoColumns,
     #[error("two columns of time differ by up to {apart}: resample the channels to one clock")]
-    TwoClocks { apart: String, options: Vec<String> },
+    TwoClocks { apart: String, options: Vec<ProposedOption> },
     #[error("{0}")]
     Bound(String),
     #[error("{what}: expected one object of facts, such as {{\"kind\": \"friction\", \"gear_ratio\": 50}}")]
@@ -169,7 +169,7 @@ fn shown(found: &str) -> String {
 
 impl FileFault {
     /// Options that accept cells without a number.
-    fn options_of_cells(&self) -> Vec<String> {
+    fn options_of_cells(&self) -> Vec<ProposedOption> {
         let cell = |fault: &Self| if let Self::NotNumber { found } = fault { Some(found.clone()) } else { None };
         let cells: Option<Vec<String>> = match self {
             Self::Rows { first, more, .. } => {
@@ -187,8 +187,11 @@ impl FileFault {
         if !codes.iter().all(|cell| is_short(cell)) {
             return Vec::new();
         }
-        let codes: String = codes.iter().map(|cell| format!("--missing {} ", shell(cell))).collect();
-        vec![format!("{codes}--leave-empty-rows")]
+        let (Some(first), more) = (codes.first(), codes.iter().skip(1)) else {
+            return vec![ProposedOption::flag("leave_empty_rows")];
+        };
+        let missing = more.fold(ProposedOption::new("missing", *first), |all, code| all.and("missing", *code));
+        vec![missing.and_flag("leave_empty_rows")]
     }
 
     pub(crate) fn in_file(self, file: &str) -> FileError {
@@ -237,8 +240,8 @@ impl FileError {
         format!("{}: {}", self.place, self.fault)
     }
 
-    /// Proposed options in command-line notation.
-    pub fn options(&self) -> Vec<String> {
+    /// Proposed options.
+    pub fn options(&self) -> Vec<ProposedOption> {
         match &self.fault {
             FileFault::Choice { options, .. }
             | FileFault::NoNames { options, .. }
@@ -251,7 +254,8 @@ impl FileError {
 
     /// The options as text after the cause.
     fn remedy(&self) -> String {
-        match (&self.fault, self.options()) {
+        let options: Vec<String> = self.options().into_iter().map(|option| option.text).collect();
+        match (&self.fault, options) {
             (_, options) if options.is_empty() => String::new(),
             (FileFault::Proposed { .. }, options) => format!(": {}", options.join(" ")),
             (FileFault::Rows { gaps, .. }, options) if !gaps.is_empty() => {

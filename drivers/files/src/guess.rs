@@ -1,8 +1,8 @@
 //! The probable columns of a run table in a foreign table. Proposed to the user, never applied.
 
+use crate::ProposedOption;
 use crate::column::Column;
 use crate::naming::{Named, is_time, known};
-use crate::note::shell;
 use crate::unit::{Dimension, Unit, dimension_of, is_count};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
@@ -18,13 +18,16 @@ pub struct Proposal {
 }
 
 impl Proposal {
-    /// In command-line notation.
-    pub fn option(&self) -> String {
-        let map = format!("--map {}", shell(&format!("{}={}", self.column, self.from)));
+    /// The options that apply it.
+    pub fn option(&self) -> ProposedOption {
+        let map = ProposedOption::new("map", format!("{}={}", self.column, self.from));
         let is_open = |unit: &str| unit.starts_with("counts/N");
         let is_told = |unit: &&String| is_open(unit) || Unit::parse(unit).is_some_and(|unit| !unit.is_si());
         match self.unit.as_ref().filter(is_told) {
-            Some(unit) => format!("{map} --unit {}", shell(&format!("{}={unit}", self.column))),
+            Some(unit) => {
+                let both = map.and("unit", format!("{}={unit}", self.column));
+                if is_open(unit) { both.incomplete() } else { both }
+            }
             None => map,
         }
     }
@@ -178,7 +181,7 @@ mod tests {
     #[test]
     fn foreign_names_are_guessed_with_their_units() {
         let found = guess(&columns(&["Time [ms]", "pos_deg", "Iq [A]", "speed_rpm", "Torque (mNm)"]), Kind::Friction);
-        let options: Vec<String> = found.iter().map(Proposal::option).collect();
+        let options: Vec<String> = found.iter().map(|one| one.option().text).collect();
         assert_eq!(
             options,
             [

@@ -1,11 +1,11 @@
 //! Numbers that mean an empty cell: `-9999`, or `9.9E+37` of instruments (SCPI 1999, volume 1, 7.2.1).
 
-use crate::ReadOptions;
 use crate::column::Column;
 use crate::error::{FileError, FileFault};
 use crate::note::{counted, plural};
 use crate::raw::RawTable;
 use crate::text::Content;
+use crate::{ProposedOption, ReadOptions};
 
 /// Overflow and "not a number" of SCPI instruments, in single precision or as text.
 const SCPI: [f64; 2] = [9.9e37, 9.91e37];
@@ -36,7 +36,10 @@ impl RawTable {
         let verb = if count == 1 { "is" } else { "are" };
         let (count, rows) = (counted(count), plural(rows, "cell"));
         let message = format!("{count} of {rows} {verb} {text}, far from all others: perhaps a code for an empty cell");
-        let options = vec![format!("--missing {text} --leave-empty-rows"), "--missing none".to_owned()];
+        let options = vec![
+            ProposedOption::new("missing", text).and_flag("leave_empty_rows"),
+            ProposedOption::new("missing", "none"),
+        ];
         let place = Box::new(self.located(file, row));
         Err(FileError { place, fault: FileFault::Choice { message, options } }.in_column(&column.name))
     }

@@ -1,5 +1,6 @@
 //! Names of columns in files: the quantity, and the unit in brackets, after a slash or in a line of units.
 
+use crate::ProposedOption;
 use crate::column::Column;
 use crate::note::Note;
 use crate::text::Content;
@@ -182,6 +183,11 @@ fn is_slid(turning: Dimension, found: Dimension) -> bool {
     matches!((turning, found), (D::Angle, D::Length) | (D::AngularVelocity, D::Velocity) | (D::Torque, D::Force))
 }
 
+/// Another column of the file as the source.
+fn other_source(column: &str) -> ProposedOption {
+    ProposedOption::open("map", format!("{column}=NAME"))
+}
+
 /// Renames columns with such names and converts them to SI. The time keeps its unit until it is read.
 pub fn apply(columns: &mut [Column], meta: &Meta, notes: &mut Vec<Note>) {
     for Match { place, column, unit } in matches(columns, meta.kind, meta.motion) {
@@ -191,7 +197,7 @@ pub fn apply(columns: &mut [Column], meta: &Meta, notes: &mut Vec<Note>) {
             source.is_unit_open = unit.is_none() && was.to_lowercase() != column;
             source.unit = unit.map(|(text, _)| text);
             if was != column {
-                notes.push(Note::with(format!("{column} is {was}"), format!("--map {column}=NAME")));
+                notes.push(Note::with(format!("{column} is {was}"), other_source(column)));
             }
             continue;
         }
@@ -201,10 +207,10 @@ pub fn apply(columns: &mut [Column], meta: &Meta, notes: &mut Vec<Note>) {
                 source.values.iter_mut().for_each(|value| *value = unit.to_si(*value));
                 notes.push(Note::with(
                     format!("{column} is {was}, converted from {text}"),
-                    format!("--map {column}={} --unit {column}=UNIT", crate::note::shell(&was)),
+                    ProposedOption::open("map", format!("{column}={was}")).and("unit", format!("{column}=UNIT")),
                 ));
             }
-            _ => notes.push(Note::with(format!("{column} is {was}"), format!("--map {column}=NAME"))),
+            _ => notes.push(Note::with(format!("{column} is {was}"), other_source(column))),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Notes for the user about skipped or assumed parts of an import.
 
+use crate::ProposedOption;
 use serde::{Deserialize, Serialize};
 
 /// One skipped, assumed or noticed item, and the option that changes it.
@@ -8,8 +9,8 @@ pub struct Note {
     /// A clause without a full stop.
     #[serde(rename = "said")]
     pub message: String,
-    /// In command-line notation, such as `--leave remark`.
-    pub option: Option<String>,
+    /// Such as `--leave remark`.
+    pub option: Option<ProposedOption>,
 }
 
 impl Note {
@@ -17,8 +18,8 @@ impl Note {
         Self { message: message.into(), option: None }
     }
 
-    pub fn with(message: impl Into<String>, option: impl Into<String>) -> Self {
-        Self { message: message.into(), option: Some(option.into()) }
+    pub fn with(message: impl Into<String>, option: ProposedOption) -> Self {
+        Self { message: message.into(), option: Some(option) }
     }
 }
 
@@ -70,7 +71,10 @@ mod tests {
 
     #[test]
     fn notes_are_one_paragraph() {
-        let notes = [Note::new("one line was skipped"), Note::with("remark was left out", "--map x=remark")];
+        let notes = [
+            Note::new("one line was skipped"),
+            Note::with("remark was left out", ProposedOption::new("map", "x=remark")),
+        ];
         assert_eq!(paragraph(&notes), "one line was skipped; remark was left out (--map x=remark).");
         assert_eq!(paragraph(&[]), "");
         assert_eq!(

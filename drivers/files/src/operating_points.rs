@@ -1,5 +1,6 @@
 //! A table of conditions: each row is the mean of one steady operating point.
 
+use crate::ProposedOption;
 use crate::column::Column;
 use crate::error::FileFault;
 use crate::guess::Proposal;
@@ -26,7 +27,10 @@ pub fn may_be(table: &RawTable, kind: Kind, guessed: &[Proposal]) -> bool {
 pub fn settle(table: &mut RawTable, meta: &mut Meta, guessed: &[Proposal]) -> Result<(), FileFault> {
     if meta.kind == Some(Kind::Friction) && table.place(ANGLE).is_some() {
         let message = format!("the table has {ANGLE}: it is the record of a motion and no table of conditions");
-        return Err(FileFault::Choice { message, options: vec!["the file without --operating-points".into()] });
+        return Err(FileFault::Choice {
+            message,
+            options: vec![ProposedOption::words("the file without --operating-points")],
+        });
     }
     if meta.kind == Some(Kind::Friction) && table.place(SPEED).is_none() {
         return Err(without_speed(table, guessed));
@@ -52,7 +56,7 @@ pub fn settle(table: &mut RawTable, meta: &mut Meta, guessed: &[Proposal]) -> Re
         counted = "time_s counts the rows, and motor_position_rad adds up their speeds";
     }
     let message = format!("each row is one steady operating point: {counted}");
-    table.notes.push(Note::with(message, "--operating-points"));
+    table.notes.push(Note::with(message, ProposedOption::flag("operating_points")));
     Ok(())
 }
 
@@ -65,6 +69,7 @@ fn without_speed(table: &RawTable, guessed: &[Proposal]) -> FileFault {
         return FileFault::Proposed { fault, message: "the file seems to hold it", options };
     }
     let message = format!("a table of conditions needs {SPEED}, and the file has {}", table.names().join(", "));
-    let option = |unit: &str| format!("--map {SPEED}=NAME --unit {SPEED}={unit}");
+    let option =
+        |unit: &str| ProposedOption::open("map", format!("{SPEED}=NAME")).and("unit", format!("{SPEED}={unit}"));
     FileFault::Choice { message, options: vec![option("rad/s"), option("rpm")] }
 }

@@ -7,7 +7,7 @@ use crate::naming::{Named, matches};
 use crate::note::Note;
 use crate::options::ReadOptions;
 use crate::raw::RawTable;
-use crate::{Unit, facts, form};
+use crate::{ProposedOption, Unit, facts, form};
 use jointbench_instrument::{Kind, Meta};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -47,8 +47,7 @@ pub struct PreviewFault {
     /// Line of a text, row of a columnar file.
     pub line: Option<u64>,
     pub column: Option<String>,
-    /// Proposed options in command-line notation.
-    pub options: Vec<String>,
+    pub options: Vec<ProposedOption>,
 }
 
 impl From<&FileError> for PreviewFault {

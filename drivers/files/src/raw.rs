@@ -1,12 +1,12 @@
 //! A table as it is in the file, before names, units and values are checked.
 
-use crate::ReadOptions;
 use crate::column::Column;
 use crate::error::{FileError, FileFault, Place, Wrong};
 use crate::guess::unit_of;
 use crate::naming::{Named, known};
 use crate::note::{Note, counted, plural};
 use crate::text::{Decimal, Lines};
+use crate::{ProposedOption, ReadOptions};
 use jointbench_instrument::{Kind, Meta};
 
 /// A row with a different number of cells.
@@ -74,7 +74,7 @@ impl RawTable {
             None => self.leave_index(),
             Some(proposed) if self.columns.iter().any(|column| column.name.is_empty()) => {
                 let message = "no line names the columns: they are called column_1, column_2 and so on";
-                self.notes.push(Note::with(message, format!("--names {proposed}")));
+                self.notes.push(Note::with(message, ProposedOption::open("names", proposed)));
             }
             Some(_) => {}
         }
@@ -119,7 +119,10 @@ impl RawTable {
         let is_index = |column: &Column| matches!(column.name.as_str(), "" | "Unnamed: 0") && counts(column);
         if self.columns.len() > 1 && self.columns.first().is_some_and(is_index) {
             self.columns.remove(0);
-            self.notes.push(Note::with("the first column counts the rows and is omitted", "--names to keep it"));
+            self.notes.push(Note::with(
+                "the first column counts the rows and is omitted",
+                ProposedOption::words("--names to keep it"),
+            ));
         }
     }
 

@@ -1,5 +1,6 @@
 //! The time of a table: from its column in any unit and clock, or from a rate.
 
+use crate::ProposedOption;
 use crate::column::Column;
 use crate::contradiction;
 use crate::error::{FileError, FileFault};
@@ -50,7 +51,7 @@ pub(crate) fn settle(
         (TimeFrom::Rate(hz), None, _) => from_rate(table, hz, "--rate"),
         (TimeFrom::Rate(hz), Some(_), _) => {
             let message = "the table has a time of its own".to_owned();
-            return Err(in_file(FileFault::Choice { message, options: vec![format!("--time-from-rate {hz}")] }));
+            return Err(in_file(FileFault::Choice { message, options: vec![time_from_rate(hz)] }));
         }
         (TimeFrom::Column, None, Some(hz)) => from_rate(table, hz, "sample_rate_hz of the facts"),
         (TimeFrom::Column | TimeFrom::Spread, None, _) => return Ok(Vec::new()),
@@ -94,17 +95,13 @@ fn to_seconds(column: &mut Column, meta: &Meta) -> Result<Option<Note>, FileFaul
     let (unit, note) = match (&column.unit, column.is_unit_open) {
         (Some(text), _) => {
             let unit = Unit::parse(text).unwrap_or(Unit::SI);
-            (
-                unit,
-                (!unit.is_si())
-                    .then(|| Note::with(format!("{TIME} was converted from {text}"), format!("--unit {TIME}=UNIT"))),
-            )
+            (unit, (!unit.is_si()).then(|| Note::with(format!("{TIME} was converted from {text}"), other_unit())))
         }
         // Seconds since 1970 are only valid as dates before 2100.
         (None, is_open) if is_open || values.first().is_some_and(|first| *first > EPOCH_S.end) => {
             let (name, why) = open_unit(values, meta.sample_rate_hz)?;
             let message = format!("{TIME} has no unit and was taken as {name}, {why}");
-            (Unit::parse(name).unwrap_or(Unit::SI), Some(Note::with(message, format!("--unit {TIME}=UNIT"))))
+            (Unit::parse(name).unwrap_or(Unit::SI), Some(Note::with(message, other_unit())))
         }
         (None, _) => (Unit::SI, None),
     };
@@ -178,8 +175,18 @@ fn open_unit(values: &[f64], rate_hz: Option<f64>) -> Result<(&'static str, Stri
     );
     Err(FileFault::Choice {
         message,
-        options: likely.iter().map(|(name, _)| format!("--unit {TIME}={name}")).collect(),
+        options: likely.iter().map(|(name, _)| ProposedOption::new("unit", format!("{TIME}={name}"))).collect(),
     })
+}
+
+/// The time by the row number and this rate, instead of the time in the table.
+fn time_from_rate(hz: f64) -> ProposedOption {
+    ProposedOption::new("time_from_rate", hz.to_string())
+}
+
+/// Another unit of the time, which the user knows.
+fn other_unit() -> ProposedOption {
+    ProposedOption::open("unit", format!("{TIME}=UNIT"))
 }
 
 /// Rounds to four decimals, or to four digits if the value is smaller than that. Prints without trailing zeros.
@@ -210,7 +217,7 @@ fn refuse_overflow(table: &RawTable, place: usize, file: &str) -> Result<(), Fil
     let period = [1e-3, 1e-6, 1e-9].map(|tick_s| tick_s * OVERFLOW).into_iter().find(is_of);
     let (Some(period), Some(row)) = (period, back.first()) else { return Ok(()) };
     let message = "the time begins anew as a counter of 32 bits does that overflows".to_owned();
-    let fault = FileFault::Choice { message, options: vec![format!("--unwrap {TIME}={period}")] };
+    let fault = FileFault::Choice { message, options: vec![ProposedOption::new("unwrap", format!("{TIME}={period}"))] };
     Err(FileError { place: Box::new(table.located(file, *row)), fault }.in_column(TIME))
 }
 
@@ -223,14 +230,14 @@ fn spread(table: &mut RawTable, order: &Order) {
         counted(order.repeats),
         plural(table.rows, "row")
     );
-    table.notes.push(Note::with(message, "--spread-time"));
+    table.notes.push(Note::with(message, ProposedOption::flag("spread_time")));
 }
 
 fn several(table: &RawTable, starts: &[usize], file: &str) -> FileError {
     let count = starts.len() + 1;
     let message = format!("the time begins again: the file holds {count} recordings");
     let place = table.located(file, starts[0]);
-    let options = vec!["--split-runs".to_owned()];
+    let options = vec![ProposedOption::flag("split_runs")];
     FileError { place: Box::new(place), fault: FileFault::Choice { message, options } }.in_column(TIME)
 }
 
@@ -254,15 +261,12 @@ fn out_of_order(table: &RawTable, values: &[f64], starts: &[usize], file: &str) 
             });
             (
                 format!("{repeats} of {rows} {verb} a time stamp{ticks}"),
-                vec![format!("--time-from-rate {rate}"), "--spread-time".to_owned()],
+                vec![time_from_rate(rate), ProposedOption::flag("spread_time")],
             )
         }
         back => {
             let verb = if back == 1 { "goes" } else { "go" };
-            (
-                format!("in {back} of {} the time {verb} back", plural(values.len(), "row")),
-                vec![format!("--time-from-rate {rate}")],
-            )
+            (format!("in {back} of {} the time {verb} back", plural(values.len(), "row")), vec![time_from_rate(rate)])
         }
     };
     let place = table.located(file, row);

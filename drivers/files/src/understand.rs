@@ -3,11 +3,11 @@
 use crate::column::Column;
 use crate::error::{FileError, FileFault};
 use crate::guess::counts_of;
-use crate::note::{Note, counted, plural, shell};
+use crate::note::{Note, counted, plural};
 use crate::raw::RawTable;
 use crate::text::Decimal;
 use crate::unit::{Unit, dimension_of};
-use crate::{ReadOptions, contradiction, facts, guess, naming, operating_points, order, time};
+use crate::{ProposedOption, ReadOptions, contradiction, facts, guess, naming, operating_points, order, time};
 use jointbench_instrument::{Meta, Motion, RunTable, TableFault, Trace};
 
 /// The fact that lets a run have lengths and forces.
@@ -119,7 +119,7 @@ impl RawTable {
                 value(thousands)
             );
             let option =
-                |decimal: Decimal| format!("--decimal {}", shell(&format!("{}={}", column.source, decimal.word())));
+                |decimal: Decimal| ProposedOption::new("decimal", format!("{}={}", column.source, decimal.word()));
             let options = vec![option(decimals), option(thousands)];
             let place = self.located(file, cell.row);
             return Err(FileError { place: Box::new(place), fault: FileFault::Choice { message, options } }
@@ -141,7 +141,7 @@ impl RawTable {
             let apart = time.values.iter().zip(&other.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             if apart > 0.5 * step {
                 let unit = time.unit.as_deref().unwrap_or("its unit");
-                let options = vec![format!("--leave {}", shell(&other.source))];
+                let options = vec![ProposedOption::new("leave", &other.source)];
                 return Err(FileFault::TwoClocks { apart: format!("{apart:.4} {unit}"), options });
             }
         }
@@ -174,7 +174,7 @@ impl RawTable {
             if found.truths > 0 && why.is_none() {
                 notes.push(Note::with(
                     format!("{} is 1 for true and 0 for false", column.name),
-                    format!("--leave {}", shell(&column.name)),
+                    ProposedOption::new("leave", &column.name),
                 ));
             }
             why.is_none_or(|why| {
@@ -196,7 +196,11 @@ impl RawTable {
                 options.unit.iter().any(|(of, _)| *of == name) || options.scale.iter().any(|(of, _)| *of == name);
             let Some(dimension) = dimension_of(&name).filter(|_| !is_stated) else { continue };
             let si = jointbench_instrument::units::unit_of(&name).unwrap_or_default();
-            let option = |unit: &str| format!("--unit {}", shell(&format!("{name}={unit}")));
+            let option = |unit: &str| {
+                let stated = ProposedOption::new("unit", format!("{name}={unit}"));
+                // Counts are complete only with their number per turn.
+                if counts_of(unit, &name) == Some(unit) { stated.incomplete() } else { stated }
+            };
             let asked = |units: &[&str]| {
                 let message = format!("the file says {text} for column {name}");
                 Err(FileFault::Choice { message, options: units.iter().map(|unit| option(unit)).collect() })
@@ -220,7 +224,7 @@ impl RawTable {
                 }
                 Some(unit) if unit.is_linear() => {
                     let message = format!("the file says {text} for column {name}, a unit of a linear axis");
-                    return Err(FileFault::Choice { message, options: vec![LINEAR.to_owned()] });
+                    return Err(FileFault::Choice { message, options: vec![ProposedOption::words(LINEAR)] });
                 }
                 Some(_) => return asked(&[si]),
                 None => match counts_of(&text, &name) {
@@ -228,7 +232,7 @@ impl RawTable {
                     None => format!("{name} is {}, read as {si}", column.source),
                 },
             };
-            self.notes.push(Note::with(message, format!("--unit {name}=UNIT")));
+            self.notes.push(Note::with(message, ProposedOption::open("unit", format!("{name}=UNIT"))));
             column.unit = None;
         }
         Ok(())
@@ -242,7 +246,7 @@ impl RawTable {
         for (wanted, unit) in &options.unit {
             if unit.is_linear() && motion != Motion::Linear {
                 let message = format!("{wanted} has a unit of a linear axis, and the meta file states a rotary one");
-                return Err(FileFault::Choice { message, options: vec![LINEAR.to_owned()] });
+                return Err(FileFault::Choice { message, options: vec![ProposedOption::words(LINEAR)] });
             }
             let place = place(self, wanted)?;
             let column = &mut self.columns[place];
@@ -275,7 +279,10 @@ impl RawTable {
             column.values = places.iter().map(|row| column.values[*row]).collect();
         }
         meta.other.insert(LEFT_OUT_ROWS.to_owned(), left.into());
-        self.notes.push(Note::with(format!("rows omitted for an empty cell: {}", counted(left)), "--leave-empty-rows"));
+        self.notes.push(Note::with(
+            format!("rows omitted for an empty cell: {}", counted(left)),
+            ProposedOption::flag("leave_empty_rows"),
+        ));
         self.named_again = self.named_again.iter().map(|row| places.partition_point(|place| place < row)).collect();
         self.rows = places.len();
         self.places = Some(places);
@@ -296,7 +303,10 @@ impl Understood {
     /// The missing part for a run of its kind, with a probable source in the file. `None`: the table is complete.
     pub fn lacks(&self) -> Option<Note> {
         let Some(kind) = self.meta.kind else {
-            return Some(Note::with("no model fits the table yet: its facts state no kind", "--meta FILE"));
+            return Some(Note::with(
+                "no model fits the table yet: its facts state no kind",
+                ProposedOption::open("meta", "FILE"),
+            ));
         };
         let is_missing = |name: &&&str| self.trace.column(name).is_none();
         let missing: Vec<&str> = kind.required_columns().iter().filter(is_missing).copied().collect();
@@ -304,8 +314,8 @@ impl Understood {
             [] => return None,
             _ => format!("no {kind} model fits the table yet: it lacks {}", missing.join(", ")),
         };
-        let options: Vec<String> = self.guessed.iter().map(guess::Proposal::option).collect();
-        Some(if options.is_empty() { Note::new(message) } else { Note::with(message, options.join(" ")) })
+        let option = self.guessed.iter().map(guess::Proposal::option).reduce(ProposedOption::and_all);
+        Some(Note { message, option })
     }
 
     /// The checked run, and the notes.
@@ -320,12 +330,13 @@ impl Understood {
         let run = match starts.is_empty() {
             true => RunTable::new(meta.clone(), trace).map_err(refused)?,
             false => joined(&meta, &trace, &starts).map_err(|message| {
-                FileFault::Choice { message, options: vec!["the file without --split-runs".into()] }.in_file(&file)
+                FileFault::Choice { message, options: vec![ProposedOption::words("the file without --split-runs")] }
+                    .in_file(&file)
             })?,
         };
         if !starts.is_empty() {
             let message = format!("the file holds {} recordings, numbered in column run", starts.len() + 1);
-            notes.push(Note::with(message, "--split-runs"));
+            notes.push(Note::with(message, ProposedOption::flag("split_runs")));
         }
         if !meta.operating_points {
             notes.extend(contradiction::proposals(&run));
@@ -360,7 +371,7 @@ fn refusal(fault: TableFault, file: &str, table: &RawTable, guessed: &[guess::Pr
     }
     let fault = match &fault {
         TableFault::MissingColumn { kind, .. } if table.is_unnamed(*kind) => {
-            let options = table.proposed_names.iter().map(|proposed| format!("--names {proposed}")).collect();
+            let options = table.proposed_names.iter().map(|proposed| ProposedOption::open("names", proposed)).collect();
             FileFault::NoNames { kind: *kind, options }
         }
         TableFault::MissingColumn { column, .. } if guessed.iter().any(|one| one.column == *column) => {
@@ -369,11 +380,11 @@ fn refusal(fault: TableFault, file: &str, table: &RawTable, guessed: &[guess::Pr
         }
         TableFault::MissingColumn { kind, column: "time_s", .. } if operating_points::may_be(table, *kind, guessed) => {
             let maps = guessed.iter().map(guess::Proposal::option);
-            let options = std::iter::once("--operating-points".to_owned()).chain(maps).collect();
+            let options = std::iter::once(ProposedOption::flag("operating_points")).chain(maps).collect();
             FileFault::Proposed { fault, message: "each row may be the mean of one steady operating point", options }
         }
         TableFault::MissingColumn { column: "time_s", .. } => {
-            let options = vec!["--rate HZ".to_owned()];
+            let options = vec![ProposedOption::open("rate", "HZ")];
             FileFault::Proposed { fault, message: "a table without a time has one by its rate", options }
         }
         _ => FileFault::Table(fault),

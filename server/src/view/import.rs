@@ -48,6 +48,37 @@ pub struct ImportNote {
     pub said: String,
     /// What changes it, as it is written on the command line.
     pub option: Option<String>,
+    /// The same in parts; absent for an instruction in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub proposed: Option<ProposedImport>,
+}
+
+/// Options that a user may add to an import.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ProposedImport {
+    /// As it is written on the command line.
+    pub text: String,
+    pub parts: Vec<ImportOption>,
+    /// The parts can be applied as they are. Otherwise a value is a placeholder.
+    pub is_complete: bool,
+}
+
+/// One part of an import request.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImportOption {
+    /// Such as `unit`.
+    pub name: String,
+    /// Such as `time_s=ms`; `true` for an option without a value.
+    pub value: String,
+}
+
+impl ProposedImport {
+    /// `None` for an instruction in words.
+    fn of(option: files::ProposedOption) -> Option<Self> {
+        let part = |part: files::OptionPart| ImportOption { name: part.name, value: part.value };
+        let parts: Vec<ImportOption> = option.parts.into_iter().map(part).collect();
+        (!parts.is_empty()).then_some(Self { text: option.text, parts, is_complete: option.is_complete })
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -58,6 +89,10 @@ pub struct ImportRefusal {
     pub column: Option<String>,
     /// Remedy, as an option of the command line.
     pub options: Vec<String>,
+    /// The same in parts, without instructions in words.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub proposed: Vec<ProposedImport>,
 }
 
 impl From<files::Preview> for ImportPreview {
@@ -70,18 +105,24 @@ impl From<files::Preview> for ImportPreview {
             missing: one.missing,
         };
         let proposal = |one: files::Proposal| ImportProposal { column: one.column, from: one.from, unit: one.unit };
+        let note = |one: files::Note| ImportNote {
+            said: one.message,
+            option: one.option.as_ref().map(|option| option.text.clone()),
+            proposed: one.option.and_then(ProposedImport::of),
+        };
         ImportPreview {
             kind: preview.kind.to_string(),
             rows: preview.rows,
             columns: preview.columns.into_iter().map(column).collect(),
             proposals: preview.proposals.into_iter().map(proposal).collect(),
-            notes: preview.notes.into_iter().map(|one| ImportNote { said: one.message, option: one.option }).collect(),
+            notes: preview.notes.into_iter().map(note).collect(),
             left: preview.left,
             refused: preview.refused.map(|one| ImportRefusal {
                 said: one.message,
                 line: one.line,
                 column: one.column,
-                options: one.options,
+                options: one.options.iter().map(|option| option.text.clone()).collect(),
+                proposed: one.options.into_iter().filter_map(ProposedImport::of).collect(),
             }),
         }
     }

@@ -18,11 +18,11 @@ pub use rows::Lines;
 pub use source::{Packed, Plain, Source};
 pub use stamp::Stamp;
 
-use crate::ReadOptions;
 use crate::column::Column;
 use crate::error::{FileError, FileFault};
 use crate::note::{Note, plural, shell};
 use crate::raw::{Odd, RawTable};
+use crate::{ProposedOption, ReadOptions};
 use layout::Layout;
 use line::Separator;
 use rayon::prelude::*;
@@ -95,7 +95,10 @@ fn table(layout: &Layout, options: &ReadOptions) -> Result<RawTable, FileFault> 
         let (found, given) = (layout.width(), options.names.len());
         if found != given {
             let message = format!("--names gives {given} names, and the table has {}", plural(found, "column"));
-            return Err(FileFault::Choice { message, options: vec![format!("--names {}", proposed_names(layout))] });
+            return Err(FileFault::Choice {
+                message,
+                options: vec![ProposedOption::open("names", proposed_names(layout))],
+            });
         }
         options.names.iter().zip(&mut names).for_each(|(given, name)| name.clone_from(given));
     }
@@ -216,7 +219,7 @@ fn notes(layout: &Layout, pieces: &Pieces<'_>) -> Vec<Note> {
         notes.push(Note::new(format!("columns are parted by {}", layout.separator.name())));
     }
     if layout.decimal == Decimal::Comma {
-        notes.push(Note::with("decimals stand behind commas", "--decimal point"));
+        notes.push(Note::with("decimals stand behind commas", ProposedOption::new("decimal", "point")));
     }
     if let Some(line) = layout.units_line {
         notes.push(Note::new(format!("line {line} was taken as units")));

@@ -170,7 +170,7 @@ fn a_table_without_names_is_mapped_by_the_places_of_its_columns() {
     let choices = Choices { map: map.map(str::to_owned).to_vec(), unit: vec!["time_s=s".into()], ..Choices::default() };
     let (run, notes) = take(bare, &choices).unwrap();
     assert_eq!(run.column("motor_position_rad").unwrap(), [1.5, 1.6, 1.7]);
-    assert_eq!(notes[0].option.as_deref(), Some("--names time,column_2,column_3"));
+    assert_eq!(notes[0].option.as_ref().map(|option| option.text.as_str()), Some("--names time,column_2,column_3"));
 }
 
 #[test]
