@@ -27,6 +27,10 @@ pub struct Identification {
     /// One plain sentence, or a line for each part of a campaign. `RUN` in its commands is a placeholder for the
     /// number of the run, which [`Self::of_run`] inserts.
     pub summary: String,
+    /// The summary without the outcome against a data sheet and without the lines of the parts, which `passes` and
+    /// `parts` state separately. `None`: the summary contains neither.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lead: Option<String>,
     /// What to measure or correct next, with commands in the same form.
     pub advice: Option<String>,
     /// The figures of the result with their intervals, in the order of tables.
@@ -52,6 +56,10 @@ pub struct Part {
     pub verdict: Verdict,
     /// The result of this part in one sentence.
     pub summary: String,
+    /// Names of its quantities.
+    pub quantities: Vec<String>,
+    /// Names of its figures.
+    pub figures: Vec<String>,
 }
 
 impl Identification {
@@ -71,20 +79,8 @@ impl Identification {
                     "Resume the run (“Resume” on its page, or jointbench run --continue RUN), or repeat it."
                 }
             };
-            let at = step.map(|step| format!(" in {step}")).unwrap_or_default();
-            let gap = if self.summary.contains('\n') { '\n' } else { ' ' };
-            let summary = &self.summary;
-            self.summary = match (self.verdict, state.is_final()) {
-                // A run that still records has not failed.
-                (Verdict::Failed, false) => format!("No result yet. {summary}"),
-                (Verdict::Failed, true) => {
-                    format!(
-                        "The run did not complete ({state}{at}). The recorded part allows no identification. {summary}"
-                    )
-                }
-                (_, false) => format!("The run is still in progress ({state}{at}). Result so far:{gap}{summary}"),
-                (_, true) => format!("The run did not complete ({state}{at}). From the recorded part:{gap}{summary}"),
-            };
+            let introduction = introduction(self.verdict, state, step);
+            self = self.introduced(&introduction);
             // Advice about the planning does not apply to an incomplete run.
             self.advice = Some(next.to_owned());
             if self.verdict == Verdict::Identified {
@@ -94,12 +90,34 @@ impl Identification {
         // Commands are left unchanged, because users copy them.
         let numbered = |text: String| signed(&text.replace("RUN", &run.to_string()));
         self.parts.iter_mut().for_each(|part| part.summary = numbered(std::mem::take(&mut part.summary)));
-        Self { summary: numbered(self.summary), advice: self.advice.map(numbered), ..self }
+        let lead = self.lead.map(numbered);
+        Self { summary: numbered(self.summary), lead, advice: self.advice.map(numbered), ..self }
+    }
+
+    /// Puts text before the summary and the lead. Parts begin on a line of their own.
+    pub fn introduced(self, text: &str) -> Self {
+        let gap = if self.parts.is_empty() { ' ' } else { '\n' };
+        let lead = self.lead.map(|lead| format!("{text} {lead}").trim_end().to_owned());
+        Self { summary: format!("{text}{gap}{}", self.summary), lead, ..self }
     }
 
     /// The first quantity of that name.
     pub fn quantity(&self, name: &str) -> Option<&Quantity> {
         self.quantities.iter().find(|quantity| quantity.name == name)
+    }
+}
+
+/// What the result of an incomplete run is about.
+fn introduction(verdict: Verdict, state: RunState, step: Option<&str>) -> String {
+    let at = step.map(|step| format!(" in {step}")).unwrap_or_default();
+    match (verdict, state.is_final()) {
+        // A run that still records has not failed.
+        (Verdict::Failed, false) => "No result yet.".to_owned(),
+        (Verdict::Failed, true) => {
+            format!("The run did not complete ({state}{at}). The recorded part allows no identification.")
+        }
+        (_, false) => format!("The run is still in progress ({state}{at}). Result so far:"),
+        (_, true) => format!("The run did not complete ({state}{at}). From the recorded part:"),
     }
 }
 
@@ -136,12 +154,33 @@ pub struct Quantity {
     pub symbol: String,
     /// In words: "Coulomb friction, positive direction".
     pub title: String,
+    /// The title without the part of a campaign and without the configuration: "Coulomb friction". `None`: the title
+    /// contains neither.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_title: Option<String>,
+    /// The direction or method for which it holds: "positive direction".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub configuration: Option<String>,
     /// SI symbol; empty for a share or a count.
     pub unit: String,
     /// Estimate, in the unit of the quantity.
     pub value: f64,
     /// 95 % interval, if the run determines one.
     pub ci95: Option<[f64; 2]>,
+}
+
+impl Quantity {
+    /// The quantity for one of several configurations, which its title names.
+    pub fn in_configuration(self, configuration: &str) -> Self {
+        let title = format!("{}, {configuration}", self.title);
+        Self { base_title: Some(self.title), configuration: Some(configuration.to_owned()), title, ..self }
+    }
+
+    /// The quantity as one of a part of a campaign, with its id and title.
+    pub fn in_part(self, id: &str, title: &str) -> Self {
+        let (name, title) = (format!("{id}.{}", self.name), format!("{title}: {}", self.title));
+        Self { base_title: Some(self.base_title.unwrap_or(self.title)), name, title, ..self }
+    }
 }
 
 /// A plot of a result.
@@ -207,11 +246,29 @@ pub enum Mark {
     Bars,
 }
 
+/// What a series means in its figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SeriesRole {
+    /// An error before it is compensated.
+    Before,
+    /// The same error after compensation.
+    After,
+    /// A hysteresis loop during a reversal, while the points are steady motion.
+    Loop,
+}
+
 /// One data set of a figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Series {
     /// Its name in the legend.
     pub label: String,
+    /// Series that belong together, such as points and their model, have the same group. `None`: its label.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// Its meaning, if the figure or its page depends on it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub role: Option<SeriesRole>,
     /// How it is drawn.
     pub mark: Mark,
     /// Values on the x axis, in its unit.
@@ -228,7 +285,17 @@ impl Series {
     /// If x and y differ in length.
     pub fn new(label: &str, mark: Mark, x: Vec<f64>, y: Vec<f64>) -> Self {
         assert_eq!(x.len(), y.len(), "series {label}");
-        Self { label: label.to_owned(), mark, x, y, band: Vec::new() }
+        Self { label: label.to_owned(), group: None, role: None, mark, x, y, band: Vec::new() }
+    }
+
+    /// The series in a group.
+    pub fn in_group(self, group: &str) -> Self {
+        Self { group: Some(group.to_owned()), ..self }
+    }
+
+    /// The series with a role.
+    pub fn with_role(self, role: SeriesRole) -> Self {
+        Self { role: Some(role), ..self }
     }
 }
 

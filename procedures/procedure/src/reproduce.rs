@@ -326,18 +326,13 @@ fn compare(found: &Identification, figures: &[Figure], given: &dyn Fn(&str) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::findings::quantity;
     use crate::identification::Verdict;
 
     fn found(names: &[(&str, f64)]) -> Identification {
-        let quantity = |(name, value): &(&str, f64)| Quantity {
-            name: (*name).into(),
-            symbol: String::new(),
-            title: String::new(),
-            unit: String::new(),
-            value: *value,
-            ci95: Some([0.99 * value, 1.01 * value]),
-        };
-        let quantities = names.iter().map(quantity).collect();
+        let made =
+            |(name, value): &(&str, f64)| quantity([name, "", "", ""], *value, Some([0.99 * value, 1.01 * value]));
+        let quantities = names.iter().map(made).collect();
         let summary = String::new();
         Identification { verdict: Verdict::Identified, summary, quantities, ..Identification::default() }
     }

@@ -182,7 +182,7 @@ pub struct DifferenceQuery {
     pub channel: String,
     /// The channel for the alignment; time if omitted.
     pub by: Option<String>,
-    /// Text of the event that defines time zero.
+    /// Event that defines time zero: its `key`, or its text.
     pub from: Option<String>,
 }
 

@@ -138,6 +138,8 @@ pub(super) mod tests {
             name: "tau_c".to_owned(),
             symbol: "τ_c".to_owned(),
             title: "Coulomb friction".to_owned(),
+            base_title: None,
+            configuration: None,
             unit: "Nm".to_owned(),
             value: 0.0306,
             ci95: Some([0.0302, 0.0310]),
@@ -145,6 +147,7 @@ pub(super) mod tests {
         let result = Shown {
             verdict: Identified::Identified,
             summary: String::new(),
+            lead: None,
             warnings: Vec::new(),
             advice: None,
             quantities: vec![quantity],

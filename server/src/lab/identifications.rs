@@ -113,7 +113,7 @@ impl Lab {
             && !before.is_empty()
         {
             let before: Vec<String> = before.iter().map(i64::to_string).collect();
-            found.summary = format!("Runs {} and {last} together: {}", before.join(", "), found.summary);
+            found = found.introduced(&format!("Runs {} and {last} together:", before.join(", ")));
         }
         Ok(Identification {
             run: id,

@@ -55,6 +55,8 @@ fn show(overlay: &mut ModelOverlay, left: &ResidualSet) {
     let of = |values: &[f64]| -> Vec<f64> { shown.iter().map(|i| values[*i]).collect() };
     let points = |label: &str, values: &[f64]| FigureSeries {
         label: label.to_owned(),
+        group: None,
+        role: None,
         mark: Mark::Points,
         x: of(&time.values),
         y: of(values),
@@ -63,6 +65,8 @@ fn show(overlay: &mut ModelOverlay, left: &ResidualSet) {
     let ends = [shown.first(), shown.last()].map(|i| i.map_or(0.0, |i| time.values[*i]));
     let noise = FigureSeries {
         label: format!("±{BAND_SIGMA} σ of the noise"),
+        group: None,
+        role: None,
         mark: Mark::Line,
         x: ends.to_vec(),
         y: vec![0.0; 2],

@@ -96,6 +96,8 @@ fn drawn_map(drawn: &[(i64, ResidualMaps)], region: Option<&Region>) -> Option<F
         .filter(|(_, (_, points))| !points.is_empty())
         .map(|(place, (id, points))| FigureSeries {
             label: format!("{} (model {id})", if place == 0 { "before" } else { "after" }),
+            group: None,
+            role: None,
             mark: Mark::Points,
             x: points.iter().map(|[x, ..]| *x).collect(),
             y: points.iter().map(|[_, mean, _]| mean * factor).collect(),

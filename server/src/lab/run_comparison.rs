@@ -3,7 +3,7 @@
 use super::statistics::ROWS_AT_ONCE;
 use super::{Answer, Lab, LabError};
 use crate::job::{Alignment, Job};
-use crate::view::{Figure, FigureAxis, FigureForm, FigureSeries, Mark};
+use crate::view::{Figure, FigureAxis, FigureForm, FigureSeries, Mark, RunEvent};
 use jointbench_instrument::Channel;
 use jointbench_model::words::spoken;
 
@@ -31,10 +31,14 @@ impl Lab {
     }
 
     pub(super) async fn compare_runs_here(&self, runs: &[i64], how: &Alignment) -> Answer<Vec<Figure>> {
-        let mut zeros = Vec::new();
+        let (mut zeros, mut moment) = (Vec::new(), None);
         for run in runs {
-            zeros.push(self.zero(*run, how).await?);
+            let event = self.zero(*run, how).await?;
+            zeros.push(event.as_ref().map_or(0.0, |event| event.at_s));
+            moment = moment.or(event.map(|event| event.text));
         }
+        // The figures name the event by its text.
+        let how = &Alignment { from: moment, ..how.clone() };
         let spans = self.spans(runs, &how.by).await?;
         let spans: Vec<[f64; 2]> = spans.iter().zip(&zeros).map(|(span, zero)| span.map(|end| end - zero)).collect();
         if how.by == TIME {
@@ -72,18 +76,18 @@ impl Lab {
             let base = self.course(runs[0], how, [&axis, &Axis::ANY], zeros[0]).await?;
             let course = self.course(runs[other], how, [&axis, &Axis::ANY], zeros[other]).await?;
             let points = (0..places / MOMENTS).filter_map(|place| apart_at(&axis, [&base, &course], place)).collect();
-            apart.push(series(format!("#{} − #{}", runs[other], runs[0]), points));
+            apart.push(series(format!("#{} − #{}", runs[other], runs[0]), runs[other], points));
             unit = base.unit;
         }
         Ok(figures(runs[0], how, &unit, Vec::new(), apart))
     }
 
-    /// The zero of a run's time [s].
-    async fn zero(&self, run: i64, how: &Alignment) -> Answer<f64> {
-        let Some(from) = how.from.as_deref().filter(|_| how.by == TIME) else { return Ok(0.0) };
+    /// The event at the zero of a run's time. `None`: the time begins with the run.
+    async fn zero(&self, run: i64, how: &Alignment) -> Answer<Option<RunEvent>> {
+        let Some(from) = how.from.as_deref().filter(|_| how.by == TIME) else { return Ok(None) };
         let events = self.events(run, None).await?;
-        let event = events.into_iter().find(|event| event.text == from);
-        event.map(|event| event.at_s).ok_or_else(|| LabError::Invalid(format!("run {run} has no event “{from}”")))
+        let event = events.into_iter().find(|event| event.key == from || event.text == from);
+        event.map(Some).ok_or_else(|| LabError::Invalid(format!("run {run} has no event “{from}”")))
     }
 
     /// Smallest and largest value of a channel in each run.
@@ -293,7 +297,7 @@ fn over_places(runs: &[i64], axis: &Axis, courses: &[Course]) -> (Vec<FigureSeri
                 let tally = at(i, place)?;
                 Some((axis.centre(place, 1), tally.mean, scatters[i].map(|s| 2.0 * (s / tally.weight).sqrt())))
             };
-            shown.push(series(format!("#{run}{name}"), (0..axis.places).filter_map(mean).collect()));
+            shown.push(series(format!("#{run}{name}"), *run, (0..axis.places).filter_map(mean).collect()));
             if i == 0 {
                 continue;
             }
@@ -304,7 +308,7 @@ fn over_places(runs: &[i64], axis: &Axis, courses: &[Course]) -> (Vec<FigureSeri
                 Some((axis.centre(place, 1), apart, known.map(|_| 2.0 * variance.sqrt())))
             };
             let points = (0..axis.places).filter_map(difference).collect();
-            apart.push(series(format!("#{run} − #{}{name}", runs[0]), points));
+            apart.push(series(format!("#{run} − #{}{name}", runs[0]), *run, points));
         }
     }
     (shown, apart)
@@ -340,8 +344,9 @@ fn axis_of(label: &str, column: &str) -> FigureAxis {
     FigureAxis { label: label.to_owned(), unit, names: Vec::new() }
 }
 
-fn series(label: String, points: Points) -> FigureSeries {
+/// The series of a run in the group `#run`.
+fn series(label: String, run: i64, points: Points) -> FigureSeries {
     let band = points.iter().filter_map(|(_, y, error)| error.map(|error| [y - error, y + error])).collect();
     let (x, y) = points.into_iter().map(|(x, y, _)| (x, y)).unzip();
-    FigureSeries { label, mark: Mark::Line, x, y, band }
+    FigureSeries { label, group: Some(format!("#{run}")), role: None, mark: Mark::Line, x, y, band }
 }

@@ -241,6 +241,8 @@ mod tests {
         };
         let series = |label: &str, lift: f64| FigureSeries {
             label: label.to_owned(),
+            group: None,
+            role: None,
             mark,
             x: vec![0.0, 1.0, 2.0],
             y: vec![1.0 + lift, 2.0 + lift, 1.5 + lift],

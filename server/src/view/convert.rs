@@ -100,19 +100,35 @@ pub fn run_view(record: RunRecord, progress: Option<view::Progress>) -> view::Ru
     }
 }
 
-/// An event with its sentence.
+/// An event with its key and its sentence.
 pub fn run_event(record: EventRecord) -> view::RunEvent {
-    let mut whole = record.data.clone();
-    whole.insert("kind".to_owned(), Value::from(record.kind.clone()));
-    let text = match serde_json::from_value::<EventKind>(Value::Object(whole)) {
-        Ok(kind) => sentence(&kind),
-        Err(_) if record.kind == "damaged" => {
-            record.data.get("text").and_then(Value::as_str).unwrap_or_default().to_owned()
+    let EventRecord { sequence, at_s, kind, data } = record;
+    let mut whole = data.clone();
+    whole.insert("kind".to_owned(), Value::from(kind.clone()));
+    let (subject, text) = match serde_json::from_value::<EventKind>(Value::Object(whole)) {
+        Ok(event) => (subject(&event), sentence(&event)),
+        Err(_) if kind == "damaged" => {
+            (sequence.to_string(), data.get("text").and_then(Value::as_str).unwrap_or_default().to_owned())
         }
         // An event of another version.
-        Err(_) => record.kind.replace('_', " "),
+        Err(_) => (sequence.to_string(), kind.replace('_', " ")),
     };
-    view::RunEvent { sequence: record.sequence, at_s: record.at_s, kind: record.kind, text, data: record.data }
+    view::RunEvent { sequence, at_s, key: format!("{kind}/{subject}"), kind, text, data }
+}
+
+/// What distinguishes an event from others of its kind. Equal in runs of the same plan.
+fn subject(kind: &EventKind) -> String {
+    match kind {
+        EventKind::State { state, .. } => view::word(state),
+        EventKind::Identified { instrument, .. } => instrument.clone(),
+        EventKind::StepStarted { label, repeat, .. } => format!("{label}/{repeat}"),
+        EventKind::StepFinished { step, .. } => step.to_string(),
+        EventKind::Control { control, .. } => view::word(control),
+        EventKind::Fault { fault, .. } => fault.to_string(),
+        EventKind::Breach { breach } => breach.to_string(),
+        EventKind::Note { text } | EventKind::Warning { text } => text.clone(),
+        EventKind::Safe { safe } => view::word(safe),
+    }
 }
 
 fn sentence(kind: &EventKind) -> String {

@@ -63,6 +63,14 @@ pub struct Finding {
     pub verdict: Verdict,
     /// One sentence.
     pub summary: String,
+    /// The summary with its effects as separate parts; empty in a diagnosis of an older version.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub summary_parts: Vec<TextPart>,
+    /// Contradictions between columns, each as a sentence. The summary begins with them.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub data_problems: Vec<String>,
     /// Why no verdict is possible: the data cannot show a missing effect, or the columns contradict each other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided: Option<String>,
@@ -86,6 +94,15 @@ pub struct Finding {
     /// Rejected effects.
     #[serde(default)]
     pub left_out: Vec<LeftOut>,
+}
+
+/// A part of a text.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TextPart {
+    Text(String),
+    /// Id of an effect.
+    Effect(String),
 }
 
 /// Why no verdict is possible.
@@ -162,8 +179,12 @@ pub struct Suggestion {
     pub parameters: Vec<FittedParameter>,
     /// Effects that this data cannot distinguish from it.
     pub confounded_with: Vec<String>,
-    /// One sentence.
+    /// What the effect is, and the reasons.
     pub why: String,
+    /// Its evidence and the effects that this data cannot distinguish from it; empty in a diagnosis of an older version.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub reasons: String,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -61,6 +61,10 @@ pub struct Shown {
     pub verdict: Identified,
     /// One sentence, or one line per part of a campaign.
     pub summary: String,
+    /// The summary without the outcome against a data sheet and without the lines of the parts; absent if the summary
+    /// contains neither.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lead: Option<String>,
     /// Preconditions that the run itself found broken, such as a joint that was not warmed up.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
@@ -84,6 +88,14 @@ pub struct CampaignPart {
     pub title: String,
     pub verdict: Identified,
     pub summary: String,
+    /// Names of its quantities.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub quantities: Vec<String>,
+    /// Names of its figures.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub figures: Vec<String>,
 }
 
 impl Shown {
@@ -160,6 +172,12 @@ pub struct Quantity {
     /// As in the literature: `τ_c⁺`.
     pub symbol: String,
     pub title: String,
+    /// The title without the part of a campaign and without the configuration; absent if the title contains neither.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base_title: Option<String>,
+    /// The direction or method for which it holds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub configuration: Option<String>,
     /// SI symbol; empty for a fraction or a count.
     pub unit: String,
     pub value: f64,
@@ -204,9 +222,26 @@ pub enum Mark {
     Bars,
 }
 
+/// Meaning of a series in its figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SeriesRole {
+    /// An error before it is compensated.
+    Before,
+    /// The same error after compensation.
+    After,
+    /// A hysteresis loop during a reversal, while the points are steady motion.
+    Loop,
+}
+
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FigureSeries {
     pub label: String,
+    /// Series that belong together, such as points and their model, have the same group; its label if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub role: Option<SeriesRole>,
     pub mark: Mark,
     pub x: Vec<f64>,
     pub y: Vec<f64>,

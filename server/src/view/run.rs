@@ -197,6 +197,10 @@ pub struct RunEvent {
     pub at_s: f64,
     /// `state`, `step_started`, `step_finished`, `fault`, `breach`, `safe`, `note`, …
     pub kind: String,
+    /// Identifies the event in comparable runs: its kind and subject, such as `step_started/hold 3/0`.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub key: String,
     /// One sentence.
     pub text: String,
     /// Fields of the event.

@@ -115,7 +115,8 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         let mean_nm = points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64;
         let change = change(&points) / mean_nm;
         worst = worst.max(change);
-        let at = format!(" at {current_a:.2} A");
+        let current = format!("{current_a:.2} A");
+        let at = format!(" at {current}");
         let named = |name: &str, symbol: &str, title: &str, unit: &str, value: f64, ci95| {
             quantity([&format!("{name}_{level}"), symbol, &format!("{title}{at}"), unit], value, ci95)
         };
@@ -125,9 +126,9 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
             named("change", "ΔT/T", "Relative change over speed", "", change, None),
         ]);
         let top = points.iter().map(|p| p.0).fold(0.0, f64::max);
-        absolute.push(scatter(&format!("{current_a:.2} A"), points.iter().copied()));
-        absolute.push(curve(&format!("line{at}"), [0.0, top], 1, |v| line.at(v)));
-        relative.push(scatter(&format!("{current_a:.2} A"), points.iter().map(|p| (p.0, p.1 / mean_nm))));
+        absolute.push(scatter(&current, points.iter().copied()));
+        absolute.push(curve(&format!("line{at}"), [0.0, top], 1, |v| line.at(v)).in_group(&current));
+        relative.push(scatter(&current, points.iter().map(|p| (p.0, p.1 / mean_nm))));
     }
     if absolute.is_empty() {
         return Err(Unusable::InsufficientData("No current was measured at three speeds.", "Repeat the run."));

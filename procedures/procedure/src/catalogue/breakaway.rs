@@ -189,8 +189,8 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
             .then(|| format!("The joint did not break away at {held} positions. Increase top_torque_nm.")),
         quantities: vec![
             named("tau_b", "τ_b", "Breakaway torque, mean", &mean),
-            named("tau_b_positive", "τ_b⁺", "Breakaway torque, positive direction", &forward),
-            named("tau_b_negative", "τ_b⁻", "Breakaway torque, negative direction", &backward),
+            named("tau_b_positive", "τ_b⁺", "Breakaway torque", &forward).in_configuration("positive direction"),
+            named("tau_b_negative", "τ_b⁻", "Breakaway torque", &backward).in_configuration("negative direction"),
             quantity(["deviation", "s", "Standard deviation over positions", "Nm"], deviation, None),
         ],
         figures: vec![over_angle(&points), distribution(&all)],

@@ -184,7 +184,7 @@ fn over_load(table: &RunTable, gear: f64, law: Law) -> Result<Figure, Unusable> 
         let top_nm = seen.iter().map(|p| p.0).fold(0.0, f64::max);
         let line =
             curve(&format!("fit, {label}"), [0.0, top_nm], STEPS, |link_nm| bare_nm + law.added_nm(link_nm / gear));
-        [scatter(&label, seen), line]
+        [scatter(&label, seen), line.in_group(&label)]
     });
     Ok(Figure {
         name: "friction_over_load".into(),

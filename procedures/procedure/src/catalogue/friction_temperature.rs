@@ -180,7 +180,7 @@ fn over_temperature(run: &RunTable, points: &[Plateau]) -> Figure {
         for (way, cooling) in [("warming", false), ("cooling", true)] {
             let own = points.iter().filter(|p| resting(p, cooling) && (p.velocity_rad_s.abs() > 0.6 * top) == fast);
             let point = |p: &Plateau| (p.temperature_c, (p.target - p.load_nm).abs());
-            series.push(scatter(&format!("{speed}, {way}"), own.map(point)));
+            series.push(scatter(&format!("{speed}, {way}"), own.map(point)).in_group(way));
         }
     }
     Figure {

@@ -229,7 +229,8 @@ fn found(
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let facts = parts_of(run)?;
-    let mut whole = Identification { verdict: Verdict::Identified, ..Identification::default() };
+    let mut whole =
+        Identification { verdict: Verdict::Identified, lead: Some(String::new()), ..Identification::default() };
     for number in 0..facts.len() {
         let (procedure, found) = found(run, facts, number)?;
         let found = found.unwrap_or_else(|| none_of(procedure, &whole));
@@ -250,15 +251,13 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             title: procedure.title().to_owned(),
             verdict: found.verdict,
             summary: found.summary,
+            quantities: found.quantities.iter().map(|quantity| format!("{id}.{}", quantity.name)).collect(),
+            figures: found.figures.iter().map(|figure| format!("{id}.{}", figure.name)).collect(),
         });
         if let Some(advice) = found.advice {
             whole.advice = Some(below(&whole.advice.take().unwrap_or_default(), words(&advice)));
         }
-        whole.quantities.extend(found.quantities.into_iter().map(|mut quantity| {
-            quantity.name = format!("{id}.{}", quantity.name);
-            quantity.title = words(&quantity.title);
-            quantity
-        }));
+        whole.quantities.extend(found.quantities.into_iter().map(|quantity| quantity.in_part(id, procedure.title())));
         whole.figures.extend(found.figures.into_iter().map(|mut figure| {
             figure.name = format!("{id}.{}", figure.name);
             figure

@@ -222,9 +222,8 @@ impl Lines {
         let mut quantities = Vec::new();
         for (suffix, mark, line) in self.fitted() {
             let named = |name: &str, symbol: &str, title: &str, unit: &str, value: f64, ci95: Option<[f64; 2]>| {
-                let title = format!("{title}, {suffix} direction");
-                let words = [&format!("{name}_{suffix}"), &format!("{symbol}{mark}"), &title, unit];
-                quantity(words, value, ci95)
+                let words = [&format!("{name}_{suffix}"), &format!("{symbol}{mark}"), title, unit];
+                quantity(words, value, ci95).in_configuration(&format!("{suffix} direction"))
             };
             let offset_ci95 = Some(line.offset_ci95);
             quantities.extend([
@@ -282,7 +281,8 @@ impl Lines {
             DIRECTIONS.into_iter().zip([[0.0, top_rad_s], [-top_rad_s, 0.0]]).zip(&self.sides)
         {
             series.push(scatter(suffix, points.clone()));
-            series.extend(line.as_ref().map(|line| curve(&format!("line, {suffix}"), ends, 1, |v| line.at(v))));
+            let label = format!("line, {suffix}");
+            series.extend(line.as_ref().map(|line| curve(&label, ends, 1, |v| line.at(v)).in_group(suffix)));
         }
         let title = match self.half_difference {
             Some(_) => "Friction over motor speed, gravity removed",

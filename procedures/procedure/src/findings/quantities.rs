@@ -26,7 +26,16 @@ pub(crate) fn combined(a: (f64, [f64; 2]), b: (f64, [f64; 2]), sign: f64) -> (f6
 
 /// Named figure: `[name, symbol, title, unit]`.
 pub(crate) fn quantity([name, symbol, title, unit]: [&str; 4], value: f64, ci95: Option<[f64; 2]>) -> Quantity {
-    Quantity { name: name.into(), symbol: symbol.into(), title: title.into(), unit: unit.into(), value, ci95 }
+    Quantity {
+        name: name.into(),
+        symbol: symbol.into(),
+        title: title.into(),
+        base_title: None,
+        configuration: None,
+        unit: unit.into(),
+        value,
+        ci95,
+    }
 }
 
 pub(crate) fn scatter(label: &str, points: impl IntoIterator<Item = (f64, f64)>) -> Series {

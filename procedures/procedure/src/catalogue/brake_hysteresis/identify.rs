@@ -193,8 +193,8 @@ fn loops(sweeps: &[Sweep], model: &BrakeModel) -> Vec<Figure> {
         };
         part(sweeps, wanted).map(series).collect()
     };
-    let modelled = |label: &str, wanted: Part| -> Vec<Series> {
-        part(sweeps, wanted).map(|sweep| course(label, sweep, model)).collect()
+    let modelled = |measured: &str, wanted: Part| -> Vec<Series> {
+        part(sweeps, wanted).map(|sweep| course(measured, sweep, model)).collect()
     };
     let figure = |name: &str, title: &str, series: Vec<Vec<Series>>| Figure {
         name: name.into(),
@@ -210,24 +210,20 @@ fn loops(sweeps: &[Sweep], model: &BrakeModel) -> Vec<Figure> {
         vec![
             measured("major loop", Part::Major, Mark::Points),
             measured("reversal curve", Part::Reversal, Mark::Line),
-            modelled("model, major loop", Part::Major),
+            modelled("major loop", Part::Major),
         ],
     )];
     for (name, title, label, wanted) in [
         ("minor_loops", "Minor loops (validation data)", "minor loops", Part::Minor),
         ("random_history", "Random history (validation data)", "random history", Part::Random),
     ] {
-        figures.push(figure(
-            name,
-            title,
-            vec![measured(label, wanted, Mark::Points), modelled(&format!("model, {label}"), wanted)],
-        ));
+        figures.push(figure(name, title, vec![measured(label, wanted, Mark::Points), modelled(label, wanted)]));
     }
     figures
 }
 
-/// Prediction of the model along a sweep, including points between its currents.
-fn course(label: &str, sweep: &Sweep, model: &BrakeModel) -> Series {
+/// Prediction of the model along a measured sweep, including points between its currents.
+fn course(measured: &str, sweep: &Sweep, model: &BrakeModel) -> Series {
     let mut history = CurrentHistory::default();
     let (mut x, mut y) = (vec![0.0], vec![model.torque_nm(&history)]);
     let mut from_a = 0.0;
@@ -240,7 +236,7 @@ fn course(label: &str, sweep: &Sweep, model: &BrakeModel) -> Series {
         history.go(*to_a);
         from_a = *to_a;
     }
-    Series::new(label, Mark::Line, x, y)
+    Series::new(&format!("model, {measured}"), Mark::Line, x, y).in_group(measured)
 }
 
 fn judgement(judged: &[(f64, f64)]) -> Figure {

@@ -56,8 +56,8 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
         for ([name, symbol, title, unit], value) in
             FIGURES.into_iter().zip([rho_1, rho_2, rho_max, rho_1 / none, one.over_nm])
         {
-            let words = [&format!("{name}_{suffix}"), symbol, &format!("{title}, {title_of_method}"), unit];
-            quantities.push(quantity(words, value, None));
+            let words = [&format!("{name}_{suffix}"), symbol, title, unit];
+            quantities.push(quantity(words, value, None).in_configuration(title_of_method));
         }
     }
     let best = followed.iter().min_by(|a, b| a.rho()[0].total_cmp(&b.rho()[0]));

@@ -123,9 +123,9 @@ impl Procedure for EncoderAlignment {
             found.iter().filter_map(|(direction, found)| direction.quantity(found)).collect();
         let map = Map::of(run);
         let judged = Judgement::of(&found);
-        let mut summary = format!("{} {}", judged.text, description(&found));
+        let mut lead = format!("{} {}", judged.text, description(&found));
         if let Some(best) = map.as_ref().and_then(Map::best) {
-            summary.push_str(&format!(
+            lead.push_str(&format!(
                 " The eccentricity error has its minimum of {:.0} µrad at a radial shift of {:.3} mm.",
                 1e6 * best.once_rad,
                 1e3 * best.shift_m
@@ -139,7 +139,8 @@ impl Procedure for EncoderAlignment {
         figures.extend(map.map(|map| map.figure()));
         Some(Identification {
             verdict: judged.verdict,
-            summary,
+            summary: format!("{}: {lead}", judged.outcome),
+            lead: judged.passes.map(|_| lead),
             advice: judged.advice,
             quantities,
             figures,
@@ -235,7 +236,7 @@ impl Map {
                 (0..=FITTED).map(|i| low + (high - low) * f64::from(i) / f64::from(FITTED)).collect();
             let errors = places.iter().map(|x| best.once_rad.hypot(best.rad_per_m * (x - best.shift_m))).collect();
             [
-                Series::new("1 period per turn, fitted", Mark::Line, places, errors),
+                Series::new("1 period per turn, fitted", Mark::Line, places, errors).in_group("1 period per turn"),
                 Series::new("smallest", Mark::Points, vec![best.shift_m], vec![best.once_rad]),
             ]
         });

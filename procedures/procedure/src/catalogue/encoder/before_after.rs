@@ -4,7 +4,7 @@ use super::quantities::histogram;
 use super::spectrum::{ORDERS, PolePairs, Waves};
 use super::sweeps::Sweep;
 use super::table::{Table, means};
-use crate::identification::{Axis, Figure, Form, Mark, Series};
+use crate::identification::{Axis, Figure, Form, Mark, Series, SeriesRole};
 use std::f64::consts::TAU;
 
 /// Points over the turn; each averages over many counts of the reference.
@@ -13,14 +13,17 @@ const PLACES: usize = 180;
 /// Remaining error of a sweep at one of its readings.
 pub type Left<'a> = &'a dyn Fn(&Sweep, usize) -> f64;
 
+/// The error before or after the compensation: label, role and remaining error.
+pub type Stage<'a> = (&'a str, SeriesRole, Left<'a>);
+
 /// `sweeps` were not used for the table.
-pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [(&str, Left); 2]) -> Vec<Figure> {
+pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [Stage; 2]) -> Vec<Figure> {
     let slow_rad_s = sweeps.iter().map(|sweep| sweep.speed_rad_s.abs()).fold(f64::INFINITY, f64::min);
     let slow: Vec<&Sweep> = sweeps.iter().filter(|sweep| sweep.speed_rad_s.abs() < 1.1 * slow_rad_s).collect();
     let both_directions = |closed: bool| {
-        let one = |(stage, left): (&str, Left), direction: &str, sign: f64| {
+        let one = |(stage, role, left): Stage, direction: &str, sign: f64| {
             let sweeps = slow.iter().copied().filter(|sweep| sweep.speed_rad_s * sign > 0.0);
-            around(&format!("{direction}, {stage}"), sweeps, left, closed)
+            around(&format!("{direction}, {stage}"), sweeps, left, closed).in_group(stage).with_role(role)
         };
         stages.map(|stage| [one(stage, "CCW", 1.0), one(stage, "CW", -1.0)]).concat()
     };
@@ -52,7 +55,7 @@ pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [(&st
         "Histogram of the error".into(),
         error(),
         Axis::of("Fraction", ""),
-        stages.map(|(stage, left)| histogram(stage, &all(left), 60)).to_vec(),
+        stages.map(|(stage, role, left)| histogram(stage, &all(left), 60).with_role(role)).to_vec(),
     ));
     figures.push(figure(
         "spectrum",
@@ -84,15 +87,16 @@ fn around<'s>(label: &str, sweeps: impl Iterator<Item = &'s Sweep>, left: Left, 
 }
 
 /// The named harmonics, before and after, compared with the noise level.
-fn harmonics(sweeps: &[Sweep], poles: &PolePairs, stages: [(&str, Left); 2]) -> Option<Figure> {
+fn harmonics(sweeps: &[Sweep], poles: &PolePairs, stages: [Stage; 2]) -> Option<Figure> {
     let named = poles.orders();
     let places: Vec<f64> = (0..named.len()).map(|i| i as f64).collect();
     let mut series = Vec::new();
     let mut noise_rad = 0.0;
-    for (stage, left) in stages {
+    for (stage, role, left) in stages {
         let waves = Waves::of(sweeps, named.map(|(order, _)| order), left)?;
         let band = waves.ci95.to_vec();
-        series.push(Series { band, ..Series::new(stage, Mark::Bars, places.clone(), waves.amplitude_rad.to_vec()) });
+        let bars = Series::new(stage, Mark::Bars, places.clone(), waves.amplitude_rad.to_vec());
+        series.push(Series { band, ..bars.with_role(role) });
         noise_rad = waves.noise_rad;
     }
     series.push(Series::new("noise level (95 %)", Mark::Line, places, vec![noise_rad; named.len()]));

@@ -1,6 +1,6 @@
 //! Shape of the error over the turn, the look-up table for it, and the remaining precision (figs 4.4 to 4.11).
 
-use super::before_after::{Left, figures};
+use super::before_after::{Left, Stage, figures};
 use super::quantities::{insufficient_data, quantity};
 use super::spectrum::PolePairs;
 use super::sweeps::{Sweep, sweeps};
@@ -10,7 +10,7 @@ use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
-use crate::identification::{Identification, Quantity, Verdict};
+use crate::identification::{Identification, Quantity, SeriesRole, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
 use crate::stage_pose::StagePose;
@@ -114,7 +114,7 @@ impl Procedure for EncoderLinearity {
         let full = |sweep: &Sweep, i: usize| delayed(sweep, i) + terms.hysteresis_rad * sweep.speed_rad_s.signum();
         let peaks_rad = peaks_rad(&unseen, [&before, &direct, &delayed, &full]);
         let poles = PolePairs::of(&table)?;
-        let compared: [(&str, Left); 2] = [("before", &before), ("after", &full)];
+        let compared: [Stage; 2] = [("before", SeriesRole::Before, &before), ("after", SeriesRole::After, &full)];
         let figures = figures(&unseen, &table, &poles, compared);
         let mut quantities = usable(peaks_rad);
         quantities.extend(repeatability(&known, &unseen));

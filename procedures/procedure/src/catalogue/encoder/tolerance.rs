@@ -3,9 +3,11 @@
 use super::edges::{Direction, Found};
 use crate::identification::{Axis, Figure, Form, Mark, Series, Verdict};
 
-/// PASS, OUT OF TOLERANCE or NOT SURE, with the directions that cause it.
+/// The outcome against the data sheet, with the directions that cause it.
 pub struct Judgement {
     pub verdict: Verdict,
+    /// The outcome as the first word of a summary.
+    pub outcome: &'static str,
     /// `None` if the range of the stage does not decide it.
     pub passes: Option<bool>,
     pub text: String,
@@ -45,9 +47,10 @@ impl Judgement {
                     None => format!("{}: mount the sensor closer to the ring", direction.title),
                 }
             });
-            let text = format!("OUT OF TOLERANCE: {}.", each(&out, &lost));
+            let text = format!("{}.", each(&out, &lost));
             return Self {
                 verdict: Verdict::Identified,
+                outcome: "OUT OF TOLERANCE",
                 passes: Some(false),
                 text,
                 advice: Some(format!("{cure}. Then align and repeat the run.")),
@@ -67,13 +70,14 @@ impl Judgement {
             });
             return Self {
                 verdict: Verdict::Inconclusive,
+                outcome: "UNDECIDED",
                 passes: None,
-                text: format!("UNDECIDED: {}.", each(&unsure, &far)),
+                text: format!("{}.", each(&unsure, &far)),
                 advice: Some(format!("Increase the travel and the bisection steps: {further} --set halvings=6.")),
             };
         }
-        let text = "PASS: consistent within the data sheet tolerance in all directions.".into();
-        Self { verdict: Verdict::Identified, passes: Some(true), text, advice: None }
+        let text = "consistent within the data sheet tolerance in all directions.".into();
+        Self { verdict: Verdict::Identified, outcome: "PASS", passes: Some(true), text, advice: None }
     }
 }
 
@@ -124,11 +128,13 @@ mod tests {
     #[test]
     fn a_sensor_is_held_against_its_data_sheet() {
         let pass = judged([(-0.24, Some(-0.26)), (0.3, None)]);
-        assert!(pass.text.starts_with("PASS") && pass.advice.is_none(), "{}", pass.text);
+        assert!(pass.outcome == "PASS" && pass.advice.is_none(), "{}", pass.text);
 
         let aside = judged([(-0.40, Some(-0.42)), (0.10, Some(0.12))]);
         assert!(
-            aside.text.starts_with("OUT OF TOLERANCE: Radial shift +") && aside.text.contains("120 µm"),
+            aside.outcome == "OUT OF TOLERANCE"
+                && aside.text.starts_with("Radial shift +")
+                && aside.text.contains("120 µm"),
             "{}",
             aside.text
         );
@@ -143,7 +149,8 @@ mod tests {
         for radial in [(0.10, None), (0.14, Some(0.16))] {
             let short = judged([(-0.24, Some(-0.26)), radial]);
             assert_eq!(short.verdict, Verdict::Inconclusive);
-            assert!(short.text.starts_with("UNDECIDED: Radial shift +"), "{}", short.text);
+            assert!(short.text.starts_with("Radial shift +"), "{}", short.text);
+            assert_eq!(short.outcome, "UNDECIDED");
             assert!(short.advice.unwrap().contains("--set radial_reach_m=1.80e-4"));
         }
     }

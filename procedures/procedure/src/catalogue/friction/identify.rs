@@ -82,13 +82,12 @@ impl Fits {
     }
 
     fn quantities(&self, sides: &[(&str, Side); 2], gear: f64) -> Vec<Quantity> {
-        let mut quantities = named("", "", "", &self.whole, gear);
-        quantities.extend(named("_positive", "⁺", ", positive direction", &self.forward, gear));
-        quantities.extend(named("_negative", "⁻", ", negative direction", &self.backward, gear));
+        let mut quantities = named("", "", None, &self.whole, gear);
+        quantities.extend(named("_positive", "⁺", Some("positive direction"), &self.forward, gear));
+        quantities.extend(named("_negative", "⁻", Some("negative direction"), &self.backward, gear));
         for ((suffix, side), symbol) in sides.iter().zip(["r²⁺", "r²⁻"]) {
-            let title = format!("Coefficient of determination, {suffix} direction");
-            let words = [&format!("r2_{suffix}"), symbol, &title, ""];
-            quantities.push(quantity(words, side.r2, None));
+            let words = [&format!("r2_{suffix}"), symbol, "Coefficient of determination", ""];
+            quantities.push(quantity(words, side.r2, None).in_configuration(&format!("{suffix} direction")));
         }
         quantities
     }
@@ -181,9 +180,14 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
     })
 }
 
-fn named(suffix: &str, mark: &str, words: &str, of: &FreeFriction, gear: f64) -> Vec<Quantity> {
+fn named(suffix: &str, mark: &str, direction: Option<&str>, of: &FreeFriction, gear: f64) -> Vec<Quantity> {
     let one = |name: &str, symbol: &str, title: &str, unit: &str, figure: Figured| {
-        quantity_of([&format!("{name}{suffix}"), &format!("{symbol}{mark}"), &format!("{title}{words}"), unit], figure)
+        let words = [&format!("{name}{suffix}"), &format!("{symbol}{mark}"), title, unit];
+        let found = quantity_of(words, figure);
+        match direction {
+            Some(direction) => found.in_configuration(direction),
+            None => found,
+        }
     };
     let mut out = vec![
         one("tau_c", "τ_c", "Coulomb friction", "Nm", of.coulomb),
@@ -216,8 +220,8 @@ const SPANNED: f64 = 0.7;
 fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let mut series = sides(points, 1.0);
-    series.push(curve("model, positive", [0.0, top], 200, |v| whole.at(v)));
-    series.push(curve("model, negative", [-top, 0.0], 200, |v| -whole.at(-v)));
+    series.push(curve("model, positive", [0.0, top], 200, |v| whole.at(v)).in_group("positive"));
+    series.push(curve("model, negative", [-top, 0.0], 200, |v| -whole.at(-v)).in_group("negative"));
     // The line of table 4.5: through the points of each direction above the Stribeck region.
     let clear = 3.0 * whole.stribeck.as_ref().map_or(0.0, |s| s.speed.0);
     for sign in [1.0, -1.0] {
@@ -230,7 +234,7 @@ fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
             let way = if sign > 0.0 { "positive" } else { "negative" };
             let label = format!("line, {way}, r² = {:.4}", line.r2);
             let ends = if sign > 0.0 { [0.0, top] } else { [-top, 0.0] };
-            series.push(curve(&label, ends, 1, |v| line.at(v)));
+            series.push(curve(&label, ends, 1, |v| line.at(v)).in_group(way));
         }
     }
     figure("friction_over_speed", "Friction over motor speed", "motor velocity", series)
@@ -241,8 +245,8 @@ fn near_zero(points: &[Plateau], whole: &FreeFriction, gear: f64) -> Figure {
     let top = 5.0 * whole.stribeck.as_ref().map_or(0.1 * gear, |s| s.speed.0);
     let near: Vec<Plateau> = points.iter().copied().filter(|p| p.velocity_rad_s.abs() <= top).collect();
     let mut series = sides(&near, gear);
-    series.push(curve("model, positive", [0.0, top / gear], 200, |v| whole.at(v * gear)));
-    series.push(curve("model, negative", [-top / gear, 0.0], 200, |v| -whole.at(-v * gear)));
+    series.push(curve("model, positive", [0.0, top / gear], 200, |v| whole.at(v * gear)).in_group("positive"));
+    series.push(curve("model, negative", [-top / gear, 0.0], 200, |v| -whole.at(-v * gear)).in_group("negative"));
     figure("friction_near_zero", "Friction near zero speed", "link velocity", series)
 }
 

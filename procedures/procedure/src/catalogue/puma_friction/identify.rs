@@ -187,11 +187,12 @@ impl Stiction {
 
     fn quantities(&self) -> Vec<Quantity> {
         let sides = [
-            ("stiction_positive", "τ_s⁺", "Breakaway (static) friction, positive direction", &self.positive),
-            ("stiction_negative", "τ_s⁻", "Breakaway (static) friction, negative direction", &self.negative),
+            ("stiction_positive", "τ_s⁺", "positive direction", &self.positive),
+            ("stiction_negative", "τ_s⁻", "negative direction", &self.negative),
         ];
-        let of_side = |(name, symbol, title, mean): (&str, &str, &str, &Option<Mean>)| {
-            mean.as_ref().map(|mean| named([name, symbol, title, "V"], (mean.value, mean.ci95)))
+        let of_side = |(name, symbol, way, mean): (&str, &str, &str, &Option<Mean>)| {
+            let words = [name, symbol, "Breakaway (static) friction", "V"];
+            mean.as_ref().map(|mean| named(words, (mean.value, mean.ci95)).in_configuration(way))
         };
         sides.into_iter().filter_map(of_side).collect()
     }
@@ -296,14 +297,14 @@ fn sides(forward: &Line, backward: &Line) -> Vec<Quantity> {
         [("positive", "⁺", "positive direction", forward), ("negative", "⁻", "negative direction", backward)]
     {
         let words = |name: &str, symbol: &str, title: &str| {
-            [format!("{name}_{suffix}"), format!("{symbol}{sign}"), format!("{title}, {way}")]
+            [format!("{name}_{suffix}"), format!("{symbol}{sign}"), title.to_owned()]
         };
         for ([name, symbol, title], unit, value, ci95) in [
             (words("b", "B", "Viscous friction"), "V/(°/s)", line.slope, Some(line.slope_ci95)),
             (words("f", "f", "Coulomb friction"), "V", line.offset, Some(line.offset_ci95)),
             (words("r2", "r²", "Coefficient of determination"), "", line.r2, None),
         ] {
-            all.push(quantity([&name, &symbol, &title, unit], value, ci95));
+            all.push(quantity([&name, &symbol, &title, unit], value, ci95).in_configuration(way));
         }
     }
     all
@@ -323,8 +324,8 @@ fn over_speed(points: &[Point], forward: &Line, backward: &Line) -> Figure {
         series: vec![
             side("positive", 1.0),
             side("negative", -1.0),
-            curve("line, positive", [0.0, top], 1, |x| forward.at(x)),
-            curve("line, negative", [-top, 0.0], 1, |x| backward.at(x)),
+            curve("line, positive", [0.0, top], 1, |x| forward.at(x)).in_group("positive"),
+            curve("line, negative", [-top, 0.0], 1, |x| backward.at(x)).in_group("negative"),
         ],
     }
 }

@@ -2,7 +2,7 @@
 
 use super::zones::zones;
 use crate::findings::{Unusable, holds, interval_of, parameter, quantity, scatter, select_rows};
-use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, SeriesRole, Verdict};
 use jointbench_instrument::RunTable;
 use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit, residuals};
 use std::ops::Range;
@@ -268,7 +268,7 @@ impl Reversal {
     fn series(&self) -> Series {
         let every = self.course.len().div_ceil(LOOP_POINTS);
         let (x, y) = self.course.iter().copied().step_by(every).unzip();
-        Series::new("loop at maximum load", Mark::Line, x, y)
+        Series::new("loop at maximum load", Mark::Line, x, y).with_role(SeriesRole::Loop)
     }
 }
 
@@ -294,12 +294,12 @@ fn model(settled: &RunTable, best: &Fit) -> Result<[Series; 2], Unusable> {
     let mut points: Vec<Point> = load.iter().copied().zip(set.predicted).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (positive, negative) = points.into_iter().partition(|p| p.0 > 0.0);
-    let series = |label: &str, side: Vec<Point>| {
-        let every = side.len().div_ceil(CURVE_POINTS).max(1);
-        let (x, y) = side.into_iter().step_by(every).unzip();
-        Series::new(label, Mark::Line, x, y)
+    let series = |side: &str, points: Vec<Point>| {
+        let every = points.len().div_ceil(CURVE_POINTS).max(1);
+        let (x, y) = points.into_iter().step_by(every).unzip();
+        Series::new(&format!("model, {side}"), Mark::Line, x, y).in_group(side)
     };
-    Ok([series("model, positive", positive), series("model, negative", negative)])
+    Ok([series("positive", positive), series("negative", negative)])
 }
 
 fn torsion_over_torque(points: &[Point], model: [Series; 2], reversal: Option<&Reversal>) -> Figure {
