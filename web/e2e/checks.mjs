@@ -277,17 +277,20 @@ async function readCampaign(page, base, runs) {
 	const of = async ({ procedure, run }, title) => {
 		const found = await (await fetch(`${base}/api/v1/runs/${run}/identification`)).json();
 		const named = (one) => ({ ...one, name: `${procedure}.${one.name}` });
+		const quantities = found.quantities.map((one) => ({ ...named(one), title: `${title}: ${one.title}`, base_title: one.base_title ?? one.title }));
+		const figures = found.figures.map(named);
+		const names = (all) => all.map(({ name }) => name);
 		return {
 			summary: `${title}: ${found.summary}`,
-			part: { id: procedure, title, verdict: found.verdict, summary: found.summary },
-			quantities: found.quantities.map((one) => ({ ...named(one), title: `${title}: ${one.title}` })),
-			figures: found.figures.map(named),
+			part: { id: procedure, title, verdict: found.verdict, summary: found.summary, quantities: names(quantities), figures: names(figures) },
+			quantities,
+			figures,
 		};
 	};
 	const parts = await Promise.all(runs.map((one, i) => of(one, `Part ${i + 1}`)));
 	const whole = (what) => parts.flatMap((part) => part[what]);
 	await page.route('**/identification', (route) =>
-		route.fulfill({ json: { run: runs[0].run, procedure: 'identify_joint', software: 'jointbench', verdict: 'identified', advice: null, applies: { can: false, what: 'Nothing of this is applied.' }, summary: whole('summary').join('\n'), quantities: whole('quantities'), figures: whole('figures'), parts: parts.map(({ part }) => part) } }),
+		route.fulfill({ json: { run: runs[0].run, procedure: 'identify_joint', software: 'jointbench', verdict: 'identified', advice: null, applies: { can: false, what: 'Nothing of this is applied.' }, summary: whole('summary').join('\n'), lead: '', quantities: whole('quantities'), figures: whole('figures'), parts: parts.map(({ part }) => part) } }),
 	);
 	await page.goto(`${base}/runs/${runs[0].run}`);
 	const lines = page.locator('[data-part]');

@@ -6,6 +6,7 @@ import { legendLayout } from './legendLayout';
 import { polarLayout } from './polar';
 
 const series = (label: string, mark: Series['mark'], x: number[], y: number[], band?: number[][]): Series => ({ label, mark, x, y, band });
+const grouped = (label: string, group: string): Series => ({ ...series(label, 'line', [], []), group });
 const figure = (more: Partial<Figure>): Figure => ({
 	name: 'f',
 	title: 'Friction',
@@ -18,17 +19,13 @@ const figure = (more: Partial<Figure>): Figure => ({
 
 describe('telling series apart', () => {
 	it('draws a model in the colour of its points, and no two series alike', () => {
-		const looks = styles(['positive', 'negative', 'model, positive', 'model, negative', 'line'].map((label, i) => series(label, i < 2 ? 'points' : 'line', [], [])));
+		const points = ['positive', 'negative'].map((label) => series(label, 'points', [], []));
+		const looks = styles([...points, grouped('model, positive', 'positive'), grouped('model, negative', 'negative'), series('line', 'line', [], [])]);
 		expect(looks[2]!.stroke).toBe(looks[0]!.stroke);
 		expect(looks[3]!.stroke).toBe(looks[1]!.stroke);
 		expect(new Set(looks.map((look) => look.stroke)).size).toBe(3);
 		expect(new Set(looks.slice(2).map((look) => look.dash)).size).toBe(3);
 		expect(looks[0]!.glyph).not.toBe(looks[1]!.glyph);
-	});
-
-	it('knows the points of a line by their name at its end', () => {
-		const looks = styles(['0.2 A', '0.4 A', 'line at 0.4 A', 'line at 0.2 A'].map((label) => series(label, 'line', [], [])));
-		expect([looks[3]!.stroke, looks[2]!.stroke]).toEqual([looks[0]!.stroke, looks[1]!.stroke]);
 	});
 
 	it('draws alike what has one name', () => {
@@ -38,7 +35,7 @@ describe('telling series apart', () => {
 	});
 
 	it('draws a run as the plot above draws it, and its second curve in the same colour', () => {
-		const [mean, apart] = [['#1, up', '#2, up', '#1, down', '#2, down'], ['#2 − #1, up', '#2 − #1, down']].map((labels) => styles(labels!.map((label) => series(label, 'line', [], [])), ['#1', '#2']));
+		const [mean, apart] = [['#1', '#2', '#1', '#2'], ['#2', '#2']].map((runs) => styles(runs.map((run, i) => grouped(`${run}, ${i}`, run)), ['#1', '#2']));
 		expect([apart![0], apart![1]].map((look) => [look!.stroke, look!.dash])).toEqual([mean![1], mean![3]].map((look) => [look!.stroke, look!.dash]));
 		expect(mean![0]!.stroke).not.toBe(mean![1]!.stroke);
 		expect(new Set(mean!.map((look) => look.dash)).size).toBe(4);
@@ -115,10 +112,10 @@ it('puts entries of a legend below each other where they do not fit', () => {
 });
 
 it('draws a small remainder larger, in all figures alike, and says how much', () => {
-	const of = (label: string, y: number[], mark: Series['mark'] = 'line') => series(label, mark, [0, 1], y, y.map((value) => [value, value]));
-	const turn = figure({ series: [of('CW, before', [3, -5]), of('CW, after', [0.1, 0])] });
-	const harmonics = figure({ x: { label: '', unit: '', names: ['1×', '2×'] }, series: [of('before', [4, 1], 'bars'), of('after', [0.03, 0.02], 'bars'), of('noise', [0.01, 0.01])] });
-	const whole = figure({ series: [of('before', [3]), of('after', [1])] });
+	const of = (label: string, role: Series['role'], y: number[], mark: Series['mark'] = 'line') => ({ ...series(label, mark, [0, 1], y, y.map((value) => [value, value])), role });
+	const turn = figure({ series: [of('CW, before', 'before', [3, -5]), of('CW, after', 'after', [0.1, 0])] });
+	const harmonics = figure({ x: { label: '', unit: '', names: ['1×', '2×'] }, series: [of('before', 'before', [4, 1], 'bars'), of('after', 'after', [0.03, 0.02], 'bars'), of('noise', null, [0.01, 0.01])] });
+	const whole = figure({ series: [of('before', 'before', [3]), of('after', 'after', [1])] });
 	expect([magnification([turn, harmonics, whole]), magnification([whole])]).toEqual([50, Infinity]);
 	expect(magnified(turn, 50).series.map(({ label, y }) => [label, y])).toEqual([
 		['CW, before', [3, -5]],
@@ -130,5 +127,7 @@ it('draws a small remainder larger, in all figures alike, and says how much', ()
 		['noise', 0.01, 0.01],
 		['noise, ×50', 0.5, 0.5],
 	]);
+	const looks = styles(magnified(harmonics, 50).series);
+	expect(looks[3]!.stroke).toBe(looks[1]!.stroke);
 	expect(magnified(whole, 50)).toBe(whole);
 });

@@ -1,4 +1,4 @@
-import type { Table } from '../api/types';
+import type { SeriesRole, Table } from '../api/types';
 
 /**
  * A plot as the daemon describes it, in SI units: its data and the styles of its series. Its geometry is in `cartesian`
@@ -13,6 +13,10 @@ export interface Axis {
 
 export interface Series {
 	label: string;
+	/** Series of one group have one colour; without a group, those of one label. */
+	group?: string | null;
+	/** Meaning of the series for its figure. */
+	role?: SeriesRole | null;
 	mark: 'points' | 'line' | 'bars';
 	x: number[];
 	y: number[];
@@ -49,29 +53,17 @@ const STROKES = ['--oi-blue', '--oi-vermillion', '--oi-green', '--oi-purple', '-
 const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2', '14 3'];
 const GLYPHS: Glyph[] = ['dot', 'ring', 'square', 'cross', 'triangle'];
 
-/**
- * Series of one run have the colour of the run. `model, positive` and `line at 0.2 A` have the colours of `positive`
- * and `0.2 A`, because a model and its points belong together.
- */
-function family(labels: readonly string[], i: number): string {
-	const label = labels[i]!;
-	const run = /^#\d+/.exec(label);
-	if (run) return run[0];
-	const related = labels.find((one) => one !== label && (label.endsWith(` ${one}`) || label.split(', ').at(-1) === one));
-	return related ?? label.split(', ').at(-1)!;
-}
-
 /** `runs`: runs in the order in which another plot assigns its colours and dashes. */
 export function styles(series: readonly Series[], runs: readonly string[] = []): Style[] {
 	const labels = series.map((one) => one.label);
-	const relatives = labels.map((_, i) => family(labels, i));
-	const families = [...new Set([...runs, ...relatives])];
+	const groups = series.map((one) => one.group ?? one.label);
+	const families = [...new Set([...runs, ...groups])];
 	/** Position among the series with the same mark. Series with the same name look the same. */
 	const before = (i: number) => [...new Set(series.filter((one) => one.mark === series[i]!.mark).map((one) => one.label))].indexOf(labels[i]!);
 	/** The second curve of a run has a dash that no first curve has. */
-	const dash = (i: number) => (runs.length ? families.indexOf(relatives[i]!) + runs.length * labels.slice(0, i).filter((_, k) => relatives[k] === relatives[i]).length : before(i));
+	const dash = (i: number) => (runs.length ? families.indexOf(groups[i]!) + runs.length * groups.slice(0, i).filter((one) => one === groups[i]).length : before(i));
 	return series.map((_, i) => ({
-		stroke: STROKES[families.indexOf(relatives[i]!) % STROKES.length]!,
+		stroke: STROKES[families.indexOf(groups[i]!) % STROKES.length]!,
 		dash: DASHES[dash(i) % DASHES.length]!,
 		glyph: GLYPHS[before(i) % GLYPHS.length]!,
 		bar: before(i),
@@ -91,11 +83,11 @@ export function inDisplayUnits(figure: Figure, scaleOf: (unit: string) => { fact
 	return { ...figure, x: { ...figure.x, unit: x.unit }, y: { ...figure.y, unit: y.unit }, series };
 }
 
-/** The axis along which the series `before` and `after` are compared. */
+/** The axis along which the errors before and after compensation are compared. */
 const comparedAxis = ({ series, x }: Figure) => (!x.names && series.some((one) => one.mark === 'bars') ? 'x' : 'y');
 
 function magnificationOf(figure: Figure): number {
-	const largest = (word: string) => Math.max(...figure.series.filter((one) => one.label.endsWith(word)).flatMap((one) => one[comparedAxis(figure)].map(Math.abs)));
+	const largest = (role: SeriesRole) => Math.max(...figure.series.filter((one) => one.role === role).flatMap((one) => one[comparedAxis(figure)].map(Math.abs)));
 	const ratio = largest('before') / largest('after');
 	const power = 10 ** Math.floor(Math.log10(ratio));
 	const factor = power * (ratio < 2 * power ? 1 : ratio < 5 * power ? 2 : 5);
@@ -108,18 +100,20 @@ function magnificationOf(figure: Figure): number {
  */
 export const magnification = (figures: readonly Figure[]) => Math.min(...figures.map(magnificationOf).filter((factor) => factor > 1));
 
-/** The figure with the series `after` magnified by `factor`. A reference line of bars is drawn for both series. */
+/** The figure with the error after compensation magnified by `factor`. A reference line of bars is drawn for both errors. */
 export function magnified(figure: Figure, factor: number): Figure {
 	if (magnificationOf(figure) < factor) return figure;
 	const along = comparedAxis(figure);
 	const large = (one: Series): Series => ({
 		...one,
 		label: `${one.label}, ×${factor}`,
+		group: one.group ?? one.label,
 		[along]: one[along].map((value) => value * factor),
 		band: along === 'y' ? one.band?.map((ends) => ends.map((end) => end * factor)) : one.band,
 	});
-	const both = figure.x.names ? figure.series.filter(({ mark }) => mark === 'line') : [];
-	return { ...figure, series: [...figure.series.map((one) => (one.label.endsWith('after') ? large(one) : one)), ...both.map(large)] };
+	const after = figure.series.find(({ role }) => role === 'after');
+	const both = figure.x.names ? figure.series.filter(({ mark }) => mark === 'line').map((one) => ({ ...one, group: after?.group ?? after?.label })) : [];
+	return { ...figure, series: [...figure.series.map((one) => (one.role === 'after' ? large(one) : one)), ...both.map(large)] };
 }
 
 export type Span = readonly [low: number, high: number];

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { axisTitle, truncate, inTwoLines, label, linearUnit, displayText, pathEnd } from './label';
+import { axisTitle, truncate, inSentence, inTwoLines, label, linearUnit, displayText, pathEnd } from './label';
 
 it('reads the unit from the suffix', () => {
 	expect(label('motor_velocity_rad_s')).toEqual({ title: 'motor velocity', unit: 'rad/s' });
@@ -18,9 +18,7 @@ it('trusts a unit that is given', () => {
 it('says ids of a sentence as words', () => {
 	expect(displayText('it would show load_linear and stribeck_load, at 5 mNm')).toBe('It would show load linear and stribeck load, at 5 mNm');
 	expect(displayText('Missing effects: load_linear, then load_viscous.', [{ id: 'load_linear', title: 'Load-dependent friction' }])).toBe('Missing effects: load-dependent friction, then load viscous.');
-	const short = [{ id: 'viscous', title: 'Viscous friction' }, { id: 'stribeck', title: 'Stribeck effect' }];
-	expect(displayText('Missing effect: viscous. Adding viscous reduces the validation error', short)).toBe('Missing effect: viscous friction. Adding viscous friction reduces the validation error');
-	expect(displayText('Possibly missing effect (weak evidence): stribeck (or viscous: this run cannot distinguish them).', short)).toBe('Possibly missing effect (weak evidence): Stribeck effect (or viscous: this run cannot distinguish them).');
+	expect(['Viscous friction', 'Stribeck effect'].map(inSentence)).toEqual(['viscous friction', 'Stribeck effect']);
 	expect(displayText('motor_current_a is -1.5 times what 0-3 gives, by time_s')).toBe('Motor current is −1.5 times what 0-3 gives, by time');
 	expect(displayText('repeat with a lower stribeck_speed_rad_s, for tau_c')).toBe('Repeat with a lower stribeck speed, for tau c');
 });

@@ -67,14 +67,17 @@ const SIGN = /(?<![\w.,)\]])-(?=\d)/g;
 /** Replaces hyphens by minus signs in a text of the daemon. */
 export const withMinusSigns = (text: string): string => text.replace(SIGN, '−');
 
+/** A title inside a sentence; names of persons keep their capital. */
+export const inSentence = (title: string): string => title.replace(/^(?!Coul|Strib)./, (first) => first.toLowerCase());
+
 /**
  * A sentence of the daemon for display: effects by their titles, other ids as words without their unit, with a capital
  * at its start.
  */
 export function displayText(sentence: string, effects: readonly { id: string; title: string }[] = []): string {
-	const replaced = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])|(?<=issing effects?(?: \(weak evidence\))?: |, then |Adding )[a-z]+(?=[.,]| \(or| reduces)/g, (id) => {
+	const replaced = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])/g, (id) => {
 		const title = effects.find((one) => one.id === id)?.title;
-		return title?.replace(/^(?!Coul|Strib)./, (first) => first.toLowerCase()) ?? idText(id.replace(UNIT_SUFFIX, ''));
+		return title === undefined ? idText(id.replace(UNIT_SUFFIX, '')) : inSentence(title);
 	});
 	return replaced.charAt(0).toUpperCase() + withMinusSigns(replaced.slice(1));
 }

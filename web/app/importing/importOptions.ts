@@ -1,28 +1,14 @@
 import type { ImportOptions } from '../api/upload';
-import type { ImportPreview } from '../api/types';
+import type { ImportOption, ImportPreview } from '../api/types';
 import type { Mapping } from './columns';
 
 /** Parts of a request with a single value. */
 const SINGLE = new Set(['rate', 'time_from_rate', 'names', 'spread_time', 'operating_points', 'split_runs', 'leave_empty_rows']);
 
-/**
- * Converts a proposed option of the command line, such as `--unit time_s=ms --map 'time_s=Time [ms]'`, to parts of a
- * request.
- */
-export function parseOption(text: string): [part: string, value: string][] {
-	const words = text.match(/'(?:[^']|'\\'')*'|[^\s']+/g) ?? [];
-	const bare = words.map((word) => (word.startsWith("'") ? word.slice(1, -1).replaceAll("'\\''", "'") : word));
-	return bare.flatMap((word, i) => {
-		if (!word.startsWith('--')) return [];
-		const value = bare[i + 1];
-		return [[word.slice(2).replaceAll('-', '_'), value === undefined || value.startsWith('--') ? 'true' : value] as [string, string]];
-	});
-}
-
-/** Adds an option. It replaces an option for the same part and column. */
-export function withOption(options: ImportOptions, text: string): ImportOptions {
+/** Adds options. Each replaces an option for the same part and column. */
+export function withOptions(options: ImportOptions, added: readonly ImportOption[]): ImportOptions {
 	const next = { ...options };
-	for (const [part, value] of parseOption(text)) {
+	for (const { name: part, value } of added) {
 		const of = (one: string) => one.slice(0, one.lastIndexOf('='));
 		const others = (next[part] ?? []).filter((one) => !SINGLE.has(part) && one !== value && (!value.includes('=') || of(one) !== of(value)));
 		next[part] = [...others, value];
@@ -36,9 +22,6 @@ export function withoutOption(options: ImportOptions, part: string, value: strin
 	const { [part]: _gone, ...others } = options;
 	return rest.length ? { ...others, [part]: rest } : others;
 }
-
-/** Whether a proposal can be applied unchanged: `--rate HZ` lacks its number, and names are chosen in the table. */
-export const isComplete = (option: string) => parseOption(option).every(([part, value]) => (part !== 'rate' || Number.isFinite(+value)) && part !== 'names' && !value.includes('counts/N'));
 
 /** The source of the time of a table. */
 export type TimeSource = 'column' | 'rate' | 'spread_time' | 'operating_points';
@@ -90,11 +73,8 @@ export function optionValueText(part: string, value: string): string {
 	}
 }
 
-/** A proposed option in words. */
-export const optionText = (option: string) =>
-	parseOption(option)
-		.map(([part, value]) => optionValueText(part, value))
-		.join(', ');
+/** Proposed options in words. */
+export const optionsText = (options: readonly ImportOption[]) => options.map(({ name, value }) => optionValueText(name, value)).join(', ');
 
 /** Choices for a file that are offered again for the next file with the same columns. */
 export interface SavedMapping {

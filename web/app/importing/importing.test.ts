@@ -1,21 +1,17 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import type { ImportPreview } from '../api/types';
-import { isComplete, optionText, parseOption, loadMapping, saveMapping, timeSourceOf, withOption, withTimeSource, withoutOption } from './importOptions';
+import { loadMapping, optionsText, saveMapping, timeSourceOf, withOptions, withTimeSource, withoutOption } from './importOptions';
 import { mappingOptions, unitsOf } from './columns';
 import { unzip } from './unpack';
 
 describe('options that the daemon proposes', () => {
-	it('are parts of a request', () => {
-		expect(parseOption('--spread-time')).toEqual([['spread_time', 'true']]);
-		expect(parseOption("--map 'time_s=Time [ms]' --unit time_s=ms")).toEqual([['map', 'time_s=Time [ms]'], ['unit', 'time_s=ms']]);
-		expect([isComplete('--rate HZ'), isComplete('--rate 200'), isComplete('--split-runs')]).toEqual([false, true, true]);
-	});
+	const option = (name: string, value = 'true') => ({ name, value });
 
 	it('are said in words', () => {
-		expect(optionText('--missing -9999 --leave-empty-rows')).toBe('-9999 is an empty cell, omit rows with empty cells');
-		expect(optionText("--decimal 'I [mA]=comma'")).toBe('I [mA]: decimal comma');
-		expect(optionText('--time-from-rate 200')).toBe('200 rows a second');
-		expect(optionText('--scale motor_current_a=-1')).toBe('motor_current_a × −1');
+		expect(optionsText([option('missing', '-9999'), option('leave_empty_rows')])).toBe('-9999 is an empty cell, omit rows with empty cells');
+		expect(optionsText([option('decimal', 'I [mA]=comma')])).toBe('I [mA]: decimal comma');
+		expect(optionsText([option('time_from_rate', '200')])).toBe('200 rows a second');
+		expect(optionsText([option('scale', 'motor_current_a=-1')])).toBe('motor_current_a × −1');
 	});
 
 	it('give the time from one place', () => {
@@ -27,9 +23,9 @@ describe('options that the daemon proposes', () => {
 	});
 
 	it('are taken, exchanged and taken back', () => {
-		const once = withOption({ leave: ['remark'] }, '--unit time_s=ms');
-		expect(withOption(once, '--unit time_s=us')).toEqual({ leave: ['remark'], unit: ['time_s=us'] });
-		expect(withOption({ time_from_rate: ['100'] }, '--time-from-rate 200')).toEqual({ time_from_rate: ['200'] });
+		const once = withOptions({ leave: ['remark'] }, [option('unit', 'time_s=ms')]);
+		expect(withOptions(once, [option('unit', 'time_s=us')])).toEqual({ leave: ['remark'], unit: ['time_s=us'] });
+		expect(withOptions({ time_from_rate: ['100'] }, [option('time_from_rate', '200')])).toEqual({ time_from_rate: ['200'] });
 		expect(withoutOption(once, 'unit', 'time_s=ms')).toEqual({ leave: ['remark'] });
 	});
 });

@@ -13,7 +13,7 @@ it('says an uneven interval by its ends, and none where there is none', () => {
 });
 
 it('sets what was found for several ways side by side, and nothing else', () => {
-	const made = (symbol: string, what: string) => ['none', 'Coulomb, interpolated', 'observer'].map((way, i) => ({ name: `${symbol}${i}`, symbol, title: `${what}, ${way}`, unit: 'rad', value: i }));
+	const made = (symbol: string, what: string) => ['none', 'Coulomb, interpolated', 'observer'].map((way, i) => ({ name: `${symbol}${i}`, symbol, title: `${what}, ${way}`, base_title: what, configuration: way, unit: 'rad', value: i }));
 	const found = [...made('ρ_1', 'Sum of the errors'), ...made('ρ_1/ρ_10', 'Sum of the errors, share of none')];
 	const table = configurationTable(found);
 	expect(table?.configurations).toEqual(['none', 'Coulomb, interpolated', 'observer']);
@@ -26,25 +26,27 @@ it('sets what was found for several ways side by side, and nothing else', () => 
 });
 
 it('takes a campaign apart into its parts, and nothing else', () => {
-	const k = { name: 'stiffness.k', symbol: 'k', title: 'Stiffness: Stiffness of the joint', unit: 'Nm/rad', value: 678 };
+	const k = { name: 'stiffness.k', symbol: 'k', title: 'Stiffness: Stiffness of the joint', base_title: 'Stiffness of the joint', unit: 'Nm/rad', value: 678 };
+	const positive = { ...k, name: 'stiffness.k_positive', title: 'Stiffness: Stiffness of the joint, positive direction', configuration: 'positive direction' };
 	const axis = { label: 'torque', unit: 'Nm' };
 	const loop = { name: 'stiffness.torsion_over_torque', title: 'Torsion over torque', form: 'cartesian' as const, x: axis, y: axis, series: [] };
-	const summary = 'The run did not come to its end (stopped), this is what its part says:\nStiffness: It is 678 Nm/rad; it is: linear.\nFriction compensation (failed): The run ended before this part.';
 	const campaign = [
-		{ id: 'stiffness', title: 'Stiffness', verdict: 'identified' as const, summary: 'It is 678 Nm/rad; it is: linear.' },
-		{ id: 'compensation', title: 'Friction compensation', verdict: 'failed' as const, summary: 'The run ended before this part.' },
+		{ id: 'stiffness', title: 'Stiffness', verdict: 'identified' as const, summary: 'It is 678 Nm/rad; it is: linear.', quantities: [k.name, positive.name], figures: [loop.name] },
+		{ id: 'compensation', title: 'Friction compensation', verdict: 'failed' as const, summary: 'The run ended before this part.', quantities: [], figures: [] },
 	];
-	const { lead, parts } = campaignParts({ summary, quantities: [k], figures: [loop], parts: campaign });
-	expect(lead).toBe('The run did not come to its end (stopped), this is what its part says:');
-	expect(parts).toEqual([
-		{ ...campaign[0], quantities: [{ ...k, title: 'Stiffness of the joint' }], figures: [loop] },
+	expect(campaignParts({ quantities: [k, positive], figures: [loop], parts: campaign })).toEqual([
+		{ ...campaign[0], quantities: [{ ...k, title: 'Stiffness of the joint' }, { ...positive, title: 'Stiffness of the joint, positive direction' }], figures: [loop] },
 		{ ...campaign[1], quantities: [], figures: [] },
 	]);
-	expect(campaignParts({ summary: 'PASS: every way is consistent.', quantities: [], figures: [] }).parts).toEqual([]);
+	const stopped = { verdict: 'inconclusive', summary: 'The run did not complete (stopped):\nStiffness: linear.', lead: 'The run did not complete (stopped):', parts: campaign } as const;
+	expect(resultVerdict(stopped).text).toBe('The run did not complete (stopped):');
+	expect(campaignParts({ quantities: [], figures: [] })).toEqual([]);
 });
 
 it('takes the word from a result that was held against a data sheet', () => {
-	expect(resultVerdict({ verdict: 'identified', passes: true }, 'PASS: every way is consistent.')).toMatchObject({ label: 'PASS', tone: 'good', rest: 'every way is consistent.' });
-	expect(resultVerdict({ verdict: 'identified', passes: false }, 'OUT OF TOLERANCE on X.')).toMatchObject({ label: 'OUT OF TOLERANCE', tone: 'bad', rest: 'on X.' });
-	expect(resultVerdict({ verdict: 'inconclusive' }, 'NOT SURE: X.')).toMatchObject({ label: 'INCONCLUSIVE', rest: 'NOT SURE: X.' });
+	const passed = { passes: true, summary: 'PASS: every way is consistent.', lead: 'every way is consistent.' };
+	expect(resultVerdict({ verdict: 'identified', ...passed })).toMatchObject({ label: 'PASS', tone: 'good', text: 'every way is consistent.' });
+	expect(resultVerdict({ verdict: 'identified_with_warning', ...passed })).toMatchObject({ label: 'IDENTIFIED WITH A WARNING', text: passed.summary });
+	expect(resultVerdict({ verdict: 'identified', passes: false, summary: 'OUT OF TOLERANCE: X.', lead: 'X.' })).toMatchObject({ label: 'OUT OF TOLERANCE', tone: 'bad', text: 'X.' });
+	expect(resultVerdict({ verdict: 'inconclusive', summary: 'UNDECIDED: X.' })).toMatchObject({ label: 'INCONCLUSIVE', text: 'UNDECIDED: X.' });
 });

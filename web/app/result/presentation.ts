@@ -1,6 +1,6 @@
 import type { CampaignPart, Identification, IdentifiedQuantity } from '../api/types';
 import { type Scale, formatInterval, formatEstimate, formatNumber, scaleFor } from '../format/number';
-import type { StatusLabel, Tone } from '../ui/states';
+import type { StatusLabel } from '../ui/states';
 
 const VERDICTS: Record<Identification['verdict'], StatusLabel> = {
 	identified: { label: 'IDENTIFIED', icon: '✓', tone: 'good' },
@@ -11,14 +11,18 @@ const VERDICTS: Record<Identification['verdict'], StatusLabel> = {
 
 export const verdictLabel = (verdict: Identification['verdict']) => VERDICTS[verdict];
 
-/**
- * The verdict in a word. If the result was compared with a data sheet, the word is the outcome of that, with which the
- * summary starts.
- */
-export function resultVerdict({ verdict, passes }: Pick<Identification, 'verdict' | 'passes'>, summary: string) {
-	if (verdict !== 'identified' || passes == null) return { ...VERDICTS[verdict], rest: summary };
-	const word = passes ? 'PASS' : 'OUT OF TOLERANCE';
-	return { label: word, icon: passes ? '✓' : '✕', tone: (passes ? 'good' : 'bad') as Tone, rest: summary.replace(new RegExp(`^${word}:? *`), '') };
+type Verdict = StatusLabel & {
+	/** The result without the label and without the parts of a campaign. */
+	text: string;
+};
+
+/** The verdict in a word. If the result was compared with a data sheet, the word is the outcome of that. */
+export function resultVerdict({ verdict, passes, summary, lead, parts = [] }: Pick<Identification, 'verdict' | 'passes' | 'summary' | 'lead' | 'parts'>): Verdict {
+	if (verdict === 'identified' && passes != null) {
+		const outcome: StatusLabel = passes ? { label: 'PASS', icon: '✓', tone: 'good' } : { label: 'OUT OF TOLERANCE', icon: '✕', tone: 'bad' };
+		return { ...outcome, text: lead ?? summary };
+	}
+	return { ...VERDICTS[verdict], text: parts.length > 0 ? (lead ?? summary) : summary };
 }
 
 /**
@@ -50,38 +54,29 @@ export interface ResultTable {
 	rows: { symbol: string; title: string; of: IdentifiedQuantity[] }[];
 }
 
-/**
- * A column per direction, if every symbol has a value for each. The titles agree up to a comma, followed by the
- * direction.
- */
+/** A column per configuration, if every symbol has a value for each of at least three. */
 export function configurationTable(quantities: readonly IdentifiedQuantity[]): ResultTable | null {
 	const bySymbol = new Map<string, IdentifiedQuantity[]>();
 	for (const one of quantities) bySymbol.set(one.symbol, [...(bySymbol.get(one.symbol) ?? []), one]);
-	const rows = [...bySymbol].map(([symbol, of]) => {
-		const parts = of[0]!.title.split(', ');
-		const begins = parts.map((_, i) => parts.slice(0, i).join(', ')).findLast((begin) => of.every(({ title }) => title.startsWith(`${begin}, `)));
-		return { symbol, title: begins ?? '', of };
-	});
-	const [configurations = [], ...others] = rows.map(({ title, of }) => of.map((one) => one.title.slice(title.length + 2)));
-	const whole = configurations.length > 2 && others.length > 0 && others.every((more) => more.join('\n') === configurations.join('\n'));
-	return whole && quantities.every((one) => !one.ci95) ? { configurations, rows } : null;
+	const rows = [...bySymbol].map(([symbol, of]) => ({ symbol, title: of[0]!.base_title ?? of[0]!.title, of }));
+	const configurations = (rows[0]?.of ?? []).flatMap(({ configuration }) => configuration ?? []);
+	const hasEach = ({ of }: { of: IdentifiedQuantity[] }) => of.length === configurations.length && of.every((one, i) => one.configuration === configurations[i]);
+	return configurations.length > 2 && rows.length > 1 && rows.every(hasEach) && quantities.every((one) => !one.ci95) ? { configurations, rows } : null;
 }
 
 /** A part of a campaign with its quantities and figures. */
-export interface Part extends CampaignPart {
+export interface Part extends Omit<CampaignPart, 'quantities' | 'figures'> {
 	quantities: IdentifiedQuantity[];
 	figures: Identification['figures'];
 }
 
-/** The summary ends with a line per part; the remaining text is the lead. */
-export function campaignParts({ summary, quantities, figures, parts = [] }: Pick<Identification, 'summary' | 'quantities' | 'figures' | 'parts'>): { lead: string; parts: Part[] } {
-	const lines = summary.split('\n');
-	return {
-		lead: parts.length > 0 ? lines.slice(0, lines.length - parts.length).join(' ') : summary,
-		parts: parts.map((part) => ({
-			...part,
-			quantities: quantities.filter(({ name }) => name.startsWith(`${part.id}.`)).map((one) => ({ ...one, title: one.title.slice(part.title.length + 2) })),
-			figures: figures.filter(({ name }) => name.startsWith(`${part.id}.`)),
-		})),
-	};
+/** A quantity below the title of its part does not repeat it. */
+const withoutPart = (one: IdentifiedQuantity): IdentifiedQuantity => ({ ...one, title: [one.base_title ?? one.title, one.configuration].filter(Boolean).join(', ') });
+
+export function campaignParts({ quantities, figures, parts = [] }: Pick<Identification, 'quantities' | 'figures' | 'parts'>): Part[] {
+	return parts.map((part) => ({
+		...part,
+		quantities: quantities.filter(({ name }) => part.quantities.includes(name)).map(withoutPart),
+		figures: figures.filter(({ name }) => part.figures.includes(name)),
+	}));
 }

@@ -13,26 +13,36 @@ export function channelCurve(samples: Samples, channel: string, zero_s = 0): Cha
 	return values ? { x: zero_s === 0 ? samples.time_s : samples.time_s.map((t) => t - zero_s), low: values.min, high: values.max } : null;
 }
 
-/** Events that occur in every run, by their text, and their first times. */
-export function sharedEvents(runs: readonly (readonly Pick<RunEvent, 'text' | 'at_s' | 'kind'>[])[]): Map<string, number[]> {
+/** An event that occurs in every run. */
+export interface SharedEvent {
+	key: string;
+	text: string;
+	kind: string;
+	/** Its first time in each run. */
+	times_s: number[];
+}
+
+/** Events that occur in every run, by their key. */
+export function sharedEvents(runs: readonly (readonly Pick<RunEvent, 'key' | 'text' | 'at_s' | 'kind'>[])[]): SharedEvent[] {
 	const first = runs.map((events) => {
-		const times = new Map<string, number>();
-		for (const { text, at_s, kind } of events) if (kind !== 'step_finished' && !times.has(text)) times.set(text, at_s);
-		return times;
+		const found = new Map<string, (typeof events)[number]>();
+		for (const event of events) if (event.kind !== 'step_finished' && !found.has(event.key)) found.set(event.key, event);
+		return found;
 	});
-	const everywhere = [...(first[0]?.keys() ?? [])].filter((text) => first.every((times) => times.has(text)));
+	const everywhere = [...(first[0]?.values() ?? [])].filter(({ key }) => first.every((found) => found.has(key)));
+	const shared = everywhere.map(({ key, text, kind }) => ({ key, text, kind, times_s: first.map((found) => found.get(key)!.at_s) }));
 	// An event at the start of every run aligns like time itself.
-	return new Map(everywhere.map((text) => [text, first.map((times) => times.get(text)!)] as const).filter(([, times]) => times.some((at) => at > 0)));
+	return shared.filter(({ times_s }) => times_s.some((at) => at > 0));
 }
 
 /**
  * The event for the typed text: an exact match, or the first that contains the text; `null` for no text, `undefined`
  * without a match.
  */
-export function matchingEvent(typed: string, moments: readonly string[]): string | null | undefined {
+export function matchingEvent<T extends { text: string }>(typed: string, moments: readonly T[]): T | null | undefined {
 	const words = typed.trim().toLowerCase();
 	if (words === '') return null;
-	return moments.find((one) => one.toLowerCase() === words) ?? moments.find((one) => one.toLowerCase().includes(words));
+	return moments.find(({ text }) => text.toLowerCase() === words) ?? moments.find(({ text }) => text.toLowerCase().includes(words));
 }
 
 /**

@@ -27,16 +27,16 @@ it('leaves out a channel that a run does not have', () => {
 });
 
 it('aligns by a moment that all runs have', () => {
-	const at = (at_s: number, text: string, kind = 'step_started') => ({ text, at_s, kind });
+	const at = (at_s: number, text: string, kind = 'step_started') => ({ key: `${kind}/${text}`, text, at_s, kind });
 	const first = [at(0, 'running', 'state'), at(4, 'step'), at(8, 'step 1 done, 9 rows', 'step_finished'), at(9, 'step'), at(5, 'limit')];
 	const second = [at(0, 'running', 'state'), at(2.5, 'step'), at(7, 'step 1 done, 9 rows', 'step_finished')];
-	expect([...sharedEvents([first, second])]).toEqual([['step', [4, 2.5]]]);
+	expect(sharedEvents([first, second])).toEqual([{ key: 'step_started/step', text: 'step', kind: 'step_started', times_s: [4, 2.5] }]);
 	expect(channelCurve(samples, 'torque', 2)!.x).toEqual([-2, -1, 0, 1]);
 });
 
 it('finds the event that was meant', () => {
-	const moments = ['step 12: hold', 'step 1', 'Limit torque'];
-	expect(['step 1', 'hold', 'limit', ' ', 'oil'].map((typed) => matchingEvent(typed, moments))).toEqual(['step 1', 'step 12: hold', 'Limit torque', null, undefined]);
+	const moments = ['step 12: hold', 'step 1', 'Limit torque'].map((text) => ({ text }));
+	expect(['step 1', 'hold', 'limit', ' ', 'oil'].map((typed) => matchingEvent(typed, moments)).map((found) => found && found.text)).toEqual(['step 1', 'step 12: hold', 'Limit torque', null, undefined]);
 });
 
 it('tells figures that differ from those that only look different', () => {
