@@ -16,6 +16,7 @@ use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Diagnosis, Discovery, Evidence, Experiment, Step, Suggestion, Verdict};
 use crate::report::fit::Parameter;
 use crate::report::maps::{PairMap, Region};
+use crate::report::text::{parts, plain};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::maps::regions::reference;
 use crate::selection::advance::SelectionStep;
@@ -77,6 +78,10 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let reversals = reach.filter_map(|reach| reversals::region(&found.start, reach, &fit, measure.as_ref()));
     regions.splice(0..0, reversals.collect::<Vec<_>>());
     let structure = structure(&found, verdict);
+    let summary = match verdict {
+        Verdict::MissingEffect => narrative::missing(&found, &fit, &complete, &suggestions),
+        _ => narrative::end(&found, &complete, structure.as_ref(), options, false),
+    } + &narrative::nowhere(verdict, maps, &regions, &fit);
     Ok(Diagnosis {
         kind: prepared.kind,
         model: found.start.effects.clone(),
@@ -86,11 +91,10 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         noise_floor: found.floor.clone(),
         verdict,
         undecided_reason: undecided.as_ref().map(|why| why.reason),
-        undecided: undecided.map(|why| why.text),
-        summary: match verdict {
-            Verdict::MissingEffect => narrative::missing(&found, &fit, &complete, &suggestions),
-            _ => narrative::end(&found, &complete, structure.as_ref(), options, false),
-        } + &narrative::nowhere(verdict, maps, &regions, &fit),
+        undecided: undecided.map(|why| plain(&why.text)),
+        summary: plain(&summary),
+        summary_parts: parts(&summary),
+        data_problems: narrative::data_problems(&found),
         shows_over: shows_over(&found, structure.as_ref()),
         structure_remains: found.end_verdict() == Verdict::UnexplainedStructure,
         regions,
@@ -142,8 +146,8 @@ pub fn discover(
         noise_floor: found.floor.clone(),
         verdict,
         undecided_reason: undecided.as_ref().map(|why| why.reason),
-        undecided: undecided.map(|why| why.text),
-        summary: narrative::end(&found, &fit, structure.as_ref(), options, is_cut)
+        undecided: undecided.map(|why| plain(&why.text)),
+        summary: plain(&narrative::end(&found, &fit, structure.as_ref(), options, is_cut))
             + &narrative::nowhere(verdict, &found.maps, &regions, &fit),
         shows_over: shows_over(&found, structure.as_ref()),
         model: found.end().effects.clone(),
@@ -211,7 +215,7 @@ fn suggestions(
         let written = found.end().main.terms.iter().find(|term| term.id() == id).and_then(written);
         let instead = confounding::instead(scored.term.effect, found.start.prepared);
         let also: String = written.into_iter().chain(instead).map(|text| format!(" {text}.")).collect();
-        let why = format!("{} {evidence}{tie}{also}", info.sentence);
+        let reasons = format!("{evidence}{tie}{also}");
         let reduction_ci95 = (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten();
         let together = found.lost_without(id);
         out.push(Suggestion {
@@ -227,7 +231,8 @@ fn suggestions(
             error_reduction_together: together,
             parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),
             confounded_with,
-            why,
+            why: format!("{} {reasons}", info.sentence),
+            reasons,
         });
     }
     Ok(out)

@@ -1,10 +1,11 @@
-//! A diagnosis in plain sentences.
+//! A diagnosis in plain sentences, with marked ids of effects.
 
 use crate::diagnosis::findings::Findings;
 use crate::effect::{Effect, Regime};
 use crate::report::diagnosis::{Evidence, Imitated, RemovalReason, Suggestion, UndecidedReason, Verdict};
 use crate::report::fit::{Parameter, ParameterState};
 use crate::report::maps::{PairMap, Region};
+use crate::report::text::{all_marked, marked};
 use crate::residual_analysis::events::Events;
 use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
@@ -49,10 +50,10 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
 fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
     let unit = Scale::of(fit.validation_rms, &fit.unit);
     let first = &suggestions[0];
-    let effect = &first.effect;
+    let effect = marked(&first.effect);
     let (error, with) = (unit.figure(fit.validation_rms), unit.figure(first.validation_rms));
     let floor = floor(found, complete, &unit);
-    let regime = found.start.spec.find(effect).map_or(Regime::SteadyState, Effect::regime);
+    let regime = found.start.spec.find(&first.effect).map_or(Regime::SteadyState, Effect::regime);
     let place = if regime == Regime::Transient { "on ramps" } else { "around reversals" };
     let is_apart = regime != Regime::SteadyState && first.validation_rms > (1.0 - SMALL_REDUCTION) * fit.validation_rms;
     if let (true, Some(without), Some(alone)) = (is_apart, fit.effects_rms, first.effects_rms) {
@@ -89,8 +90,10 @@ fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion])
 fn with_confounded(suggestion: &Suggestion) -> String {
     let Suggestion { effect, confounded_with: confounded, .. } = suggestion;
     match confounded.is_empty() {
-        true => effect.clone(),
-        false => format!("{effect} (or {}: this run cannot distinguish them)", confounded.join(" or ")),
+        true => marked(effect),
+        false => {
+            format!("{} (or {}: this run cannot distinguish them)", marked(effect), all_marked(confounded).join(" or "))
+        }
     }
 }
 
@@ -150,7 +153,8 @@ fn scatter(found: &Findings, verdict: Verdict, unit: &str) -> String {
 /// An effect that may be present as well, because the error does not decide.
 fn open(found: &Findings) -> String {
     let text = |open: &Imitated| {
-        format!(" This run does not determine whether {} is present: with it {}.", open.effect, elsewhere(open, true))
+        let effect = marked(&open.effect);
+        format!(" This run does not determine whether {effect} is present: with it {}.", elsewhere(open, true))
     };
     found.open.as_ref().map(text).unwrap_or_default()
 }
@@ -166,10 +170,19 @@ const CORRECT: &str = "Correct this first: the results are based on these column
 const CORRECT_ALL: &str =
     "Correct this first: no effect is suggested until then, and the results are based on these columns. ";
 
+fn data_problem(what: &str) -> String {
+    format!("Data problem: {what}.")
+}
+
+/// Contradicting columns, each in a sentence, with which a summary begins.
+pub fn data_problems(found: &Findings) -> Vec<String> {
+    found.start.prepared.data_errors.all().map(|what| data_problem(what)).collect()
+}
+
 /// Problems that a user has to correct first: contradicting columns, and a parameter that is physically impossible in
 /// all fits. A constant input of an offset term is also reported, because its sensor may not have been connected.
 fn attention(found: &Findings, fits: &[&Fit]) -> String {
-    let problem = |what: &String| format!("Data problem: {what}. ");
+    let problem = |what: &String| format!("{} ", data_problem(what));
     let data_errors = &found.start.prepared.data_errors;
     let correct = || if data_errors.fatal.is_empty() { CORRECT } else { CORRECT_ALL }.to_owned();
     let correct = (!data_errors.is_empty()).then(correct);
@@ -317,7 +330,7 @@ fn impossible(fits: &[&Fit]) -> Option<String> {
     let mut impossible = last.parameters.iter().filter(is_impossible);
     let p = impossible.find(|p| others.iter().all(|fit| in_fit(fit, p)))?;
     let note = p.note.as_deref().unwrap_or_default();
-    Some(format!("{} of {} is {}, which {note}", p.name, p.effect, figure(p.value, &p.unit)))
+    Some(format!("{} of {} is {}, which {note}", p.name, marked(&p.effect), figure(p.value, &p.unit)))
 }
 
 /// Statement about unexplained structure; a rejected effect might explain it.
@@ -354,16 +367,16 @@ fn rejected(found: &Findings, unit: &str) -> String {
         format!(
             " Rejected: {}. With {object} the validation error would be {} instead of {}, but this run does not determine \
              {size}.",
-            list(&named),
+            list(&all_marked(&named)),
             scale.figure(with),
             scale.figure(found.end_validation_rms)
         )
     });
     let for_reason = [RemovalReason::PartialExplanation, RemovalReason::Spurious].into_iter().filter_map(|why| {
         let effects = rejected(why);
-        (!effects.is_empty()).then(|| format!(" Rejected: {} ({}).", list(&effects), why.words()))
+        (!effects.is_empty()).then(|| format!(" Rejected: {} ({}).", list(&all_marked(&effects)), why.words()))
     });
     let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_confounded(r.effect));
-    let refused = refused.map(|refused| format!(" Rejected: {} ({}).", refused.effect, refused.why()));
+    let refused = refused.map(|refused| format!(" Rejected: {} ({}).", marked(refused.effect), refused.why()));
     open.into_iter().chain(for_reason).chain(refused).collect()
 }

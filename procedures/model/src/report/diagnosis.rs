@@ -3,6 +3,7 @@
 use crate::OwnEffect;
 use crate::report::fit::{Fit, Parameter, ResidualKind};
 use crate::report::maps::{PairMap, Region};
+use crate::report::text::TextPart;
 use crate::thresholds::{MASKED_RATIO, SMALL_REDUCTION, STRONG_P_VALUE};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
@@ -62,6 +63,12 @@ pub struct Diagnosis {
     pub undecided_reason: Option<UndecidedReason>,
     /// One plain sentence.
     pub summary: String,
+    /// The summary with its effects as separate parts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub summary_parts: Vec<TextPart>,
+    /// Contradicting columns, each in a sentence. The summary begins with them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub data_problems: Vec<String>,
     /// Regions with a significant residual, the worst first.
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
@@ -169,6 +176,9 @@ pub struct Suggestion {
     pub confounded_with: Vec<String>,
     /// What the effect is, its evidence and its confounded effects, in sentences.
     pub why: String,
+    /// The same without the description of the effect.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub reasons: String,
 }
 
 /// A run that would answer the questions that this run leaves open.

@@ -5,6 +5,7 @@ pub(crate) mod diagnosis;
 pub(crate) mod fit;
 pub(crate) mod maps;
 pub(crate) mod residuals;
+pub(crate) mod text;
 
 pub use crate::report::comparison::{Comparison, ParameterPair, WiderInterval};
 pub use crate::report::diagnosis::{
@@ -17,3 +18,4 @@ pub use crate::report::fit::{
 };
 pub use crate::report::maps::{AxisMap, MapBin, MapCell, PairMap, Region, ResidualMaps};
 pub use crate::report::residuals::{Axis, ResidualSet};
+pub use crate::report::text::TextPart;
