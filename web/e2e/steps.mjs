@@ -413,5 +413,6 @@ export async function writeEffect(page, run) {
 	await form.getByRole('button', { name: `Try on run #${run}` }).click();
 	const found = await form.locator('.tried').innerText({ timeout: FIT_MS });
 	expect(/a = \d/.test(found), `the formula is not fitted to the run: ${found}`);
+	expect(/Validation error .+ → .+ \([−+][\d.]+ %\)/.test(found), `the trial does not say what the error does: ${found}`);
 	return waitForOtherVersion(page, () => keep.click());
 }

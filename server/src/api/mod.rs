@@ -175,6 +175,7 @@ fn models() -> OpenApiRouter<Lab> {
         .routes(routes!(models::effects, user_effects::define))
         .routes(routes!(user_effects::check))
         .routes(routes!(user_effects::delete))
+        .routes(routes!(user_effects::opt_in, user_effects::opt_out))
         .routes(routes!(user_effects::language))
         .routes(routes!(models::list, models::create))
         .routes(routes!(models::get))

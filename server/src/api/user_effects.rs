@@ -1,20 +1,63 @@
 //! User-defined effects.
 
 use super::cancellation::{DetachQuery, cancel_on_disconnect};
-use super::extract::{Answer, Created, Json, Path, created};
+use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::presence::Presence;
 use super::problem::Problem;
 use super::refusals::Refusals;
-use crate::lab::Lab;
+use crate::lab::{Caller, Lab};
 use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage};
+use axum::Extension;
 use axum::extract::State;
 use axum::http::StatusCode;
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct DefineQuery {
+    /// The run for which the effect was written: its diagnosis may suggest the effect. Other runs opt in.
+    pub run: Option<i64>,
+}
 
 /// Defines an effect by its formula, or a new version of it
-#[utoipa::path(post, path = "/effects", operation_id = "define_effect", tag = "effects", request_body = EffectDefinition,
+#[utoipa::path(post, path = "/effects", operation_id = "define_effect", tag = "effects", params(DefineQuery),
+    request_body = EffectDefinition,
     responses((status = 201, description = "The effect, available to all models of its kind", body = Effect), Refusals))]
-pub async fn define(State(lab): State<Lab>, Json(definition): Json<EffectDefinition>) -> Created<Effect> {
-    created(lab.define_effect(&definition).await?)
+pub async fn define(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Query(query): Query<DefineQuery>,
+    Json(definition): Json<EffectDefinition>,
+) -> Created<Effect> {
+    created(lab.define_effect(&definition, query.run, &caller.name).await?)
+}
+
+/// Lets the diagnosis of a run suggest a user-defined effect
+#[utoipa::path(put, path = "/runs/{id}/effects/{effect}", operation_id = "use_effect", tag = "effects",
+    params(("id" = i64, Path, description = "The run"), ("effect" = String, Path, description = "A user-defined effect")),
+    responses((status = 204, description = "The run uses the effect"), Refusals))]
+pub async fn opt_in(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Path((run, effect)): Path<(i64, String)>,
+) -> Result<StatusCode, Problem> {
+    lab.use_effect(run, &effect, true, &caller.name).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Keeps a user-defined effect out of the diagnosis of a run; models that contain it remain
+#[utoipa::path(delete, path = "/runs/{id}/effects/{effect}", operation_id = "do_not_use_effect", tag = "effects",
+    params(("id" = i64, Path, description = "The run"), ("effect" = String, Path, description = "A user-defined effect")),
+    responses((status = 204, description = "The run does not use the effect"), Refusals))]
+pub async fn opt_out(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Path((run, effect)): Path<(i64, String)>,
+) -> Result<StatusCode, Problem> {
+    lab.use_effect(run, &effect, false, &caller.name).await?;
+    Ok(StatusCode::NO_CONTENT)
 }
 
 /// Checks a formula and describes it, without storing it

@@ -50,7 +50,7 @@ impl Lab {
             None => self.first_run(new).await?,
         };
         if let Some(effects) = &new.effects {
-            self.spec(kind, effects).await?;
+            self.spec(kind, effects, None).await?;
         }
         self.start_task(&new.bench, reread(new)?, Goal::Explain(new.clone()), by).await
     }

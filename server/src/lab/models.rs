@@ -75,7 +75,7 @@ impl Lab {
             return Err(LabError::Invalid("give the run to fit the model to".into()));
         };
         let excluded = self.exclusions(run, parent, exclude).await?;
-        let spec = self.spec(self.kind_of_ended(runs).await?, effects).await?;
+        let spec = self.spec(self.kind_of_ended(runs).await?, effects, Some(run)).await?;
         let _turn = match parent {
             None => Some(self.inner.turns.of(Turn::First(run)).await),
             Some(_) => None,
@@ -144,7 +144,7 @@ impl Lab {
     ) -> Answer<Vec<u8>> {
         let whole = self.tables(runs).await?;
         let table = exclusions::without(whole.clone(), excluded)?;
-        let spec = self.spec(table.kind(), effects).await?;
+        let spec = self.spec(table.kind(), effects, runs.first().copied()).await?;
         let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
         let options = Options::default();
         let chosen = reread(&options)?;
@@ -240,8 +240,8 @@ impl Lab {
         Ok(packed(&written(&left, &reread::<_, Vec<Exclusion>>(&model.excluded)?)?)?)
     }
 
-    /// The diagnosis of a version. Data and version never change: it is computed once, and again after a change of
-    /// users' effects.
+    /// The diagnosis of a version. Data and version never change: it is computed once, and again after a change of the
+    /// users' effects that the run uses.
     pub async fn diagnose(&self, model: i64) -> Answer<Diagnosis> {
         let record = self.inner.store.model(model).await?;
         if let Some(kept) = self.diagnosis_kept(&record).await? {
@@ -261,7 +261,7 @@ impl Lab {
     async fn diagnosis_kept(&self, record: &ModelRecord) -> Answer<Option<Diagnosis>> {
         let Some(kept) = self.inner.store.diagnoses(record.id).await?.pop() else { return Ok(None) };
         let known: jointbench_model::Diagnosis = reread(&kept.diagnosis)?;
-        if known.own != self.user_effects_of(&reread(&record.fit)?).await? {
+        if known.own != self.user_effects_of(record).await? {
             return Ok(None);
         }
         Ok(Some(diagnosis_view(kept, record.run)?))
@@ -269,7 +269,7 @@ impl Lab {
 
     pub(super) async fn diagnose_here(&self, model: i64, offer: Option<Offer>) -> Answer<Value> {
         let record = self.inner.store.model(model).await?;
-        let own = self.user_effects_of(&reread(&record.fit)?).await?;
+        let own = self.user_effects_of(&record).await?;
         let table = self.fitted_table(&record).await?;
         let spec = ModelSpec::with_own(table.kind(), &record.effects, own)?;
         let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
@@ -277,12 +277,13 @@ impl Lab {
         Ok(reread(&diagnosis)?)
     }
 
-    /// Users' effects in their version of the fit, and the other effects of this kind.
-    async fn user_effects_of(&self, fit: &Fit) -> Answer<Vec<OwnEffect>> {
-        let mut own = fit.own.clone();
-        own.extend(
-            self.user_effects(fit.kind).await?.into_iter().filter(|o| !fit.own.iter().any(|f| f.id() == o.id())),
-        );
+    /// Users' effects in their version of the fit, and the others that the run uses.
+    async fn user_effects_of(&self, record: &ModelRecord) -> Answer<Vec<OwnEffect>> {
+        let fit: Fit = reread(&record.fit)?;
+        let used = self.used_effects(fit.kind, record.run).await?;
+        let mut own = fit.own;
+        let others: Vec<OwnEffect> = used.into_iter().filter(|one| !own.iter().any(|o| o.id() == one.id())).collect();
+        own.extend(others);
         Ok(own)
     }
 
@@ -381,5 +382,6 @@ pub(super) fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
         needs: info.needs.iter().map(|need| (*need).to_owned()).collect(),
         definition: None,
         version: None,
+        runs: Vec::new(),
     }
 }

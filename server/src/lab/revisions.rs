@@ -133,7 +133,7 @@ impl Lab {
             )));
         }
         let held: Evaluation = self.compute(Job::EvaluateFile { file, run }).await?;
-        self.import_effects(&kept.own).await?;
+        self.import_effects(&kept.own, run, by).await?;
         let new = NewModel {
             run: import.run,
             more_runs: Vec::new(),

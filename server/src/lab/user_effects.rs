@@ -1,16 +1,18 @@
-//! Effects that users write: checked, stored, and available to every model of their kind.
+//! Effects that users write: checked, stored, and available to every model of their kind. A diagnosis suggests one only on
+//! runs that use it: the run in whose workbench it was written, and those that a user chose.
 
 use super::models::{blocking, effect_view, find_kind};
-use super::{Answer, Lab, LabError, names};
+use super::{Answer, Lab, LabError, exclusions, names};
 use crate::job::Job;
-use crate::store::UserEffectRecord;
+use crate::store::{EffectUse, StoreError, UserEffectRecord};
 use crate::view::{
     Effect, EffectCheck, EffectDefinition, EffectTrial, FittedParameter, FormulaLanguage, FormulaSignal, LiveMessage,
-    reread,
+    TrialError, finite, reread,
 };
 use jointbench_instrument::Kind;
 use jointbench_model::formula::{self, Function};
 use jointbench_model::{Definition, Effect as _, ModelError, ModelSpec, Options, OwnEffect, TradeOff};
+use serde::{Deserialize, Serialize};
 
 impl Lab {
     pub async fn effects(&self, kind: Option<&str>) -> Answer<Vec<Effect>> {
@@ -19,19 +21,37 @@ impl Lab {
             Some(name) => vec![find_kind(name)?],
         };
         let records = self.inner.store.user_effects().await?;
+        let uses = self.inner.store.effect_uses().await?;
         let mut all: Vec<Effect> = Vec::new();
         for kind in kinds {
             all.extend(jointbench_model::effects(kind).iter().map(|effect| effect_view(&effect.info())));
             for record in records.iter().filter(|record| record.kind == kind.name()) {
-                all.push(view(record)?);
+                all.push(view(record, &uses)?);
             }
         }
         Ok(all)
     }
 
-    /// A model of these effects that may contain and suggest all users' effects.
-    pub(super) async fn spec(&self, kind: Kind, effects: &[String]) -> Answer<ModelSpec> {
-        Ok(ModelSpec::with_own(kind, effects, self.user_effects(kind).await?)?)
+    /// A model of these effects that may suggest the users' effects that the run uses.
+    pub(super) async fn spec(&self, kind: Kind, effects: &[String], run: Option<i64>) -> Answer<ModelSpec> {
+        let used = match run {
+            Some(run) => self.used_effects(kind, run).await?,
+            None => Vec::new(),
+        };
+        let mut own = self.user_effects(kind).await?;
+        own.retain(|one| effects.iter().any(|id| id == one.id()) || used.contains(one));
+        Ok(ModelSpec::with_own(kind, effects, own)?)
+    }
+
+    /// Users' effects that the diagnosis of a run may suggest.
+    pub(super) async fn used_effects(&self, kind: Kind, run: i64) -> Answer<Vec<OwnEffect>> {
+        let uses = self.inner.store.effect_uses().await?;
+        let is_used = |own: &OwnEffect| {
+            uses.iter().any(|one| one.run == run && one.kind == kind.name() && one.effect == own.id())
+        };
+        let mut own = self.user_effects(kind).await?;
+        own.retain(is_used);
+        Ok(own)
     }
 
     pub(super) async fn user_effects(&self, kind: Kind) -> Answer<Vec<OwnEffect>> {
@@ -69,39 +89,90 @@ impl Lab {
             signals: own.formula().signals.iter().map(|s| s.name.to_owned()).collect(),
             parameters: Vec::new(),
             like: Vec::new(),
+            error: None,
         };
         if trial.run.is_some() {
-            let (parameters, like) = self.compute(Job::TryEffect { trial: trial.clone() }).await?;
-            check = EffectCheck { like, parameters, ..check };
+            let TrialFit { parameters, like, error } = self.compute(Job::TryEffect { trial: trial.clone() }).await?;
+            check = EffectCheck { like, parameters, error, ..check };
         }
         Ok(check)
     }
 
-    /// Fitted parameters of the effect together with the other effects, and the effects that are confounded with it.
-    pub(super) async fn try_effect_here(&self, trial: &EffectTrial) -> Answer<(Vec<FittedParameter>, Vec<String>)> {
+    /// The effect fitted together with the other effects, on the samples that the version of the page uses.
+    pub(super) async fn try_effect_here(&self, trial: &EffectTrial) -> Answer<TrialFit> {
         let own = parse(&trial.effect)?;
         let runs: Vec<i64> = trial.run.iter().chain(&trial.more_runs).copied().collect();
-        let table = self.tables(&runs).await?;
+        let table = exclusions::without(self.tables(&runs).await?, &trial.exclude)?;
         let model = trial.effects.as_ref().unwrap_or(&table.meta().baseline).iter();
-        let effects = model.map(String::as_str).filter(|id| *id != own.id()).chain([own.id()]);
-        let others = self.user_effects(table.kind()).await?.into_iter().filter(|other| other.id() != own.id());
-        let spec = ModelSpec::with_own(table.kind(), effects, others.chain([own.clone()]).collect())?;
+        let others: Vec<String> = model.filter(|id| *id != own.id()).cloned().collect();
+        let mut available = self.user_effects(table.kind()).await?;
+        available.retain(|one| one.id() != own.id());
+        available.push(own.clone());
+        let spec = |effects: Vec<&str>| ModelSpec::with_own(table.kind(), effects, available.clone());
+        let names = || others.iter().map(String::as_str);
+        let (without, with) = (spec(names().collect()), spec(names().chain([own.id()]).collect())?);
         let id = own.id().to_owned();
-        let (found, like) = blocking(move || match jointbench_model::fit(&table, &spec, &Options::default()) {
-            Err(ModelError::Collinear { first, second }) if first == id => Ok((Vec::new(), vec![second])),
-            Err(ModelError::Collinear { first, second }) if second == id => Ok((Vec::new(), vec![first])),
-            fit => fit.map(|fit| {
-                let found: Vec<_> = fit.parameters.into_iter().filter(|p| p.effect == id).collect();
-                (found, trading(&id, &fit.trade_offs))
-            }),
+        let alone = id.clone();
+        let (fit, before_rms, like) = blocking(move || {
+            let options = Options::default();
+            let with = match jointbench_model::fit(&table, &with, &options) {
+                Err(ModelError::Collinear { first, second }) if first == alone => {
+                    return Ok((None, None, vec![second]));
+                }
+                Err(ModelError::Collinear { first, second }) if second == alone => {
+                    return Ok((None, None, vec![first]));
+                }
+                fit => fit?,
+            };
+            // A formula may be tried without other effects: then there is no error before.
+            let without = without.and_then(|spec| jointbench_model::fit(&table, &spec, &options)).ok();
+            let like = trading(&alone, &with.trade_offs);
+            Ok((Some(with), without.and_then(|fit| finite(fit.validation_rms)), like))
         })
         .await?;
-        Ok((reread(&found)?, like))
+        let Some(fit) = fit else { return Ok(TrialFit { like, ..TrialFit::default() }) };
+        let error = finite(fit.validation_rms).map(|after_rms| TrialError { before_rms, after_rms, unit: fit.unit });
+        let of_effect: Vec<_> = fit.parameters.into_iter().filter(|p| p.effect == id).collect();
+        Ok(TrialFit { parameters: reread(&of_effect)?, like, error })
     }
 
-    /// Stores an effect; an existing id gets the next version.
-    pub async fn define_effect(&self, definition: &EffectDefinition) -> Answer<Effect> {
-        view(&self.keep_effect(&parse(definition)?).await?)
+    /// Stores an effect; an existing id gets the next version. The diagnosis of `run`, in whose workbench it was written,
+    /// may suggest it.
+    pub async fn define_effect(&self, definition: &EffectDefinition, run: Option<i64>, by: &str) -> Answer<Effect> {
+        let own = parse(definition)?;
+        if let Some(run) = run {
+            self.check_kind(run, own.kind()).await?;
+        }
+        let record = self.keep_effect(&own).await?;
+        if let Some(run) = run {
+            self.use_effect(run, own.id(), true, by).await?;
+        }
+        view(&record, &self.inner.store.effect_uses().await?)
+    }
+
+    /// Whether the diagnosis of a run may suggest a user's effect.
+    pub async fn use_effect(&self, run: i64, effect: &str, used: bool, by: &str) -> Answer<()> {
+        let kind = find_kind(&self.inner.store.run(run).await?.kind)?;
+        let known = self.user_effects(kind).await?;
+        if !known.iter().any(|own| own.id() == effect) {
+            return Err(StoreError::NoEffect(effect.to_owned()).into());
+        }
+        if self.used_effects(kind, run).await?.iter().any(|own| own.id() == effect) == used {
+            return Ok(());
+        }
+        self.inner.store.use_effect(run, kind.name(), effect, used, by).await?;
+        tracing::info!(run.id = run, effect, used, by, "use of an effect changed");
+        self.publish_effect(kind, effect);
+        Ok(())
+    }
+
+    async fn check_kind(&self, run: i64, kind: Kind) -> Answer<()> {
+        match self.inner.store.run(run).await?.kind {
+            of_run if of_run == kind.name() => Ok(()),
+            of_run => Err(LabError::Invalid(format!(
+                "run {run} is of kind {of_run}, the effect of kind {kind}: name a run of the same kind"
+            ))),
+        }
     }
 
     async fn keep_effect(&self, own: &OwnEffect) -> Answer<UserEffectRecord> {
@@ -112,9 +183,9 @@ impl Lab {
         Ok(record)
     }
 
-    /// Stores the effects of an imported model, so that models can use them here. Refuses an id that has another
-    /// formula here.
-    pub(super) async fn import_effects(&self, brought: &[OwnEffect]) -> Answer<()> {
+    /// Stores the effects of a model that is imported for a run, which uses them. Refuses an id that has another formula
+    /// here.
+    pub(super) async fn import_effects(&self, brought: &[OwnEffect], run: i64, by: &str) -> Answer<()> {
         let mut new = Vec::new();
         for own in brought {
             let content =
@@ -135,6 +206,9 @@ impl Lab {
         }
         for own in new {
             self.keep_effect(own).await?;
+        }
+        for own in brought {
+            self.use_effect(run, own.id(), true, by).await?;
         }
         Ok(())
     }
@@ -199,12 +273,23 @@ fn read(record: &UserEffectRecord) -> Answer<OwnEffect> {
     serde_json::from_value(record.definition.clone()).map_err(unread)
 }
 
-fn view(record: &UserEffectRecord) -> Answer<Effect> {
+fn view(record: &UserEffectRecord, uses: &[EffectUse]) -> Answer<Effect> {
+    let of_effect = uses.iter().filter(|one| one.kind == record.kind && one.effect == record.effect);
     Ok(Effect {
         definition: Some(reread(&record.definition)?),
         version: Some(record.version),
+        runs: of_effect.map(|one| one.run).collect(),
         ..effect_view(&read(record)?.info())
     })
+}
+
+/// A trial of an effect on the samples of a run.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(super) struct TrialFit {
+    parameters: Vec<FittedParameter>,
+    /// Effects that are confounded with it.
+    like: Vec<String>,
+    error: Option<TrialError>,
 }
 
 #[cfg(test)]

@@ -30,6 +30,7 @@ const FILES: &[(&str, &str)] = &[
     ("0020_store_log.sql", include_str!("../../../migrations/0020_store_log.sql")),
     ("0021_warnings.sql", include_str!("../../../migrations/0021_warnings.sql")),
     ("0022_units.sql", include_str!("../../../migrations/0022_units.sql")),
+    ("0023_effect_uses.sql", include_str!("../../../migrations/0023_effect_uses.sql")),
 ];
 
 #[derive(Debug)]

@@ -44,9 +44,9 @@ pub use error::StoreError;
 pub use keeper::Loss;
 pub use order::Order;
 pub use records::{
-    AutopilotRecord, CalibrationRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord,
-    RunFilter, RunRecord, SafetyRecord, TokenRecord, UnitRecord, UnitRunRecord, UserEffectRecord, VersionRecord,
-    Window, WindowColumn,
+    AutopilotRecord, CalibrationRecord, DiagnosisRecord, EffectUse, EventRecord, ModelRecord, NewModel, NewRun,
+    NoteRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord, UnitRecord, UnitRunRecord, UserEffectRecord,
+    VersionRecord, Window, WindowColumn,
 };
 pub use result_cache::{Subject, packed, unpacked};
 pub use search::Search;

@@ -152,6 +152,14 @@ pub struct UserEffectRecord {
     pub created_at: String,
 }
 
+/// A user's effect that the diagnosis of a run may suggest.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EffectUse {
+    pub run: RunId,
+    pub kind: String,
+    pub effect: String,
+}
+
 /// A fit to be stored as a version.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewModel {

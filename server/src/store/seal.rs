@@ -91,12 +91,14 @@ pub const INSTRUMENT_FAULTS: Sealed =
     sealed("instrument_faults", &["bench", "instrument", "text", "at"], &["bench", "instrument", "id"]);
 pub const OWN_EFFECTS: Sealed =
     sealed("own_effects", &["kind", "effect", "version", "definition", "created_at"], &["effect", "version"]);
+/// Which users' effects the diagnosis of a run may suggest.
+pub const EFFECT_USES: Sealed = sealed("effect_uses", &["run", "kind", "effect", "used", "who", "at"], &["run", "id"]);
 pub const AUTOPILOT_STEPS: Sealed =
     sealed("autopilot_steps", &["autopilot", "sequence", "step"], &["autopilot", "sequence"]);
 pub const KEPT: Sealed = sealed("kept", &["subject", "id", "what", "software", "packed"], &["subject", "id", "what"]);
 
 /// Every checksum that [`super::verify`] compares. The cache (`kept`) is excluded: its results are computed again.
-pub const ALL: [&Sealed; 18] = [
+pub const ALL: [&Sealed; 19] = [
     &RUNS,
     &RUN_STATES,
     &RUN_UNITS,
@@ -114,6 +116,7 @@ pub const ALL: [&Sealed; 18] = [
     &CALIBRATIONS,
     &INSTRUMENT_FAULTS,
     &OWN_EFFECTS,
+    &EFFECT_USES,
     &AUTOPILOT_STEPS,
 ];
 

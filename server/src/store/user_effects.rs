@@ -1,11 +1,12 @@
 //! Effects that users write. New models use the latest version of each effect.
 
-use super::seal::{OWN_EFFECTS, intact_records};
+use super::seal::{EFFECT_USES, OWN_EFFECTS, intact_records};
 use super::values::{json, now};
-use super::{Store, StoreError, UserEffectRecord};
+use super::{EffectUse, Store, StoreError, UserEffectRecord};
+use jointbench_procedure::RunId;
 use serde_json::Value;
-use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
+use sqlx::{AssertSqlSafe, Row};
 
 const LATEST: &str = "SELECT * FROM own_effects AS own \
                       WHERE version = (SELECT max(version) FROM own_effects WHERE kind = own.kind AND effect = own.effect)";
@@ -55,7 +56,45 @@ impl Store {
         record(&row)
     }
 
-    /// Deletes an effect with all its versions. Refused while a model uses it.
+    /// Whether the diagnosis of a run may suggest an effect of its kind, from now on.
+    pub async fn use_effect(
+        &self,
+        run: RunId,
+        kind: &str,
+        effect: &str,
+        used: bool,
+        by: &str,
+    ) -> Result<(), StoreError> {
+        let at = now();
+        let cells = [run.into(), kind.into(), effect.into(), used.into(), by.into(), (&at).into()];
+        sqlx::query(
+            "INSERT INTO effect_uses (run, kind, effect, used, who, at, checksum) VALUES (?, ?, ?, ?, ?, ?, ?)",
+        )
+        .bind(run)
+        .bind(kind)
+        .bind(effect)
+        .bind(used)
+        .bind(by)
+        .bind(&at)
+        .bind(EFFECT_USES.seal(&cells))
+        .execute(&self.writer)
+        .await?;
+        Ok(())
+    }
+
+    /// Kind and id of each effect that is in use, with the run whose diagnosis may suggest it. A damaged row uses none.
+    pub async fn effect_uses(&self) -> Result<Vec<EffectUse>, StoreError> {
+        let latest = "SELECT * FROM effect_uses AS one WHERE used AND id = \
+                      (SELECT max(id) FROM effect_uses WHERE run = one.run AND kind = one.kind AND effect = one.effect) \
+                      ORDER BY run";
+        let rows = sqlx::query(latest).fetch_all(&self.readers).await?;
+        Ok(intact_records(&rows, |row| {
+            EFFECT_USES.check(row)?;
+            Ok(EffectUse { run: row.try_get("run")?, kind: row.try_get("kind")?, effect: row.try_get("effect")? })
+        }))
+    }
+
+    /// Deletes an effect with all its versions and uses. Refused while a model uses it.
     pub async fn delete_user_effect(&self, kind: &str, effect: &str) -> Result<(), StoreError> {
         let user: Option<(i64,)> = sqlx::query_as(
             "SELECT models.id FROM models, json_each(IIF(json_valid(models.fit), models.fit, '{}'), '$.own') AS own \
@@ -68,15 +107,15 @@ impl Store {
         if let Some((model,)) = user {
             return Err(StoreError::EffectUsed { effect: effect.to_owned(), model });
         }
-        let deleted = sqlx::query("DELETE FROM own_effects WHERE kind = ? AND effect = ?")
-            .bind(kind)
-            .bind(effect)
-            .execute(&self.writer)
-            .await?;
-        match deleted.rows_affected() {
-            0 => Err(StoreError::NoEffect(effect.to_owned())),
-            _ => Ok(()),
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let mut deleted = 0;
+        for table in ["own_effects", "effect_uses"] {
+            let sql = format!("DELETE FROM {table} WHERE kind = ? AND effect = ?");
+            let gone = sqlx::query(AssertSqlSafe(sql)).bind(kind).bind(effect).execute(&mut *writer).await?;
+            deleted += gone.rows_affected();
         }
+        writer.commit().await?;
+        if deleted == 0 { Err(StoreError::NoEffect(effect.to_owned())) } else { Ok(()) }
     }
 }
 

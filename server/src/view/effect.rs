@@ -27,6 +27,9 @@ pub struct Effect {
     /// Version of the user definition, from 1.
     #[serde(default)]
     pub version: Option<i64>,
+    /// Runs whose diagnosis may suggest this user-defined effect; empty for a library effect, which every run uses.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub runs: Vec<i64>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -1,7 +1,7 @@
 //! Trials of user-defined effects, comparison of models, export and import of models.
 
 use super::effect::{Effect, EffectDefinition};
-use super::model::{FittedParameter, Model, ResidualKind};
+use super::model::{Exclusion, FittedParameter, Model, ResidualKind};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -23,6 +23,9 @@ pub struct EffectTrial {
     /// Further runs of the same joint, analysed together with the first.
     #[serde(default)]
     pub more_runs: Vec<i64>,
+    /// Intervals to exclude from the fit.
+    #[serde(default)]
+    pub exclude: Vec<Exclusion>,
     /// The formula is incomplete: errors are part of the response instead of a rejection.
     #[serde(default)]
     pub typing: bool,
@@ -76,6 +79,18 @@ pub struct EffectCheck {
     /// Effects that are confounded with it on this run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub like: Vec<String>,
+    /// What the effect does to the error; absent without a run, and if the run cannot distinguish it from another effect.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<TrialError>,
+}
+
+/// Validation error (cross-validated RMS) without and with an effect under trial, on the same samples.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TrialError {
+    /// Absent without other effects.
+    pub before_rms: Option<f64>,
+    pub after_rms: f64,
+    pub unit: String,
 }
 
 /// A signal that a formula may use.

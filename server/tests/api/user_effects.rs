@@ -96,6 +96,9 @@ fn an_effect_is_defined_suggested_fitted_and_kept_while_used() {
     let trial = json!({"effect": rub(RUB), "run": run});
     let (status, check) = daemon.post("/api/v1/effects/check", &trial.to_string());
     assert_eq!((status, &check["linear"], &check["shape"]), (200, &json!(["a"]), &json!(["w0"])), "{check}");
+    assert_eq!(check["error"]["before_rms"], model["validation_rms"], "{check}");
+    let tried_rms = check["error"]["after_rms"].as_f64().unwrap();
+    assert!(tried_rms < 0.5 * model["validation_rms"].as_f64().unwrap(), "{check}");
     assert!((check["parameters"][1]["value"].as_f64().unwrap() - 12.0).abs() < 1.0, "{check}");
 
     let dry = json!({"id": "dry", "kind": "friction", "formula": "tau = a * direction", "parameters": [{"name": "a", "unit": "Nm"}]});
@@ -118,7 +121,8 @@ fn an_effect_is_defined_suggested_fitted_and_kept_while_used() {
 
     let (status, effect) = daemon.post("/api/v1/effects", &rub(RUB).to_string());
     assert_eq!((status, &effect["version"]), (201, &1.into()), "{effect}");
-    assert_eq!(daemon.post("/api/v1/effects", &rub(RUB).to_string()).1["version"], 1, "the same again");
+    let here = format!("/api/v1/effects?run={run}");
+    assert_eq!(daemon.post(&here, &rub(RUB).to_string()).1["version"], 1, "the same again");
     let (_, effects) = daemon.get("/api/v1/effects?kind=friction");
     assert_eq!(effects.as_array().unwrap().last().unwrap()["definition"]["formula"], RUB);
 
@@ -131,6 +135,7 @@ fn an_effect_is_defined_suggested_fitted_and_kept_while_used() {
     let (status, better) = daemon.post("/api/v1/models", &with.to_string());
     assert_eq!((status, &better["added"]), (201, &json!(["rub"])), "{better}");
     assert_eq!(better["fit"]["own"][0]["formula"], RUB);
+    assert_eq!(better["validation_rms"], tried_rms, "a trial is the fit of the version");
     let (status, set) = daemon.get(&format!("/api/v1/models/{}/residuals", better["id"]));
     assert_eq!(status, 200, "{set}");
 
@@ -140,6 +145,45 @@ fn an_effect_is_defined_suggested_fitted_and_kept_while_used() {
     assert_eq!(daemon.post("/api/v1/effects", &changed.to_string()).1["version"], 2);
     let (_, kept) = daemon.get(&format!("/api/v1/models/{}", better["id"]));
     assert_eq!(kept["fit"]["own"][0]["formula"], RUB, "a model keeps what it was fitted with");
+}
+
+#[test]
+fn a_diagnosis_suggests_a_formula_only_on_runs_that_use_it() {
+    let daemon = TestDaemon::start();
+    let [home, other] = [12_345, 54_321].map(|seed| rubbing_run(&daemon, seed));
+    assert_eq!(daemon.post(&format!("/api/v1/effects?run={home}"), &rub(RUB).to_string()).0, 201);
+    let models = [home, other].map(|run| {
+        let bare = json!({"run": run, "effects": ["load_transmission", "coulomb", "viscous"]});
+        daemon.post("/api/v1/models", &bare.to_string()).1["id"].clone()
+    });
+    let suggests = |model: &Value| {
+        let (_, found) = daemon.post("/api/v1/diagnoses", &json!({ "model": model }).to_string());
+        let lists = ["suggestions", "silent", "not_visible", "left_out"].map(|list| found[list].as_array().unwrap());
+        let tested = lists.iter().any(|list| list.iter().any(|one| one["effect"] == "rub"));
+        assert_eq!(tested, found["suggestions"][0]["effect"] == "rub", "{found}");
+        tested
+    };
+    let runs = || {
+        let (_, effects) = daemon.get("/api/v1/effects?kind=friction");
+        effects.as_array().unwrap().last().unwrap()["runs"].clone()
+    };
+    assert_eq!((models.each_ref().map(suggests), runs()), ([true, false], json!([home])));
+
+    let here = format!("/api/v1/runs/{other}/effects/rub");
+    assert_eq!(daemon.put_with(&here, b"", &[]).0, 204);
+    assert_eq!((models.each_ref().map(suggests), runs()), ([true, true], json!([home, other])));
+    assert_eq!(daemon.delete(&here).0, 204);
+    assert_eq!((models.each_ref().map(suggests), runs()), ([true, false], json!([home])));
+
+    for (path, status) in
+        [(format!("/api/v1/runs/{other}/effects/stribeck"), 404), ("/api/v1/runs/99/effects/rub".to_owned(), 404)]
+    {
+        assert_eq!(daemon.put_with(&path, b"", &[]).0, status, "{path}");
+    }
+    // Deleted and written again, it is another effect: no run uses it.
+    assert_eq!(daemon.delete("/api/v1/effects/friction/rub").0, 204);
+    assert_eq!(daemon.post("/api/v1/effects", &rub(RUB).to_string()).0, 201);
+    assert_eq!(runs(), Value::Null);
 }
 
 #[test]

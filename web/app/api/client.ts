@@ -1,5 +1,5 @@
 import { callApi } from './request';
-import type { EffectDefinition, NewAutopilot, NewModel, NewRun } from './types';
+import type { EffectDefinition, Exclusion, NewAutopilot, NewModel, NewRun } from './types';
 
 export const BASE = '/api/v1';
 
@@ -70,9 +70,12 @@ export const api = {
 
 	effects: (kind?: string, signal?: Signal) => callApi('get', '/api/v1/effects', { query: { kind } }, signal),
 	formulas: (kind: string, signal?: Signal) => callApi('get', '/api/v1/formulas/{kind}', { path: { kind } }, signal),
-	checkEffect: (trial: { effect: EffectDefinition; run?: number; more_runs?: number[] | undefined; effects?: string[] | undefined; columns_of?: number; typing?: boolean }, signal?: Signal) =>
+	checkEffect: (trial: { effect: EffectDefinition; run?: number; more_runs?: number[] | undefined; effects?: string[] | undefined; exclude?: Exclusion[]; columns_of?: number; typing?: boolean }, signal?: Signal) =>
 		callApi('post', '/api/v1/effects/check', { body: trial }, signal),
-	defineEffect: (effect: EffectDefinition) => callApi('post', '/api/v1/effects', { body: effect }),
+	/** The diagnosis of `run` may suggest the effect; other runs opt in. */
+	defineEffect: (effect: EffectDefinition, run: number) => callApi('post', '/api/v1/effects', { query: { run }, body: effect }),
+	/** Whether the diagnosis of the run may suggest a user's effect. */
+	useEffect: (run: number, effect: string, used: boolean) => callApi(used ? 'put' : 'delete', '/api/v1/runs/{id}/effects/{effect}', { path: { id: run, effect } }),
 	forgetEffect: (kind: string, id: string) =>
 		callApi('delete', '/api/v1/effects/{kind}/{id}', { path: { kind, id } }),
 	models: (run: number, signal?: Signal) => callApi('get', '/api/v1/models', { query: { run } }, signal),

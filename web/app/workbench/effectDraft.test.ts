@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { splitAtError, definitionOf, draftOf, draftError, effectId, parameterDraft, unknownName } from './effectDraft';
+import { splitAtError, definitionOf, draftOf, draftError, effectId, parameterDraft, trialResult, unknownName } from './effectDraft';
 
 const draft = { title: 'My load term', sentence: '', formula: 'tau = a * tanh(velocity / w0)', parameters: [{ name: 'a', unit: '', min: '', max: '1,5' }] };
 const place = (text: string, position: number, length: number) => ({ field: 'formula', text, position, length, message: 'wrong' });
@@ -24,6 +24,13 @@ describe('an effect of one’s own', () => {
 		expect(draftError({ ...draft, title: '' })).toBeNull();
 		expect(definitionOf({ ...draft, title: '' }, 'friction').id).toBe('unnamed');
 		expect(draftError({ ...draft, parameters: [{ ...parameterDraft('a'), min: 'few' }] })).toMatch(/^a: /);
+	});
+
+	it('says what the error does under trial', () => {
+		const result = (before: number | null, after: number) => trialResult({ before_rms: before, after_rms: after, unit: 'Nm' });
+		expect(result(0.002, 0.001)).toEqual({ text: 'Validation error 2.00 mNm → 1.00 mNm (−50 %) ↓ better', helps: true });
+		expect(result(0.002, 0.002)).toMatchObject({ text: expect.stringContaining('≈ no gain'), helps: false });
+		expect(result(null, 0.001).text).toBe('Validation error 1.00 mNm.');
 	});
 
 	it('marks the mistake at its character, counted as people count', () => {

@@ -1,4 +1,6 @@
-import type { EffectDefinition, FormulaPosition } from '../api/types';
+import type { EffectCheck, EffectDefinition, FormulaPosition } from '../api/types';
+import { formatChange, formatQuantity } from '../format/number';
+import { classifyGain, gainText } from './versionTree';
 
 /** One parameter as typed by the user. */
 export interface ParameterDraft {
@@ -77,4 +79,11 @@ export function unknownName(place: FormulaPosition | null, draft: EffectDraft): 
 	const [, name, rest] = splitAtError(place);
 	const isCall = /^\s*\(/.test(rest);
 	return /^[a-z]\w*$/i.test(name) && !isCall && !draft.parameters.some((p) => p.name === name) ? name : null;
+}
+
+/** What an effect under trial does to the error: before and after in one unit, and the change. */
+export function trialResult({ before_rms: before, after_rms: after, unit }: NonNullable<EffectCheck['error']>): { text: string; helps: boolean } {
+	if (before == null) return { text: `Validation error ${formatQuantity(after, unit)}.`, helps: true };
+	const share = before > 0 ? 1 - after / before : 0;
+	return { text: `Validation error ${formatQuantity(before, unit)} → ${formatQuantity(after, unit)} (${formatChange(-share)}) ${gainText(share)}`, helps: classifyGain(share) === 'better' };
 }

@@ -88,7 +88,7 @@ async fn check_run(database: &mut SqliteConnection, run: RunId, report: &mut Ver
         check_rows(database, sealed, Some(run), report).await;
     }
     samples::check(database, run, report).await;
-    for sealed in [&seal::NOTES, &seal::MODELS, &seal::DIAGNOSES] {
+    for sealed in [&seal::NOTES, &seal::EFFECT_USES, &seal::MODELS, &seal::DIAGNOSES] {
         check_rows(database, sealed, Some(run), report).await;
     }
 }

@@ -55,7 +55,7 @@ fn keys(sealed: &Sealed) -> (&'static str, &'static str) {
         "diagnoses" => ("id", "model IN (SELECT id FROM models WHERE run = ?1)"),
         // The only key of two numbers.
         "autopilot_steps" => ("(autopilot << 32) + sequence", "?1 IS NULL"),
-        "notes" | "models" => ("id", "run = ?1"),
+        "notes" | "effect_uses" | "models" => ("id", "run = ?1"),
         _ => ("id", "?1 IS NULL"),
     }
 }
