@@ -88,6 +88,19 @@ fn a_formula_that_is_not_needed_stays_silent() {
     let found = diagnose(&run, &spec(&run, &[], RUB), &Options::default()).unwrap();
     assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
     assert!(found.silent.iter().any(|s| s.effect == "rub" && s.minimum_detectable_rms > 0.0));
+
+    let known = found.silent.len() + found.not_visible.len();
+    let bounded = found.clone().bounded();
+    assert!(bounded.silent.iter().all(|s| s.upper_rms.is_some_and(|upper| upper > s.minimum_detectable_rms)));
+    // With a residual of a thousand times the signal every limit exceeds the signal.
+    let mut loud = found.clone();
+    loud.fit.relative_error *= 1e3;
+    let hidden = loud.bounded();
+    let why = hidden.not_visible.iter().find(|one| one.effect == "rub").map(|one| one.why.as_str()).unwrap_or_default();
+    assert!(hidden.silent.is_empty() && why.contains("% of the measured signal, more than 5.0 %"), "{why}");
+    for one in [bounded, hidden] {
+        assert_eq!(one.silent.len() + one.not_visible.len(), known, "no effect is omitted");
+    }
 }
 
 #[test]

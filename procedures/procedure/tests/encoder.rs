@@ -304,6 +304,9 @@ fn fifteen_bits_are_usable_behind_the_table() {
     assert!((9.5..10.5).contains(&bits("bits_before")), "the thesis: 10 bits");
     assert!(bits("bits_velocity") > bits("bits_table"), "the fast turns show the delay");
     assert!(bits("bits_direction") >= 15.0);
+    let before = found.quantity("bits_before").unwrap();
+    let [low, high] = before.ci95.unwrap();
+    assert!(low < before.value && before.value < high && high - low < 0.2, "{low} {high}");
     assert!(bits("bits_velocity") >= 15.0 || found.summary.contains("require the direction term"), "{}", found.summary);
     check(&found, "harmonic_1", truth.eccentricity_rad, 2.0 * POINT_RAD);
     check(&found, "harmonic_2", truth.tilt_rad, 2.0 * POINT_RAD);

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 pub fn diagnose(arguments: &Diagnose) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
     let about = |fault| Exit::of(&arguments.run.files, fault);
-    let diagnosis = crate::lab::diagnose(&run, &spec, &options, &Offer::shown_by(&run)).map_err(about)?;
+    let diagnosis = crate::lab::diagnose(&run, &spec, &options, &Offer::shown_by(&run)).map_err(about)?.bounded();
     let drawn = arguments.maps.then(|| jointbench_model::maps(&run, &diagnosis.fit, &options));
     let drawn = drawn.transpose().map_err(about)?;
     if arguments.run.json {
@@ -37,7 +37,7 @@ pub fn discover(arguments: &Discover) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
     let about = |fault| Exit::of(&arguments.run.files, fault);
     let mut discovery =
-        jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {}).map_err(about)?;
+        jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {}).map_err(about)?.bounded();
     let open = Open { own: spec.own, ..Open::from(&discovery) };
     let next = next_run(&run, &open, &Offer::shown_by(&run), &options);
     discovery.experiment = next.experiment;

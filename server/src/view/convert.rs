@@ -189,11 +189,12 @@ pub fn model_view(record: ModelRecord) -> Result<view::Model, ConversionError> {
 }
 
 pub fn diagnosis_view(record: DiagnosisRecord, run: i64) -> Result<view::Diagnosis, ConversionError> {
+    let diagnosis: jointbench_model::Diagnosis = reread(&record.diagnosis)?;
     Ok(view::Diagnosis {
         id: record.id,
         model_id: record.model,
         run,
         created_at: record.created_at,
-        finding: reread(&record.diagnosis)?,
+        finding: reread(&diagnosis.bounded())?,
     })
 }

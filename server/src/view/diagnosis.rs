@@ -87,9 +87,9 @@ pub struct Finding {
     pub suggestions: Vec<Suggestion>,
     /// Recommended next run.
     pub experiment: Option<Experiment>,
-    /// Effects that were tested and are not significant.
+    /// Effects that were tested and are not significant, each with an upper limit.
     pub silent: Vec<Silent>,
-    /// Effects that are not testable with this data.
+    /// Effects that are not testable with this data, also because their detection limit exceeds 5 % of the signal.
     pub not_visible: Vec<Invisible>,
     /// Rejected effects.
     #[serde(default)]
@@ -209,6 +209,8 @@ pub struct Silent {
     pub effect: String,
     /// Detection limit: RMS of the smallest effect that is found with 80 % power.
     pub minimum_detectable_rms: f64,
+    /// The effect is smaller than this RMS (95 %).
+    pub upper_rms: f64,
     /// Search range, if limited.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sought: Option<String>,

@@ -61,7 +61,7 @@ export function configurationTable(quantities: readonly IdentifiedQuantity[]): R
 	const rows = [...bySymbol].map(([symbol, of]) => ({ symbol, title: of[0]!.base_title ?? of[0]!.title, of }));
 	const configurations = (rows[0]?.of ?? []).flatMap(({ configuration }) => configuration ?? []);
 	const hasEach = ({ of }: { of: IdentifiedQuantity[] }) => of.length === configurations.length && of.every((one, i) => one.configuration === configurations[i]);
-	return configurations.length > 2 && rows.length > 1 && rows.every(hasEach) && quantities.every((one) => !one.ci95) ? { configurations, rows } : null;
+	return configurations.length > 2 && rows.length > 1 && rows.every(hasEach) ? { configurations, rows } : null;
 }
 
 /** A part of a campaign with its quantities and figures. */

@@ -15,9 +15,10 @@ it('sets a figure behind those of earlier runs, and says whether it differs from
 	expect(found!.dots.map(({ run }) => run)).toEqual([2, 4, 5]);
 	expect(found!.dots[0]!.ends[0]).toBe(0);
 	expect(found!.dots[2]!.ends[1]).toBe(1);
-	expect([found!.change, found!.differs]).toEqual(['+5.0 mNm', true]);
+	expect([found!.change, found!.differs]).toEqual(['+5.0 ± 1.4 mNm', true]);
 	expect(found!.text.split('\n').at(-1)).toBe('#5 35.0 ± 1.0 mNm');
-	expect(quantityTrends(5, [figure(0.0305, 0.001)], earlier, plain)[0]!.differs).toBe(false);
+	expect(quantityTrends(5, [figure(0.0305, 0.001)], earlier, plain)[0]).toMatchObject({ change: '+0.50 ± 1.4 mNm', differs: false });
+	expect(quantityTrends(5, [{ ...figure(0.0305, 0), ci95: null }], earlier, plain)[0]).toMatchObject({ change: '+0.50 mNm', differs: null });
 });
 
 it('says nothing of a change where the run before has no such figure', () => {
@@ -28,5 +29,5 @@ it('says nothing of a change where the run before has no such figure', () => {
 it('tells changes against the run that is applied to the bench', () => {
 	const of = (run: number, value: number, holds: boolean) => ({ run, created_at: '', holds, quantities: [figure(value, 0.001)] });
 	const [found] = quantityTrends(5, [figure(0.035, 0.001)], [of(4, 0.0349, false), of(3, 0.03, true)], plain);
-	expect([found!.change, found!.differs]).toEqual(['+5.0 mNm', true]);
+	expect([found!.change, found!.differs]).toEqual(['+5.0 ± 1.4 mNm', true]);
 });

@@ -1,7 +1,7 @@
 import type { EarlierResult, IdentifiedQuantity } from '../api/types';
 import { type Scale, formatQuantity as sized } from '../format/number';
 import { formatDateTime } from '../format/time';
-import { estimatesDiffer } from '../runs/differences';
+import { differenceText, estimatesDiffer } from '../runs/differences';
 import { formatResult } from './presentation';
 
 /**
@@ -40,7 +40,12 @@ export function quantityTrends(run: number, quantities: readonly IdentifiedQuant
 		});
 		const before = referenceRun(earlier)!.quantities.find(named);
 		const dots = all.map(({ run, quantity: { value, ci95 } }) => ({ run, at: height(value), ends: [height(ci95?.[0] ?? value), height(ci95?.[1] ?? value)] as const }));
-		const change = before ? of.value - before.value : 0;
-		return [{ of, dots, text: texts.join('\n'), change: before ? `${change < 0 ? '' : '+'}${sized(change * shown.factor, shown.unit, 2)}` : '', differs: before ? estimatesDiffer([before, of]) : null }];
+		return [{ of, dots, text: texts.join('\n'), change: before ? changeText(before, of, shown) : '', differs: before ? estimatesDiffer([before, of]) : null }];
 	});
+}
+
+/** The change with its 95 % interval, if both runs have one. */
+function changeText(before: IdentifiedQuantity, of: IdentifiedQuantity, shown: Scale): string {
+	const change = of.value - before.value;
+	return differenceText(before, of, shown) || `${change < 0 ? '' : '+'}${sized(change * shown.factor, shown.unit, 2)}`;
 }

@@ -1,4 +1,4 @@
-import { formatChange, formatNumber } from '../format/number';
+import { type Scale, formatChange, formatNumber, scaleFor } from '../format/number';
 
 /** A quantity of several runs, each with its known interval. */
 export interface Estimate {
@@ -18,15 +18,27 @@ function halfWidth({ ci95 }: Estimate): number | null {
 	return low == null || high == null ? null : Math.abs(high - low) / 2;
 }
 
+/** Second minus first with the half width of its 95 % interval, for independent errors. `null` without both intervals. */
+export function difference(first: Estimate | null, second: Estimate | null): { value: number; half: number } | null {
+	const halves = [first, second].map((one) => (one ? halfWidth(one) : null));
+	if (!first || !second || halves[0] == null || halves[1] == null) return null;
+	return { value: second.value - first.value, half: Math.hypot(halves[0], halves[1]) };
+}
+
+/** The difference and its 95 % interval with one prefix: `−0.12 ± 0.31 mNm`. Empty without both intervals. */
+export function differenceText(first: Estimate | null, second: Estimate | null, shown: Scale): string {
+	const of = difference(first, second);
+	if (!of) return '';
+	const { factor, unit } = scaleFor(shown.unit === '1' ? '' : shown.unit, Math.max(Math.abs(of.value), of.half) * shown.factor);
+	const say = (value: number) => formatNumber(value * shown.factor * factor, 2);
+	return `${of.value < 0 ? '' : '+'}${say(of.value)} ± ${say(of.half)}${unit ? ` ${unit}` : ''}`;
+}
+
 /**
  * Whether two of the runs differ at 95 %: their distance exceeds the combined interval, with independent errors. `null`
  * if fewer than two have an interval.
  */
 export function estimatesDiffer(figures: readonly (Estimate | null)[]): boolean | null {
-	const known = figures.flatMap((one) => {
-		const width = one && halfWidth(one);
-		return one && width != null ? [{ value: one.value, width }] : [];
-	});
-	if (known.length < 2) return null;
-	return known.some((a, i) => known.slice(i + 1).some((b) => Math.abs(a.value - b.value) > Math.hypot(a.width, b.width)));
+	const pairs = figures.flatMap((a, i) => figures.slice(i + 1).flatMap((b) => difference(a, b) ?? []));
+	return pairs.length === 0 ? null : pairs.some(({ value, half }) => Math.abs(value) > half);
 }

@@ -2,7 +2,7 @@ import { expect, it } from 'vitest';
 import type { Samples } from '../api/types';
 import { alignCurves, chosenChannels, channelCurve, factTable, meanRow, matchingEvent, sharedEvents } from './align';
 import { searchCompletions } from './searchCompletions';
-import { changeFrom, estimatesDiffer } from './differences';
+import { changeFrom, differenceText, estimatesDiffer } from './differences';
 import { readComparedRuns, toggleComparedRun, withBase } from './comparedRuns';
 
 const samples = {
@@ -44,6 +44,8 @@ it('tells figures that differ from those that only look different', () => {
 	expect(estimatesDiffer([given(1, 0.3), given(1.4, 0.3)])).toBe(false);
 	expect(estimatesDiffer([given(1, 0.3), given(1.5, 0.3)])).toBe(true);
 	expect(estimatesDiffer([given(1, 0.3), null, { value: 9, ci95: [null, 10] }, { value: 9 }])).toBeNull();
+	expect(differenceText(given(1, 0.3), given(0.9, 0.4), { factor: 1000, unit: 'mm' })).toBe('−100 ± 500 mm');
+	expect(differenceText(given(1, 0.3), { value: 2 }, { factor: 1, unit: '' })).toBe('');
 });
 
 it('shows where settings differ', () => {

@@ -48,6 +48,7 @@ impl ExcludedEffects {
                 others.silent.push(Silent {
                     effect: id.into(),
                     minimum_detectable_rms: detection_limit.detectable_rms,
+                    upper_rms: None,
                     sought,
                 });
             } else {

@@ -223,6 +223,9 @@ pub struct Silent {
     pub effect: String,
     /// Detection limit: RMS of the smallest effect that is found with 80 % power, in the unit of the fit.
     pub minimum_detectable_rms: f64,
+    /// The effect is smaller than this RMS (95 %), in the unit of the fit; set by [`Diagnosis::bounded`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_rms: Option<f64>,
     /// Tested range, if it is limited: `1 to 60 waves a turn`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sought: Option<String>,

@@ -6,6 +6,7 @@ pub(crate) mod fit;
 pub(crate) mod maps;
 pub(crate) mod residuals;
 pub(crate) mod text;
+pub(crate) mod upper_limits;
 
 pub use crate::report::comparison::{Comparison, ParameterPair, WiderInterval};
 pub use crate::report::diagnosis::{

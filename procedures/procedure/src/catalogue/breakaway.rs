@@ -8,7 +8,7 @@
 use super::legs::{ACCELERATION, Legs, sample_rate, stroke};
 use super::{Findable, Procedure, findable};
 use crate::bench_facts::BenchFacts;
-use crate::findings::{Mean, Unusable, quantity, scatter, verdict};
+use crate::findings::{Mean, Unusable, combined, directions, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Drive, EndCondition, Plan, PlanFault};
@@ -81,7 +81,7 @@ impl Procedure for Breakaway {
     }
 
     fn finds(&self) -> Vec<Findable> {
-        findable(&[("Nm", "tau_b tau_b_positive tau_b_negative deviation")])
+        findable(&[("Nm", "tau_b tau_b_positive tau_b_negative tau_b_difference deviation")])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
@@ -170,7 +170,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     };
     let [mean, forward, backward] = [mean, forward, backward].map(|mean| with_resolution(mean, ramp_step_nm(values)));
     let deviation = (all.iter().map(|t| (t - mean.value).powi(2)).sum::<f64>() / (all.len() - 1) as f64).sqrt();
-    let differ = forward.ci95[0] > backward.ci95[1] || backward.ci95[0] > forward.ci95[1];
+    let difference = combined((forward.value, forward.ci95), (backward.value, backward.ci95), -1.0);
     let named = |name, symbol, title, mean: &Mean| quantity([name, symbol, title, "Nm"], mean.value, Some(mean.ci95));
     Ok(Identification {
         verdict: if held == 0 { Verdict::Identified } else { Verdict::Inconclusive },
@@ -179,11 +179,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
             words::figure(mean.value, "Nm"),
             all.len(),
             words::figure(deviation, "Nm"),
-            if differ {
-                "The directions differ significantly (95 %)"
-            } else {
-                "No significant difference between directions (95 %)"
-            }
+            directions("Breakaway torque", difference, "Nm")
         ),
         advice: (held > 0)
             .then(|| format!("The joint did not break away at {held} positions. Increase top_torque_nm.")),
@@ -191,6 +187,11 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
             named("tau_b", "τ_b", "Breakaway torque, mean", &mean),
             named("tau_b_positive", "τ_b⁺", "Breakaway torque", &forward).in_configuration("positive direction"),
             named("tau_b_negative", "τ_b⁻", "Breakaway torque", &backward).in_configuration("negative direction"),
+            quantity(
+                ["tau_b_difference", "τ_b⁺ − τ_b⁻", "Breakaway torque, difference between directions", "Nm"],
+                difference.0,
+                Some(difference.1),
+            ),
             quantity(["deviation", "s", "Standard deviation over positions", "Nm"], deviation, None),
         ],
         figures: vec![over_angle(&points), distribution(&all)],

@@ -8,7 +8,7 @@ use super::legs::sample_rate;
 use super::{Findable, Procedure, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{
-    Unusable, curve, interval_of, legs, parameter, plateaus, quantity, scatter, select_legs, settled, verdict,
+    Unusable, bounded, curve, interval_of, legs, parameter, plateaus, quantity, scatter, select_legs, settled, verdict,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -96,10 +96,19 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let laws = Law::of(&fit);
     let heaviest = held().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
     let added_nm = laws.added_nm(heaviest / gear);
-    quantities.push(quantity(["added", "Δτ", "Additional friction at maximum load, motor side", "Nm"], added_nm, None));
+    let added = added(&table, law, &fit, heaviest / gear);
+    let words_of_added = ["added", "Δτ", "Additional friction at maximum load, motor side", "Nm"];
+    quantities.push(match added {
+        Some((value, ci95)) => quantity(words_of_added, value, Some(ci95)),
+        None => quantity(words_of_added, added_nm, None),
+    });
     let more = format!("+{} at {heaviest:.1} Nm (commanded)", words::figure(added_nm, "Nm"));
     let summary = match law {
-        [] => "Friction does not depend on the load.".to_owned(),
+        [] => {
+            let bound =
+                added.map(|added| format!(": {} at {heaviest:.1} Nm", bounded(added, "Nm"))).unwrap_or_default();
+            format!("Friction does not change significantly with the load{bound}.")
+        }
         ["load_linear"] => format!("Friction grows in proportion to the load: {more}."),
         ["load_quadratic"] => format!("Friction grows with the square of the load: {more}."),
         _ => format!("Friction grows with the load, with a linear and a quadratic part: {more}."),
@@ -111,6 +120,20 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         figures: vec![over_load(&table, gear, laws)?],
         ..Identification::default()
     })
+}
+
+/// Additional friction at a load (motor side), with the interval of its coefficient. Without a significant law that of
+/// the linear one. `None` for two coefficients, whose errors depend on each other.
+fn added(table: &RunTable, law: &'static [&'static str], fit: &Fit, load_nm: f64) -> Option<(f64, [f64; 2])> {
+    let of = |fit: &Fit, effect: &str, name: &str, times: f64| {
+        parameter(fit, effect, name).map(|found| interval_of(found, times))
+    };
+    match law {
+        [] => of(&under(table, LAWS[1]).ok()?, "load_linear", "mu", load_nm),
+        ["load_linear"] => of(fit, "load_linear", "mu", load_nm),
+        ["load_quadratic"] => of(fit, "load_quadratic", "mu_2", load_nm * load_nm),
+        _ => None,
+    }
 }
 
 /// The law with the smallest validation error, among those whose parameters are all identified.

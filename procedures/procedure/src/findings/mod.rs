@@ -14,5 +14,7 @@ pub(crate) use lag::{Lag, ReadingPair, lag};
 pub(crate) use legs::{Leg, legs, select_legs, select_rows};
 pub(crate) use line::{Line, Mean};
 pub(crate) use plateaus::{Plateau, plateaus, settled};
-pub(crate) use quantities::{Unusable, combined, curve, interval_of, parameter, quantity, scatter, verdict};
+pub(crate) use quantities::{
+    Unusable, bounded, combined, curve, directions, interval_of, parameter, quantity, scatter, verdict,
+};
 pub(crate) use solve::{solve, t95};

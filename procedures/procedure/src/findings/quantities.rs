@@ -2,7 +2,7 @@
 
 use crate::identification::{Identification, Mark, Quantity, Series};
 use jointbench_instrument::TableFault;
-use jointbench_model::words;
+use jointbench_model::words::{self, Scale};
 use jointbench_model::{Fit, ModelError, Parameter, ParameterState};
 
 /// A parameter that the run identifies.
@@ -22,6 +22,19 @@ pub(crate) fn combined(a: (f64, [f64; 2]), b: (f64, [f64; 2]), sign: f64) -> (f6
     let value = a.0 + sign * b.0;
     let reach = (0.5 * (a.1[1] - a.1[0])).hypot(0.5 * (b.1[1] - b.1[0]));
     (value, [value - reach, value + reach])
+}
+
+/// A figure with its interval in one unit: `0.12 mNm [−0.20 mNm … 0.44 mNm]`.
+pub(crate) fn bounded((value, [low, high]): (f64, [f64; 2]), unit: &str) -> String {
+    let scale = Scale::of(value.abs().max(low.abs()).max(high.abs()), unit);
+    format!("{} [{} … {}]", scale.figure(value), scale.figure(low), scale.figure(high))
+}
+
+/// Whether two directions differ at 95 %, with their difference `what` and its interval.
+pub(crate) fn directions(what: &str, difference: (f64, [f64; 2]), unit: &str) -> String {
+    let [low, high] = difference.1;
+    let word = if low > 0.0 || high < 0.0 { "differs" } else { "does not differ significantly" };
+    format!("{what} {word} between directions (95 %): {}", bounded(difference, unit))
 }
 
 /// Named figure: `[name, symbol, title, unit]`.

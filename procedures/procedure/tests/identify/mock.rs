@@ -67,12 +67,14 @@ fn a_sensor_of_two_ranges_has_two_zeros_and_one_torque() {
 
 #[test]
 fn the_inverse_of_the_hysteresis_holds_on_a_history_that_it_has_not_seen() {
-    let given = json!({"levels": 5, "loops": 1, "random_turns": 6, "dwell_s": 0.8, "speed_rad_s": 3.0});
+    let given = json!({"levels": 5, "loops": 2, "random_turns": 6, "dwell_s": 0.8, "speed_rad_s": 3.0});
     let (_, found) = found(MockSettings::new(Joint::JointB, 3), "brake_hysteresis", given);
     // Five levels are coarse: a straight line instead has at least three times the error.
     let [error, line] = ["error_max", "error_line"].map(|name| found.quantity(name).unwrap().value);
     assert!(error < 0.04 && 3.0 * error < line, "{error} {line}");
-    assert!(found.quantity("width").unwrap().value > 0.2, "{}", found.summary);
+    let width = found.quantity("width").unwrap();
+    let [low, high] = width.ci95.unwrap();
+    assert!(width.value > 0.2 && low < width.value && width.value < high, "{} {low} {high}", width.value);
     // Every validation history is shown with the prediction of the model.
     let rated_nm = found.quantity("torque_top").unwrap().value;
     for name in ["minor_loops", "random_history"] {
@@ -175,6 +177,11 @@ fn presliding_finds_the_stiffness_of_the_contacts_from_a_few_counts() {
     let (stiffness, slips_nm): (f64, f64) = (elements("stiffness").iter().sum(), elements("slip").iter().sum());
     assert!(stiffness < truth.bristle_nm_rad && stiffness > 0.5 * truth.bristle_nm_rad, "{stiffness}");
     assert!((slips_nm / truth.coulomb_nm - 0.98).abs() < 0.02, "{slips_nm}");
+    for n in 1..=4 {
+        let slip = found.quantity(&format!("element_{n}_slip")).unwrap();
+        let [low, high] = slip.ci95.unwrap();
+        assert!(low < slip.value && slip.value < high && high - low < 0.1 * slip.value, "{n}: {low} … {high}");
+    }
 }
 
 #[test]
@@ -281,6 +288,8 @@ fn a_soft_start_is_shown_with_its_curve_its_table_and_its_loop() {
     let expected =
         ["loop at maximum load", "positive", "negative", "model, positive", "model, negative", "look-up table"];
     assert_eq!(labels, expected);
+    let area = found.quantity("loop_area").unwrap();
+    assert!(area.ci95.is_some_and(|[low, high]| low < area.value && area.value < high), "two repeats: {area:?}");
     // Without the slope the model ends at β₀ and the loop stays a loop.
     let beta_rad = found.quantity("beta_0").unwrap().value;
     let end = beyond.series[3].y.last().unwrap();
@@ -298,6 +307,12 @@ fn table_4_7_is_drawn_as_bars_with_a_trajectory() {
         let of = |way: &str| found.quantity(&format!("{name}_{way}")).unwrap().value;
         assert_eq!((series.y[0], series.y.last()), (1.0, Some(&(of("observer") / of("none")))), "{name}");
     }
+    for name in ["rho_1_full", "rho_2_full", "ratio_full", "rms_full"] {
+        let of = found.quantity(name).unwrap();
+        let [low, high] = of.ci95.unwrap();
+        assert!(low < of.value && of.value < high, "{name}: {low} {} {high}", of.value);
+    }
+    assert!(found.summary.contains("the RMS error from "), "{}", found.summary);
     let [reference, none, best] = &figure("trajectory").series[..] else { panic!("{:?}", figure("trajectory")) };
     let off = |one: &Series| reference.y.iter().zip(&one.y).map(|(a, b)| (a - b).abs()).sum::<f64>();
     assert!(off(best) < 0.5 * off(none) && off(none) > 0.0, "{} {}", best.label, none.label);

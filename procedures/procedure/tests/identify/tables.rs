@@ -79,14 +79,18 @@ fn friction_finds_every_figure_of_the_document() {
     {
         check(&found, name, truth, share);
     }
-    assert!(found.summary.contains("No significant difference between directions"), "{}", found.summary);
+    assert!(
+        found.summary.contains("Coulomb friction does not differ significantly between directions (95 %): "),
+        "{}",
+        found.summary
+    );
     assert!(found.quantity("r2_positive").unwrap().value > 0.99);
 }
 
 #[test]
 fn directions_that_differ_are_distinguished() {
     let found = identified("friction", &staircase(|v| joint_a(v) + 0.002));
-    assert!(found.summary.contains("directions differ"), "{}", found.summary);
+    assert!(found.summary.contains("Coulomb friction differs between directions (95 %): "), "{}", found.summary);
     let positive = found.quantity("tau_c_positive").unwrap().value;
     let negative = found.quantity("tau_c_negative").unwrap().value;
     assert!((positive - negative - 0.004).abs() < 0.001, "{positive} {negative}");

@@ -26,13 +26,15 @@ fn alike(hidden: &[Invisible]) -> Vec<(&str, Vec<&str>)> {
     alike
 }
 
+/// Upper limits, the smallest first.
 fn silences(silent: &[Silent], unit: &str) -> Option<String> {
+    let upper = |s: &Silent| s.upper_rms.unwrap_or(f64::INFINITY);
     let mut silent: Vec<&Silent> = silent.iter().collect();
-    silent.sort_by(|a, b| a.minimum_detectable_rms.total_cmp(&b.minimum_detectable_rms));
+    silent.sort_by(|a, b| upper(a).total_cmp(&upper(b)));
     let within = |s: &Silent| s.sought.as_ref().map_or_else(String::new, |sought| format!(" ({sought})"));
-    let sized = |s: &&Silent| format!("{} {}{}", s.effect, words::figure(s.minimum_detectable_rms, unit), within(s));
+    let sized = |s: &&Silent| format!("{} < {}{}", s.effect, words::figure(upper(s), unit), within(s));
     let sized: Vec<String> = silent.iter().map(sized).collect();
-    (!sized.is_empty()).then(|| format!("detection limits (RMS, 80 % power): {}", sized.join(", ")))
+    (!sized.is_empty()).then(|| format!("tested, not significant (upper limits, RMS, 95 %): {}", sized.join(", ")))
 }
 
 #[cfg(test)]
@@ -40,18 +42,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_is_named_with_its_size_the_smallest_first() {
-        let silent = |effect: &str, nm: f64| Silent { effect: effect.into(), minimum_detectable_rms: nm, sought: None };
+    fn each_is_named_with_its_upper_limit_the_smallest_first() {
+        let silent = |effect: &str, nm: f64| Silent {
+            effect: effect.into(),
+            minimum_detectable_rms: nm / 2.0,
+            upper_rms: Some(nm),
+            sought: None,
+        };
         let mut all: Vec<Silent> = [5e-3, 2e-3, 4e-3, 3e-3].iter().map(|nm| silent("gravity", *nm)).collect();
         all.push(Silent { sought: Some("1 to 60 waves a turn".into()), ..silent("cogging", 1.2e-4) });
         let text = silences(&all, "Nm").unwrap();
         assert!(
             text.starts_with(
-                "detection limits (RMS, 80 % power): cogging 120 µNm (1 to 60 waves a turn), gravity 2.00 mNm, "
+                "tested, not significant (upper limits, RMS, 95 %): cogging < 120 µNm (1 to 60 waves a turn), gravity < 2.00 mNm, "
             ),
             "{text}"
         );
-        assert!(text.ends_with(", gravity 4.00 mNm, gravity 5.00 mNm"), "{text}");
+        assert!(text.ends_with(", gravity < 4.00 mNm, gravity < 5.00 mNm"), "{text}");
         assert_eq!(silences(&[], "Nm"), None);
     }
 }

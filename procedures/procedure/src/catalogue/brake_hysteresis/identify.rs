@@ -44,10 +44,9 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let validation = Validation::of(&sweeps, &model).ok_or(LITTLE)?;
     let (worst, rms) = validation.errors(rated);
     let middle = 0.5 * top;
-    let rising = model.torque_nm(&CurrentHistory::default().after(middle));
-    let falling = model.torque_nm(&CurrentHistory::default().after(top).after(middle));
-    let major = part(&sweeps, Part::Major);
-    let full: Vec<f64> = major.filter_map(|s| s.points.iter().find(|p| p.0 == top).map(|p| p.1)).collect();
+    let major = || part(&sweeps, Part::Major);
+    let widths: Vec<f64> = major().filter_map(|sweep| width(sweep, middle)).collect();
+    let full: Vec<f64> = major().filter_map(|s| s.points.iter().find(|p| p.0 == top).map(|p| p.1)).collect();
     let currents = model.currents() as f64;
     let quantities = vec![
         quantity(
@@ -56,7 +55,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             None,
         ),
         quantity(["torque_top", "T_max", "Torque at maximum current", "Nm"], mean(&full), spread(&full)),
-        quantity(["width", "ΔT", "Loop width at half of the maximum current", "Nm"], falling - rising, None),
+        quantity(["width", "ΔT", "Loop width at half of the maximum current", "Nm"], mean(&widths), spread(&widths)),
         quantity(["drag", "T₀", "Torque without current", "Nm"], model.torque_nm(&CurrentHistory::default()), None),
         quantity(["error_max", "e_max", "Maximum error, validation history, fraction of rated", ""], worst, None),
         quantity(["error_rms", "e_rms", "RMS error, validation history, fraction of rated", ""], rms, None),
@@ -78,7 +77,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             "Torque {:.2} Nm at {top:.3} A. Hysteresis at half of this current: {:.2} Nm (falling minus rising). Inverse of the \
              Preisach model: maximum torque error {:.2} % of rated on a random history.",
             mean(&full),
-            falling - rising,
+            mean(&widths),
             100.0 * worst
         ),
         advice: (!good)
@@ -162,6 +161,17 @@ fn reversals<'s>(
         curves.push(sums);
     }
     Some((grid, curves))
+}
+
+/// Torque of the falling branch minus that of the rising branch at a current, between the measured currents.
+fn width(sweep: &Sweep, current_a: f64) -> Option<f64> {
+    let at = |pair: &[(f64, f64)]| {
+        let [(from_a, from_nm), (to_a, to_nm)] = [pair[0], pair[1]];
+        let is_between = (from_a - current_a) * (to_a - current_a) <= 0.0 && from_a != to_a;
+        is_between.then(|| from_nm + (current_a - from_a) / (to_a - from_a) * (to_nm - from_nm))
+    };
+    let mut crossings = sweep.points.windows(2).filter_map(at);
+    Some(crossings.next_back()? - crossings.next()?)
 }
 
 fn mean(values: &[f64]) -> f64 {

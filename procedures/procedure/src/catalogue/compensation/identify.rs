@@ -1,13 +1,15 @@
-//! Tracking errors of each compensation method: ρ₁ = Σ|θ_d − θ|, ρ₂ = Σ(θ_d − θ)², ρ_max (eq. 4.9, 4.10).
+//! Tracking errors of each compensation method: ρ₁ = Σ|θ_d − θ|, ρ₂ = Σ(θ_d − θ)², ρ_max (eq. 4.9, 4.10), and their RMS.
+//! The intervals follow from the scatter between periods of the reference. A maximum has none.
 //!
 //! A velocity loop has no position reference, so that the initial state of its integrator shifts the whole
 //! trajectory. Therefore the first period is omitted, and the reference begins where the motion is closest to rest,
 //! at the mean of the error.
 
 use super::Method;
-use crate::findings::{Unusable, quantity};
+use crate::findings::{Mean, Unusable, quantity};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
+use jointbench_model::words;
 
 /// Averaging time of the drive current before the comparison with the feedforward.
 const WINDOW_S: f64 = 0.1;
@@ -15,11 +17,12 @@ const WINDOW_S: f64 = 0.1;
 const SHOWN: usize = 1500;
 
 /// Reported figures of each method: name, symbol, title and unit.
-pub(super) const FIGURES: [[&str; 4]; 5] = [
+pub(super) const FIGURES: [[&str; 4]; 6] = [
     ["rho_1", "ρ₁", "Sum of absolute errors", "rad"],
     ["rho_2", "ρ₂", "Sum of squared errors", "rad²"],
     ["rho_max", "ρ_max", "Maximum error", "rad"],
     ["ratio", "ρ₁/ρ₁₀", "Sum of the errors, fraction of uncompensated", ""],
+    ["rms", "e_rms", "RMS error", "rad"],
     ["over", "Δτ", "Feed-forward minus drive torque", "Nm"],
 ];
 
@@ -31,6 +34,8 @@ struct Followed {
     reference_rad: Vec<f64>,
     /// θ_d − θ at the link (rad).
     error_rad: Vec<f64>,
+    /// Whole periods of the reference.
+    periods: usize,
     /// Largest feedforward in excess of the total drive torque and its noise. A value of 0 or less means never active
     /// (motor) (Nm).
     over_nm: f64,
@@ -41,6 +46,44 @@ impl Followed {
         let sum = |f: fn(f64) -> f64| self.error_rad.iter().map(|e| f(*e)).sum::<f64>();
         [sum(f64::abs), sum(|e| e * e), self.error_rad.iter().fold(0.0, |m: f64, e| m.max(e.abs()))]
     }
+
+    fn rms(&self) -> f64 {
+        (self.rho()[1] / self.error_rad.len() as f64).sqrt()
+    }
+
+    /// Mean of a function of the error over each period.
+    fn of_periods(&self, f: fn(f64) -> f64) -> Vec<f64> {
+        let rows = self.error_rad.len() / self.periods.max(1);
+        let means = self.error_rad.chunks_exact(rows.max(1)).take(self.periods);
+        means.map(|errors| errors.iter().map(|e| f(*e)).sum::<f64>() / errors.len() as f64).collect()
+    }
+
+    /// Each of [`FIGURES`] with its interval. `none`: the same without compensation.
+    fn figures(&self, none: &Self) -> [(f64, Option<[f64; 2]>); 6] {
+        let [rho_1, rho_2, rho_max] = self.rho();
+        let n = self.error_rad.len() as f64;
+        let (absolute, squares) = (self.of_periods(f64::abs), self.of_periods(|e| e * e));
+        let pairs = absolute.iter().zip(none.of_periods(f64::abs));
+        let ratios: Vec<f64> = pairs.map(|(one, without)| one / without).collect();
+        let (ratio, rms) = (rho_1 / none.rho()[0], self.rms());
+        let is_none = self.method == Method::None;
+        [
+            (rho_1, around(rho_1, &absolute, n)),
+            (rho_2, around(rho_2, &squares, n)),
+            (rho_max, None),
+            (ratio, if is_none { None } else { around(ratio, &ratios, 1.0) }),
+            // The root of the interval of the mean square.
+            (rms, around(rms * rms, &squares, 1.0).map(|ends| ends.map(f64::sqrt))),
+            (self.over_nm, None),
+        ]
+    }
+}
+
+/// Interval of an error from the scatter of its means over the periods, times a number; never below zero.
+fn around(value: f64, of_periods: &[f64], times: f64) -> Option<[f64; 2]> {
+    let mean = Mean::of(of_periods)?;
+    let reach = times * (mean.ci95[1] - mean.value);
+    Some([(value - reach).max(0.0), value + reach])
 }
 
 pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
@@ -48,29 +91,21 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
     if followed.len() < Method::ALL.len() {
         return Err(Unusable::InsufficientData("Not all compensation methods were completed.", "Repeat the run."));
     }
-    let none = followed[0].rho()[0];
+    let none = &followed[0];
     let mut quantities = Vec::new();
     for one in &followed {
         let [suffix, title_of_method] = one.method.words();
-        let [rho_1, rho_2, rho_max] = one.rho();
-        for ([name, symbol, title, unit], value) in
-            FIGURES.into_iter().zip([rho_1, rho_2, rho_max, rho_1 / none, one.over_nm])
-        {
+        for ([name, symbol, title, unit], (value, ci95)) in FIGURES.into_iter().zip(one.figures(none)) {
             let words = [&format!("{name}_{suffix}"), symbol, title, unit];
-            quantities.push(quantity(words, value, None).in_configuration(title_of_method));
+            quantities.push(quantity(words, value, ci95).in_configuration(title_of_method));
         }
     }
     let best = followed.iter().min_by(|a, b| a.rho()[0].total_cmp(&b.rho()[0]));
     let active: Vec<&str> = followed.iter().filter(|f| f.over_nm > 0.0).map(|f| f.method.words()[1]).collect();
-    let (title, gain) = best.map_or(("none", 0.0), |b| (b.method.words()[1], 100.0 * (1.0 - b.rho()[0] / none)));
+    let gain = best.map_or_else(String::new, |best| gain(best, none));
     let summary = match &active[..] {
-        [] => format!(
-            "Best method: {title}. It reduces the sum of absolute errors by {gain:.0} %. No method over-compensates."
-        ),
-        ways => format!(
-            "Best method: {title}. It reduces the sum of absolute errors by {gain:.0} %. Over-compensating methods: {}.",
-            ways.join(", ")
-        ),
+        [] => format!("{gain} No method over-compensates."),
+        ways => format!("{gain} Over-compensating methods: {}.", ways.join(", ")),
     };
     Ok(Identification {
         verdict: if active.is_empty() { Verdict::Identified } else { Verdict::Inconclusive },
@@ -81,6 +116,24 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
         figures: vec![bars(&followed), trajectories(&followed, period_s), errors(&followed)],
         ..Identification::default()
     })
+}
+
+/// The best method with its gain, and errors before and after.
+fn gain(best: &Followed, none: &Followed) -> String {
+    let [_, _, _, (ratio, ci95), ..] = best.figures(none);
+    let percent = |share: f64| format!("{:.0}", 100.0 * (1.0 - share));
+    let interval = ci95.map(|[low, high]| format!(" [{} … {}]", percent(high), percent(low))).unwrap_or_default();
+    let errors = [none, best].map(|one| [one.rms(), one.rho()[2]].map(|rad| words::figure(rad, "rad")));
+    format!(
+        "Best method: {}. It reduces the sum of absolute errors by {}{interval} %, the RMS error from {} to {} and the \
+         maximum error from {} to {}.",
+        best.method.words()[1],
+        percent(ratio),
+        errors[0][0],
+        errors[1][0],
+        errors[0][1],
+        errors[1][1]
+    )
 }
 
 /// The reference is the commanded velocity: each set-point holds until the next one.
@@ -125,6 +178,7 @@ fn follow(period_s: f64, run: &RunTable, method: Method) -> Option<Followed> {
         time_s: rows.map(|i| time[i] - time[first]).collect(),
         reference_rad,
         error_rad,
+        periods: ((time[last] - time[first]) / period_s).round() as usize,
         over_nm: if method == Method::None || over_a.is_infinite() { 0.0 } else { km * (over_a - doubt_a) },
     })
 }

@@ -133,7 +133,7 @@ impl Procedure for EncoderAlignment {
             let name = ["best_radial_shift", "", "Radial shift with the minimum eccentricity error", "m"];
             quantities.push(quantity(name, best.shift_m, Some(best.ci95)));
             let name = ["best_harmonic_1", "", "Eccentricity error at this shift", "rad"];
-            quantities.push(quantity(name, best.once_rad, None));
+            quantities.push(quantity(name, best.once_rad, Some(best.once_ci95)));
         }
         let mut figures = vec![tolerance::figure(&found)];
         figures.extend(map.map(|map| map.figure()));
@@ -189,6 +189,7 @@ struct Best {
     shift_m: f64,
     ci95: [f64; 2],
     once_rad: f64,
+    once_ci95: [f64; 2],
     /// Slope of the error over the shift, far from the best position.
     rad_per_m: f64,
 }
@@ -222,9 +223,13 @@ impl Map {
         let spread = self.shift_m.iter().map(|shift| (shift - mean_m).powi(2)).sum::<f64>();
         let share = (1.0 / n + (shift_m - mean_m).powi(2) / spread).sqrt();
         let reach_m = line.reach[1] * spread.sqrt() * share / slope;
+        // That of both components at this position.
+        let reach_rad = cos.reach[1].max(sin.reach[1]) * spread.sqrt() * share;
         let once = [cos.values[0] + cos.values[1] * shift_m, sin.values[0] + sin.values[1] * shift_m];
         let ci95 = [shift_m - reach_m, shift_m + reach_m];
-        Some(Best { shift_m, ci95, once_rad: once[0].hypot(once[1]), rad_per_m: slope })
+        let once_rad = once[0].hypot(once[1]);
+        let once_ci95 = [(once_rad - reach_rad).max(0.0), once_rad + reach_rad];
+        Some(Best { shift_m, ci95, once_rad, once_ci95, rad_per_m: slope })
     }
 
     fn figure(self) -> Figure {

@@ -9,7 +9,7 @@ use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
-use crate::findings::solve;
+use crate::findings::{solve, t95};
 use crate::identification::{Identification, Quantity, SeriesRole, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -112,17 +112,17 @@ impl Procedure for EncoderLinearity {
         let direct = |sweep: &Sweep, i: usize| before(sweep, i) - table.at(sweep.angle_rad[i] + sweep.error_rad[i]);
         let delayed = |sweep: &Sweep, i: usize| direct(sweep, i) + terms.delay_s * sweep.speed_rad_s;
         let full = |sweep: &Sweep, i: usize| delayed(sweep, i) + terms.hysteresis_rad * sweep.speed_rad_s.signum();
-        let peaks_rad = peaks_rad(&unseen, [&before, &direct, &delayed, &full]);
+        let peaks = peaks(&unseen, [&before, &direct, &delayed, &full]);
         let poles = PolePairs::of(&table)?;
         let compared: [Stage; 2] = [("before", SeriesRole::Before, &before), ("after", SeriesRole::After, &full)];
         let figures = figures(&unseen, &table, &poles, compared);
-        let mut quantities = usable(peaks_rad);
+        let mut quantities = usable(peaks);
         quantities.extend(repeatability(&known, &unseen));
         quantities.extend(harmonics(&known, &terms));
         quantities.extend(pole_period(&poles));
         Some(Identification {
             verdict: Verdict::Identified,
-            summary: summary(peaks_rad.map(bits), table.len(), &poles),
+            summary: summary(peaks.map(|peak| bits(peak.rad)), table.len(), &poles),
             advice: poles.or.map(|_| {
                 "To determine the number of pole pairs, use more turns and a larger table: jointbench run \
                  encoder_linearity --set turns=32 --set table_size=4096."
@@ -135,10 +135,39 @@ impl Procedure for EncoderLinearity {
     }
 }
 
-/// Maximum error (rad) that each stage of the compensation leaves in the validation data.
-fn peaks_rad(unseen: &[Sweep], stages: [Left; 4]) -> [f64; 4] {
+/// Maximum error (rad) that a stage of the compensation leaves in the validation data.
+#[derive(Clone, Copy)]
+struct Peak {
+    rad: f64,
+    /// By a jackknife over the turns of each sweep; `None` below three turns.
+    ci95: Option<[f64; 2]>,
+}
+
+impl Peak {
+    fn of(classes: &[Class], left: Left) -> Self {
+        let without = |turn| classes.iter().map(|class| class.peak(left, turn)).fold(0.0, f64::max);
+        let (rad, turns) = (without(None), classes.iter().map(Class::turns).min().unwrap_or(0));
+        if turns < 3 {
+            return Self { rad, ci95: None };
+        }
+        let n = turns as f64;
+        let parts: Vec<f64> = (0..turns).map(|turn| without(Some(turn))).collect();
+        let mean = parts.iter().sum::<f64>() / n;
+        let variance = (n - 1.0) / n * parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>();
+        let reach = t95(n - 1.0) * variance.sqrt();
+        Self { rad, ci95: Some([rad - reach, rad + reach]) }
+    }
+
+    /// Usable bits of a turn: a larger error leaves fewer. A lower end of no error bounds nothing.
+    fn bits(&self) -> (f64, Option<[f64; 2]>) {
+        let ends = self.ci95.filter(|[low, _]| *low > 0.0).map(|[low, high]| [bits(high), bits(low)]);
+        (bits(self.rad), ends)
+    }
+}
+
+fn peaks(unseen: &[Sweep], stages: [Left; 4]) -> [Peak; 4] {
     let classes: Vec<Class> = unseen.iter().map(Class::of).collect();
-    stages.map(|left| classes.iter().map(|class| class.peak(left)).fold(0.0, f64::max))
+    stages.map(|left| Peak::of(&classes, left))
 }
 
 /// Usable bits of a turn with this maximum error.
@@ -147,21 +176,22 @@ fn bits(peak_rad: f64) -> f64 {
 }
 
 /// Usable bits and maximum error of each stage.
-fn usable(peaks_rad: [f64; 4]) -> Vec<Quantity> {
+fn usable(peaks: [Peak; 4]) -> Vec<Quantity> {
     let stages = [
         ("before", "without compensation (INL)"),
         ("table", "with the look-up table"),
         ("velocity", "with table and velocity term"),
         ("direction", "with table, velocity and direction term"),
     ];
-    let of_stage = |((name, title), peak_rad): ((&str, &str), f64)| {
+    let of_stage = |((name, title), peak): ((&str, &str), Peak)| {
         let (bits_name, peak_name) = (format!("bits_{name}"), format!("peak_{name}"));
+        let (bits, bits_ci95) = peak.bits();
         [
-            quantity([&bits_name, "", &format!("Usable bits {title}"), ""], bits(peak_rad), None),
-            quantity([&peak_name, "", &format!("Maximum error {title}"), "rad"], peak_rad, None),
+            quantity([&bits_name, "", &format!("Usable bits {title}"), ""], bits, bits_ci95),
+            quantity([&peak_name, "", &format!("Maximum error {title}"), "rad"], peak.rad, peak.ci95),
         ]
     };
-    stages.into_iter().zip(peaks_rad).flat_map(of_stage).collect()
+    stages.into_iter().zip(peaks).flat_map(of_stage).collect()
 }
 
 fn pole_period(poles: &PolePairs) -> [Quantity; 2] {

@@ -115,10 +115,31 @@ impl<'a> Class<'a> {
         Self { sweep, bins: (sweep.error_rad.len() / READINGS_IN_A_BIN).clamp(BINS[0], BINS[1]) }
     }
 
-    /// The largest mean of any bin.
-    pub fn peak(&self, left: &dyn Fn(&Sweep, usize) -> f64) -> f64 {
-        let means = means(std::iter::once(self.sweep), self.bins, left);
-        means.into_iter().flatten().map(f64::abs).fold(0.0, f64::max)
+    /// The largest mean of any bin, without the readings of one turn.
+    pub fn peak(&self, left: &dyn Fn(&Sweep, usize) -> f64, without_turn: Option<usize>) -> f64 {
+        let mut sums = vec![(0.0, 0u32); self.bins];
+        for (i, angle) in self.sweep.angle_rad.iter().enumerate() {
+            if without_turn != Some(self.turn(i)) {
+                let (sum, count) = &mut sums[bin(*angle, self.bins)];
+                *sum += left(self.sweep, i);
+                *count += 1;
+            }
+        }
+        let mean = |(sum, count): &(f64, u32)| (*count > 0).then(|| (sum / f64::from(*count)).abs());
+        sums.iter().filter_map(mean).fold(0.0, f64::max)
+    }
+
+    /// Whole turns of the sweep.
+    pub fn turns(&self) -> usize {
+        let last = self.sweep.angle_rad.len().saturating_sub(1);
+        let way_rad = self.sweep.angle_rad.get(last).map_or(0.0, |angle| (angle - self.sweep.angle_rad[0]).abs());
+        (way_rad / TAU).round() as usize
+    }
+
+    /// Number of the turn of a reading, from 0.
+    fn turn(&self, reading: usize) -> usize {
+        let way_rad = (self.sweep.angle_rad[reading] - self.sweep.angle_rad[0]).abs();
+        ((way_rad / TAU) as usize).min(self.turns().saturating_sub(1))
     }
 }
 
@@ -162,7 +183,7 @@ mod tests {
             sweep.error_rad[i] - terms.at(sweep.speed_rad_s) - table.at(sweep.angle_rad[i] + sweep.error_rad[i])
         };
         for sweep in &sweeps {
-            assert!(Class::of(sweep).peak(&left) < 6e-5, "{}", Class::of(sweep).peak(&left));
+            assert!(Class::of(sweep).peak(&left, None) < 6e-5, "{}", Class::of(sweep).peak(&left, None));
         }
         assert!(Table::of(&sweeps, &terms, 100_000).is_none(), "hardly any entry is met");
     }

@@ -4,7 +4,8 @@
 use super::free_friction::{Figured, FreeFriction, fit_with, friction_nm};
 use super::inconclusive::{Side, hidden_rise_nm, is_small, rest};
 use crate::findings::{
-    Leg, Line, Plateau, Unusable, combined, curve, legs, parameter, plateaus, quantity, scatter, select_legs, settled,
+    Leg, Line, Plateau, Unusable, combined, curve, directions, legs, parameter, plateaus, quantity, scatter,
+    select_legs, settled,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
 use jointbench_instrument::RunTable;
@@ -68,16 +69,11 @@ impl Fits {
         ]
     }
 
-    fn differences(&self) -> [Quantity; 2] {
+    /// Coulomb and viscous friction, positive minus negative direction.
+    fn differences(&self) -> [(f64, [f64; 2]); 2] {
         [
-            quantity_of(
-                ["tau_c_difference", "τ_c⁺ − τ_c⁻", "Coulomb friction, difference between directions", "Nm"],
-                combined(self.forward.coulomb, self.backward.coulomb, -1.0),
-            ),
-            quantity_of(
-                ["c_v_difference", "c_v⁺ − c_v⁻", "Viscous friction, difference between directions", "Nm·s/rad"],
-                combined(self.forward.viscous, self.backward.viscous, -1.0),
-            ),
+            combined(self.forward.coulomb, self.backward.coulomb, -1.0),
+            combined(self.forward.viscous, self.backward.viscous, -1.0),
         ]
     }
 
@@ -146,13 +142,17 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
         Some(_) => None,
         None => hidden_rise_nm(points, expected_rad_s * gear),
     };
-    let directions = if differences.iter().any(|d| d.ci95.is_some_and(|[low, high]| low > 0.0 || high < 0.0)) {
-        "The directions differ significantly (95 %)"
-    } else {
-        "No significant difference between directions (95 %)"
-    };
+    let of_directions = [
+        directions("Coulomb friction", differences[0], "Nm"),
+        directions("viscous friction", differences[1], "Nm·s/rad"),
+    ]
+    .join("; ");
     let mut quantities = fits.quantities(&sides, gear);
-    quantities.extend(differences);
+    let [coulomb, viscous] = [
+        ["tau_c_difference", "τ_c⁺ − τ_c⁻", "Coulomb friction, difference between directions", "Nm"],
+        ["c_v_difference", "c_v⁺ − c_v⁻", "Viscous friction, difference between directions", "Nm·s/rad"],
+    ];
+    quantities.extend([quantity_of(coulomb, differences[0]), quantity_of(viscous, differences[1])]);
     quantities.extend(hidden_nm.map(|most_nm| {
         quantity(["tau_s_most", "τ_s", "Maximum rise towards zero speed that cannot be excluded", "Nm"], most_nm, None)
     }));
@@ -168,7 +168,7 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
         verdict: if is_decided { Verdict::Identified } else { Verdict::Inconclusive },
         advice: advice(drag.is_some(), rest.is_none(), is_decided).map(str::to_owned),
         summary: format!(
-            "Coulomb friction {}, viscous friction {} (motor side). {rise}. {directions}.{}{}",
+            "Coulomb friction {}, viscous friction {} (motor side). {rise}. {of_directions}.{}{}",
             words::figure(whole.coulomb.0, "Nm"),
             words::figure(whole.viscous.0, "Nm·s/rad"),
             drag.unwrap_or_default(),

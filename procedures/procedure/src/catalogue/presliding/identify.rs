@@ -65,13 +65,13 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
     // Delete-one-step jackknife, because a step has one position and one initial state.
     let without = |left_out: usize| fit(&others(&held, left_out));
     let jackknife: Vec<Dahl> = (0..held.len()).filter_map(without).collect();
-    let interval = |figure: fn(Dahl) -> f64| spread(&jackknife, figure).map(|reach| around(figure(dahl), reach));
+    let interval = |figure: &dyn Fn(Dahl) -> f64| spread(&jackknife, figure).map(|reach| around(figure(dahl), reach));
     let points: usize = held.iter().map(|swings| swings.points.len()).sum();
     let wide = |ci95: Option<[f64; 2]>, value: f64| ci95.is_none_or(|[low, high]| high - low > 2.0 * WIDEST * value);
-    let (k, coulomb, reach) = (interval(Dahl::stiffness), interval(|d| d.coulomb_nm), interval(Dahl::reach_rad));
+    let (k, coulomb, reach) = (interval(&Dahl::stiffness), interval(&|d| d.coulomb_nm), interval(&Dahl::reach_rad));
     // The zero of a torque sensor, divided by the gear ratio, looks like such a torque. It is the same in every step,
     // so that the scatter does not contain it.
-    let bias = run.column("link_torque_nm").is_none().then(|| interval(|d| d.bias_nm)).flatten();
+    let bias = run.column("link_torque_nm").is_none().then(|| interval(&|d| d.bias_nm)).flatten();
     let decided = !wide(k, dahl.stiffness()) && !wide(coulomb, dahl.coulomb_nm) && broke_away == 0;
     let mut quantities = vec![
         quantity(["sigma_0", "σ₀", "Presliding (bristle) stiffness (Dahl, LuGre)", "Nm/rad"], dahl.stiffness(), k),
@@ -79,7 +79,7 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
         quantity(["reach", "τ_c/σ₀", "Presliding displacement", "rad"], dahl.reach_rad(), reach),
         quantity(["bias", "τ₀", "Torque offset", "Nm"], dahl.bias_nm, bias),
     ];
-    quantities.extend(elements(dahl));
+    quantities.extend(elements(dahl, &interval));
     Ok(Identification {
         verdict: if decided { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
@@ -101,17 +101,20 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
     })
 }
 
-/// Stiffness and slip torque of each Maxwell-slip element.
-fn elements(dahl: Dahl) -> Vec<Quantity> {
+/// Interval of a figure of the Dahl parameters.
+type Interval<'a> = &'a dyn Fn(&dyn Fn(Dahl) -> f64) -> Option<[f64; 2]>;
+
+/// Stiffness and slip torque of each Maxwell-slip element, with the jackknife intervals of the Dahl parameters.
+fn elements(dahl: Dahl, interval: Interval) -> Vec<Quantity> {
     let mut quantities = Vec::new();
-    for (i, (stiffness, slips_nm)) in maxwell(dahl).into_iter().enumerate() {
+    for i in 0..ELEMENTS {
         let (n, title) = (i + 1, format!("Maxwell slip, element {}", i + 1));
-        let named = |what: &str, symbol: &str, text: &str, unit: &str, value| {
+        let named = |what: &str, symbol: &str, text: &str, unit: &str, figure: &dyn Fn(Dahl) -> f64| {
             let words = [&format!("element_{n}_{what}"), &format!("{symbol}_{n}"), &format!("{title}: {text}"), unit];
-            quantity(words.map(|word: &str| word), value, None)
+            quantity(words.map(|word: &str| word), figure(dahl), interval(figure))
         };
-        quantities.push(named("stiffness", "k", "stiffness", "Nm/rad", stiffness));
-        quantities.push(named("slip", "w", "slip torque", "Nm", slips_nm));
+        quantities.push(named("stiffness", "k", "stiffness", "Nm/rad", &|dahl| maxwell(dahl)[i].0));
+        quantities.push(named("slip", "w", "slip torque", "Nm", &|dahl| maxwell(dahl)[i].1));
     }
     quantities
 }
@@ -125,7 +128,7 @@ fn around(value: f64, reach: f64) -> [f64; 2] {
 }
 
 /// Half width of a 95 % interval, by the jackknife.
-fn spread(jackknife: &[Dahl], figure: fn(Dahl) -> f64) -> Option<f64> {
+fn spread(jackknife: &[Dahl], figure: &dyn Fn(Dahl) -> f64) -> Option<f64> {
     let n = jackknife.len() as f64;
     let mean = jackknife.iter().map(|d| figure(*d)).sum::<f64>() / n;
     let variance = (n - 1.0) / n * jackknife.iter().map(|d| (figure(*d) - mean).powi(2)).sum::<f64>();

@@ -2,7 +2,7 @@
 //! a second at the link. The same results are also given in newton metres at the motor.
 
 use super::super::breakaway::{Onset, onsets, ramp_step_nm, with_resolution};
-use crate::findings::{Hold, Line, Mean, Unusable, combined, curve, holds, quantity, scatter};
+use crate::findings::{Hold, Line, Mean, Unusable, combined, curve, directions, holds, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::Values;
 use jointbench_instrument::RunTable;
@@ -141,14 +141,9 @@ impl Lines {
         all
     }
 
-    fn comparison(&self) -> &'static str {
-        let differ = |(_, [low, high]): (f64, [f64; 2])| low > 0.0 || high < 0.0;
-        match (differ(self.f_difference()), differ(self.b_difference())) {
-            (true, true) => "Coulomb and viscous friction differ between directions (95 %)",
-            (true, false) => "Coulomb friction differs between directions (95 %); viscous friction does not",
-            (false, true) => "Viscous friction differs between directions (95 %); Coulomb friction does not",
-            (false, false) => "No significant difference between directions (95 %)",
-        }
+    fn comparison(&self) -> String {
+        let coulomb = directions("Coulomb friction", self.f_difference(), "V");
+        format!("{coulomb}; {}", directions("viscous friction", self.b_difference(), "V/(°/s)"))
     }
 }
 

@@ -1,7 +1,7 @@
 //! A line of torsion over torque with an offset for each direction, and a test for nonlinear stiffness.
 
 use super::zones::zones;
-use crate::findings::{Unusable, holds, interval_of, parameter, quantity, scatter, select_rows};
+use crate::findings::{Hold, Mean, Unusable, holds, interval_of, parameter, quantity, scatter, select_rows};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, SeriesRole, Verdict};
 use jointbench_instrument::RunTable;
 use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit, residuals};
@@ -164,7 +164,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             "Enter it in Nm/rad, or 0 if unknown.",
         ));
     }
-    let reversal = Reversal::of(run, &held, gear);
+    let reversals = Reversal::all(run, &held, gear);
     let [measured, joint] = stiffness(compliance, bearing);
     let shape = if fits.is_curved {
         "Stiffness decreases at low torque. Use the curve or a look-up table"
@@ -175,21 +175,40 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let mut quantities = vec![measured, joint];
     quantities.extend(fits.offsets(run, gear));
     quantities.extend(zones(&points, bearing));
-    quantities.extend(reversal.iter().flat_map(Reversal::quantities));
+    quantities.extend(loops(&reversals));
     quantities.extend(fits.errors());
-    let area_j = reversal.as_ref().map_or(0.0, Reversal::area_j);
-    quantities.push(quantity(["loop_area", "A", "Loop area at maximum load", "J"], area_j, None));
-    let whole = torsion_over_torque(&points, model(&settled, fits.best())?, reversal.as_ref());
+    let whole = torsion_over_torque(&points, model(&settled, fits.best())?, reversals.first());
     let beyond = beyond_the_slope(&whole, compliance.0);
     Ok(Identification {
         verdict: Verdict::Identified,
         summary,
-        advice: (bearing == 0.0)
-            .then(|| "The value includes the bearing. Enter bearing_stiffness_nm_rad to separate it.".into()),
+        advice: advice(bearing, reversals.len()),
         quantities,
         figures: vec![whole, beyond],
         ..Identification::default()
     })
+}
+
+fn advice(bearing: f64, loops: usize) -> Option<String> {
+    let of_bearing =
+        (bearing == 0.0).then_some("The value includes the bearing. Enter bearing_stiffness_nm_rad to separate it.");
+    let of_loops = (loops == 1).then_some("The loop was measured once and has no interval. Increase repeats for one.");
+    let all: Vec<&str> = [of_bearing, of_loops].into_iter().flatten().collect();
+    (!all.is_empty()).then(|| all.join(" "))
+}
+
+/// The figures of the loops at the highest load: means over the repeats, with intervals from their scatter.
+fn loops(reversals: &[Reversal]) -> Vec<Quantity> {
+    let width = ["hysteresis_width", "Δφ₀", "Hysteresis: torsion between both branches without torque", "rad"];
+    let lost = ["lost_motion", "φ_L", "Lost motion: torsion from −3 % to +3 % of the highest torque", "rad"];
+    let area = ["loop_area", "A", "Loop area at maximum load", "J"];
+    let of = |words, figure: &dyn Fn(&Reversal) -> Option<f64>| {
+        let values: Vec<f64> = reversals.iter().filter_map(figure).collect();
+        let value = values.iter().sum::<f64>() / values.len() as f64;
+        (!values.is_empty()).then(|| quantity(words, value, Mean::of(&values).map(|mean| mean.ci95)))
+    };
+    let found = [of(width, &Reversal::width), of(lost, &Reversal::lost_motion), of(area, &|one| Some(one.area_j()))];
+    found.into_iter().flatten().collect()
 }
 
 /// A parameter of several fits: the mean of the estimates, and an interval that contains all of theirs. `None` if one
@@ -224,13 +243,19 @@ struct Reversal {
 }
 
 impl Reversal {
-    fn of(run: &RunTable, held: &[crate::findings::Hold], gear: f64) -> Option<Self> {
+    /// The loop of each repeat.
+    fn all(run: &RunTable, held: &[Hold], gear: f64) -> Vec<Self> {
+        let top = held.iter().map(|hold| hold.brake).fold(0.0, f64::max);
+        let of_repeat = |repeat: &[Hold]| Self::of(run, repeat, top, gear);
+        held.chunk_by(|a, b| a.repeat == b.repeat).filter_map(of_repeat).collect()
+    }
+
+    fn of(run: &RunTable, held: &[Hold], top: f64, gear: f64) -> Option<Self> {
         let column = |name: &str| run.column(name).unwrap_or_default();
         let (motor, link, torque) =
             (column("motor_position_rad"), column("link_position_rad"), column("link_torque_nm"));
-        let top = held.iter().map(|hold| hold.brake).fold(0.0, f64::max);
         let first = held.windows(2).position(|pair| pair[0].brake == top && pair[1].brake == top)?;
-        let middle = |hold: &crate::findings::Hold| hold.rows.start + hold.rows.len() / 2;
+        let middle = |hold: &Hold| hold.rows.start + hold.rows.len() / 2;
         let (begin, turn) = (middle(&held[first]), middle(&held[first + 1]));
         let back = held.get(first + 2).filter(|hold| hold.brake == top);
         let end = back.map_or(turn, middle);
@@ -238,22 +263,21 @@ impl Reversal {
         Some(Self { course, there: turn - begin })
     }
 
-    /// Width of the loop and lost motion, if the run returns to the load at which the loop began.
-    fn quantities(&self) -> Vec<Quantity> {
+    /// Torsions of both branches at a torque, if the run returns to the load at which the loop began.
+    fn torsions(&self, torque: f64) -> Option<[f64; 2]> {
         let (there, back) = self.course.split_at(self.there);
+        Some([crossing(there, torque)?, crossing(back, torque)?])
+    }
+
+    fn width(&self) -> Option<f64> {
+        let [down, up] = self.torsions(0.0)?;
+        Some((down - up).abs())
+    }
+
+    fn lost_motion(&self) -> Option<f64> {
         let top = self.course.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
-        let at = |torque: f64| Some([crossing(there, torque)?, crossing(back, torque)?]);
-        let mut found = Vec::new();
-        if let Some([down, up]) = at(0.0) {
-            let words = ["hysteresis_width", "Δφ₀", "Hysteresis: torsion between both branches without torque", "rad"];
-            found.push(quantity(words, (down - up).abs(), None));
-        }
-        if let (Some(low), Some(high)) = (at(-LOST_MOTION * top), at(LOST_MOTION * top)) {
-            let lost = (high[0] + high[1] - low[0] - low[1]) / 2.0;
-            let words = ["lost_motion", "φ_L", "Lost motion: torsion from −3 % to +3 % of the highest torque", "rad"];
-            found.push(quantity(words, lost.abs(), None));
-        }
-        found
+        let (low, high) = (self.torsions(-LOST_MOTION * top)?, self.torsions(LOST_MOTION * top)?);
+        Some(((high[0] + high[1] - low[0] - low[1]) / 2.0).abs())
     }
 
     /// Hysteresis loss: the area between torsion and torque in both halves, without the elastic energy of a linear

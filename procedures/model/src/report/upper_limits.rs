@@ -1,0 +1,45 @@
+//! Upper limits of effects that were not found, and effects that a run could hardly show.
+
+use crate::report::diagnosis::{Diagnosis, Discovery, Invisible, Silent};
+use crate::report::fit::Fit;
+use crate::thresholds::{CERTAIN_SIZE, WORTH_SEEING};
+use crate::words::percent;
+
+impl Diagnosis {
+    /// Each effect that was not found with its upper limit. Those that the run could hardly show are not testable:
+    /// their detection limit exceeds [`WORTH_SEEING`] of the measured signal.
+    #[must_use]
+    pub fn bounded(mut self) -> Self {
+        (self.silent, self.not_visible) = bounded(&self.fit, self.silent, self.not_visible);
+        self
+    }
+}
+
+impl Discovery {
+    /// As [`Diagnosis::bounded`].
+    #[must_use]
+    pub fn bounded(mut self) -> Self {
+        (self.silent, self.not_visible) = bounded(&self.fit, self.silent, self.not_visible);
+        self
+    }
+}
+
+fn bounded(fit: &Fit, silent: Vec<Silent>, mut not_visible: Vec<Invisible>) -> (Vec<Silent>, Vec<Invisible>) {
+    // Without a residual the signal has no known size, and everything is detectable.
+    let signal_rms = fit.rms / fit.relative_error;
+    let (hidden, mut tested): (Vec<_>, Vec<_>) =
+        silent.into_iter().partition(|one| one.minimum_detectable_rms > WORTH_SEEING * signal_rms);
+    for one in &mut tested {
+        one.upper_rms = Some(CERTAIN_SIZE * one.minimum_detectable_rms);
+    }
+    not_visible.extend(hidden.into_iter().map(|one| {
+        let share = one.minimum_detectable_rms / signal_rms;
+        let why = format!(
+            "its detection limit is {} of the measured signal, more than {}; measure more repeats, or a wider range",
+            percent(share),
+            percent(WORTH_SEEING)
+        );
+        Invisible { effect: one.effect, why }
+    }));
+    (tested, not_visible)
+}
