@@ -54,9 +54,11 @@ pub async fn model_overlay(State(lab): State<Lab>, Path(id): Path<i64>) -> Answe
 pub struct ReportQuery {
     /// Model version of the report; the latest active version if omitted.
     pub model: Option<i64>,
+    /// Only the first page, without the appendix.
+    pub short: bool,
 }
 
-/// Report of the run as one HTML page: result, figures, model, diagnosis, provenance
+/// Report of the run as HTML: a first page that fits one sheet, and an appendix with model, diagnosis and provenance
 #[utoipa::path(get, path = "/runs/{id}/report", tag = "runs", params(("id" = i64, Path, description = "Run"), ReportQuery),
     responses((status = 200, description = "The self-contained page", body = String, content_type = "text/html"), Refusals))]
 pub async fn report(
@@ -64,7 +66,7 @@ pub async fn report(
     Path(id): Path<i64>,
     Query(query): Query<ReportQuery>,
 ) -> Result<impl IntoResponse, Problem> {
-    Ok(([(header::CONTENT_SECURITY_POLICY, REPORT_POLICY)], Html(lab.report(id, query.model).await?)))
+    Ok(([(header::CONTENT_SECURITY_POLICY, REPORT_POLICY)], Html(lab.report(id, query.model, query.short).await?)))
 }
 
 /// A report carries its own styles, and nothing that runs.

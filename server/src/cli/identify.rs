@@ -43,8 +43,8 @@ pub fn report(arguments: &Report) -> Done {
     let is_pdf = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("pdf"));
     let browser = if is_pdf { Some(Browser::find()?) } else { None };
     let page = match open(&runtime, &arguments.store, false)? {
-        Target::Folder(lab) => runtime.block_on(lab.report(run, None))?.into_bytes(),
-        Target::Daemon(client) => client.get_bytes(&format!("/runs/{run}/report"))?,
+        Target::Folder(lab) => runtime.block_on(lab.report(run, None, arguments.short))?.into_bytes(),
+        Target::Daemon(client) => client.get_bytes(&format!("/runs/{run}/report?short={}", arguments.short))?,
     };
     match browser {
         Some(browser) => browser.print(&page, &path)?,

@@ -1,4 +1,4 @@
-//! Report of a run on one page.
+//! Report of a run: one page, and an appendix.
 
 use super::models::blocking;
 use super::{Answer, Lab, LabError};
@@ -13,8 +13,8 @@ const NEGATIVE: &str = "negative";
 
 impl Lab {
     /// Result of the procedure, a model version and its diagnosis. The default `model` is the last version that is
-    /// neither idle nor only tried.
-    pub async fn report(&self, id: i64, model: Option<i64>) -> Answer<String> {
+    /// neither idle nor only tried. `short`: only the first page.
+    pub async fn report(&self, id: i64, model: Option<i64>, short: bool) -> Answer<String> {
         let run = self.run(id).await?;
         let identification = match self.identification(id).await {
             Ok(found) => Some(found),
@@ -33,7 +33,7 @@ impl Lab {
         };
         let residual_map = self.residual_map(&versions).await?;
         let titles = self.effects(Some(&run.summary.kind)).await?.into_iter().map(|one| (one.id, one.title)).collect();
-        let report = Report { run, notes, identification, versions, diagnosis, residual_map, titles };
+        let report = Report { run, notes, identification, versions, diagnosis, residual_map, titles, short };
         tokio::task::spawn_blocking(move || report.html())
             .await
             .map_err(|fault| LabError::Internal(format!("the report of run {id} failed: {fault}")))

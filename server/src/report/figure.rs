@@ -22,8 +22,9 @@ const DASHES: [(i32, i32); 4] = [(0, 0), (8, 4), (3, 3), (12, 3)];
 /// Width of a series sample in the legend [px].
 const SAMPLE: i32 = 30;
 const FONT: &str = "sans-serif";
-const WIDTH: u32 = 760;
-const HEIGHT: u32 = 400;
+const WHOLE: (u32, u32) = (760, 400);
+/// Two of them stand side by side, with labels that remain legible in print.
+const SMALL: (u32, u32) = (480, 320);
 
 type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -31,6 +32,15 @@ type Plane<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64
 
 /// `None` if the figure has no points.
 pub fn svg(figure: &Figure) -> Option<String> {
+    drawn(figure, WHOLE)
+}
+
+/// The same in half of the width.
+pub fn small_svg(figure: &Figure) -> Option<String> {
+    drawn(figure, SMALL)
+}
+
+fn drawn(figure: &Figure, (width, height): (u32, u32)) -> Option<String> {
     let mut text = String::new();
     let polar = figure.form == FigureForm::Polar;
     let turned: Vec<FigureSeries>;
@@ -43,7 +53,7 @@ pub fn svg(figure: &Figure) -> Option<String> {
     };
     let (x, y) = (range(series.iter().flat_map(|s| s.x.iter().copied()))?, y_range(series)?);
     {
-        let size = if polar { (HEIGHT + 80, HEIGHT) } else { (WIDTH, HEIGHT) };
+        let size = if polar { (height + 80, height) } else { (width, height) };
         let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
         let drawn = match polar {
             true => {

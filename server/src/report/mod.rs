@@ -1,8 +1,10 @@
-//! Report of a run on one page that can be sent and printed: result, model before and after, provenance, sign-off.
+//! Report of a run that can be sent and printed: a first page that is complete on one sheet, and an appendix with all
+//! results, the model before and after, and the provenance.
 //!
-//! The page is self-contained: it loads no scripts, fonts or images.
+//! The report is self-contained: it loads no scripts, fonts or images.
 
 mod figure;
+mod first_page;
 mod model;
 mod number;
 mod pairs;
@@ -35,6 +37,8 @@ pub struct Report {
     pub residual_map: Option<ResidualMap>,
     /// Titles of the effects by id.
     pub titles: HashMap<String, String>,
+    /// Whether the appendix is omitted.
+    pub short: bool,
 }
 
 /// Mean residual over one axis, with bands.
@@ -60,12 +64,14 @@ impl Report {
                 }
                 body {
                     main {
-                        h1 { (title) " " span.badge { (self.origin()) } }
-                        (self.course())
-                        @if let Some(found) = &self.identification { (result::result(found)) }
-                        @if let Some(model) = self.versions.last() { (self.model(model)) }
-                        (self.provenance())
-                        (sign_off::block(&self.signed()))
+                        (self.first_page(&title))
+                        @if !self.short {
+                            h1 { "Appendix" }
+                            (self.course())
+                            @if let Some(found) = &self.identification { (result::result(found)) }
+                            @if let Some(model) = self.versions.last() { (self.model(model)) }
+                            (self.provenance())
+                        }
                     }
                 }
             }

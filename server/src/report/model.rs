@@ -22,7 +22,7 @@ impl Report {
     pub(super) fn model(&self, model: &Model) -> Markup {
         html! {
             h2 { "Model" }
-            p { (model.effects.iter().map(|id| self.titled(id)).collect::<Vec<_>>().join(" + ")) }
+            p { (self.named(&model.effects)) }
             (self.before_and_after(model))
             (self.residuals())
             (self.parameters(model))
@@ -115,6 +115,11 @@ impl Report {
         }
     }
 
+    /// Titles of effects as a sum.
+    pub(super) fn named(&self, effects: &[String]) -> String {
+        effects.iter().map(|id| self.titled(id)).collect::<Vec<_>>().join(" + ")
+    }
+
     fn titled<'s>(&'s self, effect: &'s str) -> &'s str {
         self.titles.get(effect).map_or(effect, String::as_str)
     }
@@ -166,7 +171,7 @@ impl Report {
 }
 
 /// Relative change, such as `−92 %`.
-fn change_of(before: f64, after: f64) -> String {
+pub(super) fn change_of(before: f64, after: f64) -> String {
     let share = after / before - 1.0;
     let sign = if share < 0.0 { "−" } else { "+" };
     if share.is_finite() { format!("{sign}{}", words::percent(share.abs())) } else { String::new() }

@@ -1,19 +1,15 @@
 //! Result of the run's procedure.
 
 use super::figure::svg;
+use super::first_page::word_of;
 use super::number::with_interval;
-use crate::view::{Identification, Identified, command};
+use crate::view::{Identification, command};
 use maud::{Markup, PreEscaped, html};
 
 /// Verdict, quantities and figures of the procedure.
 pub fn result(found: &Identification) -> Markup {
     let result = &found.result;
-    let verdict = match result.verdict {
-        Identified::Identified => "Identified",
-        Identified::IdentifiedWithWarning => "Identified with a warning",
-        Identified::Inconclusive => "Inconclusive",
-        Identified::Failed => "Failed",
-    };
+    let verdict = word_of(result);
     html! {
         h2 { "Result" }
         p.verdict { strong { (verdict) ". " } (result.summary) }
@@ -26,7 +22,7 @@ pub fn result(found: &Identification) -> Markup {
                     @let (value, interval) = with_interval(quantity.value, quantity.ci95, &quantity.unit);
                     tr {
                         td { (quantity.title) } td { (quantity.symbol) }
-                        td.figure { (value) } td.figure { (interval.unwrap_or_default()) }
+                        td.figure { (value) } td.figure { (interval.unwrap_or_else(|| "–".to_owned())) }
                         td.quiet { code { (quantity.name) } }
                     }
                 }

@@ -1,4 +1,4 @@
-//! Block of signatures at the end of the page.
+//! Block of signatures at the end of the first page.
 
 use maud::{Markup, html};
 

@@ -15,6 +15,18 @@ fn start(daemon: &TestDaemon) -> i64 {
     run["id"].as_i64().unwrap()
 }
 
+/// The first page is complete, and `short` is that page alone.
+fn check_first_page(daemon: &TestDaemon, id: i64, page: &str) {
+    let (first, appendix) = page.split_once("<h1>Appendix</h1>").expect("an appendix");
+    for part in ["95 % interval", "Model error (validation, RMS)", "<svg", "Signature of the operator"] {
+        assert!(first.contains(part), "{part}: {first}");
+    }
+    assert!(appendix.contains("Provenance") && !first.contains("Provenance"), "{appendix}");
+    let short = format!("/api/v1/runs/{id}/report?short=true");
+    let short = daemon.get_raw(&short).body_mut().read_to_string().unwrap();
+    assert!(first.starts_with(short.split("</main>").next().unwrap()), "the first page alone: {short}");
+}
+
 #[test]
 fn a_run_is_measured_fitted_diagnosed_and_improved() {
     let daemon = TestDaemon::start();
@@ -91,6 +103,7 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     assert!(page.contains("Residual map over") || page.contains("No residual map: "), "{page}");
     let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
     assert!(!page.contains("+ Direction offset"), "an idle version is only shown on request");
+    check_first_page(&daemon, id, &page);
     let page = of(&model["id"]).body_mut().read_to_string().unwrap();
     assert!(!page.contains("Direction offset") && page.contains("noise floor"), "an earlier version and its diagnosis");
     assert_eq!(of(&json!(99_999)).status(), 404, "of no other run");

@@ -66,4 +66,11 @@ fn a_report_is_printed_as_pdf() {
     let pdf = std::fs::read(inside.join("report.pdf")).expect("the PDF");
     assert!(pdf.starts_with(b"%PDF-") && pdf.len() > 10_000, "{} bytes", pdf.len());
     assert_eq!(names(&inside).len(), before + 1, "{:?}", names(&inside));
+    let output = run_in(&inside, &["report", "1", "--data", "data", "--short", "--out", "short.pdf"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let sheets = |name: &str| {
+        let pdf = std::fs::read(inside.join(name)).expect("the PDF");
+        String::from_utf8_lossy(&pdf).matches("/Type /Page\n").count()
+    };
+    assert!(sheets("short.pdf") == 1 && sheets("report.pdf") > 1, "the first page is one sheet");
 }

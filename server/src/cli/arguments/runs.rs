@@ -123,6 +123,9 @@ pub struct Report {
     /// JOINTBENCH_CHROMIUM) [default: run-N.html]
     #[arg(short, long, visible_alias = "output", value_name = "REPORT.HTML")]
     pub out: Option<PathBuf>,
+    /// Only the first page, without the appendix: one sheet for a customer
+    #[arg(long)]
+    pub short: bool,
     #[command(flatten)]
     pub store: StorePlace,
 }
