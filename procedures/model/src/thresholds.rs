@@ -38,9 +38,8 @@ thresholds! {
     PRACTICAL_SHARE = 0.02, "fraction of squared error", "smallest fraction of the remaining error that is worth a name (`Options::practical_share`), or shows in a map", "`evaluate --part power`";
     FLIPS = 499.0, "sign flips", "permutations of the max-T test (`Options::flips`)", "smallest p-value 0.002";
     DECISION_SHARE = 0.03, "fraction of squared validation error", "smallest fraction that an effect must take where samples are judged", "`evaluate FOLDER`: flat from 2 to 5 %";
-    LEFT_SHARE = 0.1, "fraction of squared validation error", "a function of an axis, a line in time or neighbouring seconds that take more are structure", "nulls of `evaluate FOLDER`";
-    LEFT_ERRORS = 2.0, "standard errors over blocks", "and surely so", "nulls of `evaluate FOLDER`";
-    TIME_ERRORS = 3.0, "standard errors", "the same of neighbouring seconds", "nulls of `evaluate FOLDER`";
+    LEFT_SHARE = 0.1, "fraction of squared validation error", "a function of an axis, a line in time or neighbouring moments that take more are structure", "nulls of `evaluate FOLDER`";
+    LEFT_ERRORS = 3.0, "standard errors", "and exceed their own error so many times", "nulls of `evaluate --part styles --first 300000 --family friction`";
     FORMULA_ERROR = 0.002, "fraction of squared error", "the formula of an effect may leave this fraction of its contribution (4.5 % in RMS; encoders none)", "`evaluate --part hidden,null`";
     UNMISTAKABLE_SHARE = 0.5, "fraction of squared error", "an effect that removes this fraction of the residual is no remainder of another formula", "`evaluate --part hidden,null`";
     PERIODIC_SHARE = 0.04, "fraction of squared error", "a wave that is sought among many orders takes at least this fraction", "`evaluate --part hidden,null`";

@@ -9,14 +9,11 @@ use crate::stats::{jackknife, student};
 /// 95 % interval of the relative reduction of the validation RMS between two models: jackknife over folds, on the
 /// logarithm of the ratio. `None` with too few folds.
 pub fn reduction(before: &LinearModel, after: &LinearModel) -> Option<[f64; 2]> {
-    let each: Vec<(f64, f64)> = validation_losses(before).into_iter().zip(validation_losses(after)).collect();
-    let (from, to) = each.iter().fold((0.0, 0.0), |(b, a), fold| (b + fold.0, a + fold.1));
-    let logs: Vec<f64> = each.iter().map(|(b, a)| ((to - a) / (from - b)).ln()).collect();
-    let spread = jackknife::variance_about_mean(logs.iter().copied());
-    let t = student::quantile(logs.len() as f64 - 1.0, 0.975)?;
+    let (before, after) = (validation_losses(before), validation_losses(after));
+    let t = student::quantile(before.len() as f64 - 1.0, 0.975)?;
+    let (log, error) = jackknife::log_ratio(&before, &after);
     let share = |log: f64| 1.0 - (0.5 * log).exp();
-    let (middle, reach) = ((to / from).ln(), t * spread.sqrt());
-    let ci95 = [share(middle + reach), share(middle - reach)];
+    let ci95 = [share(log + t * error), share(log - t * error)];
     ci95.iter().all(|end| end.is_finite()).then_some(ci95)
 }
 

@@ -6,14 +6,15 @@ use crate::linear::basis::dot;
 use crate::linear::blocked_ridge::{BlockedRidge, ranges};
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
-use crate::preprocess::form_error::FormErrorKind;
-use crate::regression::evidence::errors;
+use crate::preprocess::form_error::{FormError, FormErrorKind};
+use crate::regression::linear_model::LinearModel;
 use crate::regression::solution::{DELAY, Solution, effect_columns, nuisance};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::residual_analysis::functions::{Functions, functions};
 use crate::signal::Signal;
+use crate::stats::jackknife;
 use crate::stats::summary::quantile;
-use crate::thresholds::{LEFT_ERRORS, LEFT_SHARE, TIME_ERRORS};
+use crate::thresholds::{LEFT_ERRORS, LEFT_SHARE};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -24,8 +25,8 @@ const MOST_DEVIATIONS: f64 = 6.0;
 /// Highest frequency of a tested spectral line [Hz], and the number of steps between two lines of the spectrum.
 const FASTEST_LINE_HZ: f64 = 2.0;
 const LINE_STEPS: i32 = 4;
-/// Averaging time of neighbouring means [s].
-const MEANS_S: f64 = 1.0;
+/// Averaging time of neighbouring means [s]. Events of a second leave no correlation between longer means.
+const MEANS_S: f64 = 0.5;
 
 /// Structure that remains.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,40 +40,46 @@ pub struct Unexplained {
 }
 
 /// The significant unexplained structure. `end` is the last model of a search from `start`.
+///
+/// A function of an axis has to reach its share also away from reversals and rests, where form error lives.
 pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> Option<Unexplained> {
     let model = &end.main;
     let ridge = &solution.ridge;
+    let away = solution.reweighted(model, &away_from_reversals(model, solution));
     let all = functions(model.problem);
-    let judged: Vec<(f64, f64)> =
-        all.par_iter().map(|axis| taken(ridge, axis)).map(|gains| sized(&gains, ridge)).collect();
-    let axes = all.iter().zip(&judged).map(|(axis, (share, surely))| (Some(axis), axis.over.clone(), *share, *surely));
-    let shows = |share: f64, surely: f64, least: f64| share > LEFT_SHARE && surely > least;
+    let judged: Vec<(f64, f64)> = all.par_iter().map(|axis| reduction(ridge, axis)).collect();
+    let shows = |share: f64, errors: f64| share > LEFT_SHARE && errors > LEFT_ERRORS;
+    let axes = all.iter().zip(&judged).filter(|(_, (share, errors))| shows(*share, *errors));
+    let axes = axes.filter(|(axis, _)| reduction(&away, axis).0 > LEFT_SHARE);
     let mut found: Vec<(Option<&Functions>, Vec<Signal>, f64)> =
-        axes.filter(|a| shows(a.2, a.3, LEFT_ERRORS)).map(|(axis, over, share, _)| (axis, over, share)).collect();
+        axes.map(|(axis, (share, _))| (Some(axis), axis.over.clone(), *share)).collect();
     let weighted = clipped(&solution.residual, &solution.weight);
     let row_s = model.problem.form_error.as_deref().map_or(1.0, |e| e.row_s);
-    let (share, surely) = line(&weighted, model.problem, row_s);
-    if shows(share, surely, LEFT_ERRORS) {
-        found.push((None, vec![Signal::Time], share));
-    }
     let direction = model.problem.reduce.apply(model.problem.view.get(Signal::Direction).to_vec());
-    for (share, surely) in neighbours(&weighted, &direction, row_s) {
-        if shows(share, surely, TIME_ERRORS) {
-            found.push((None, vec![Signal::Time], share));
-        }
-    }
+    let [plain, turned] = neighbours(&weighted, &direction, row_s);
+    let over_time = [line(&weighted, model.problem, row_s), plain, turned];
+    let over_time = over_time.iter().filter(|(share, errors)| shows(*share, *errors));
+    found.extend(over_time.map(|(share, _)| (None, vec![Signal::Time], *share)));
     let (axis, over, share) = found.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
     let grew = start.effects.len() < end.effects.len();
     let is_all = axis.filter(|_| grew).is_some_and(|axis| explains_all(axis, start, end, solution));
     Some(Unexplained { over, share, is_all })
 }
 
+/// Weights that are zero near reversals, unless too few rows would remain.
+fn away_from_reversals(model: &LinearModel, solution: &Solution) -> Vec<f64> {
+    let near = model.problem.form_error.as_deref().map_or_else(Vec::new, FormError::near_reversals);
+    let weight: Vec<f64> = solution.weight.iter().zip(near).map(|(w, near)| if near { 0.0 } else { *w }).collect();
+    let enough = weight.iter().filter(|w| **w > 0.0).count() > solution.ridge.columns();
+    if enough { weight } else { solution.weight.clone() }
+}
+
 fn taken(ridge: &BlockedRidge, axis: &Functions) -> Vec<f64> {
-    if axis.columns.is_empty() {
+    let is_visible = |c: &&Vec<f32>| c.iter().zip(&ridge.weight).any(|(v, w)| f64::from(*v) * w != 0.0);
+    let columns: Vec<&Vec<f32>> = axis.columns.iter().filter(is_visible).collect();
+    if columns.is_empty() {
         return vec![0.0; ridge.blocks.len()];
     }
-    let scale = |c: &Vec<f32>| c.iter().map(|v| v * v).sum::<f32>() > 0.0;
-    let columns: Vec<&Vec<f32>> = axis.columns.iter().filter(|c| scale(c)).collect();
     let added = Added::new(ridge, &columns);
     let of = |strength: &f64| {
         added.gains(*strength, |_| true).iter().map(|gain| gain.validation_losses).collect::<Vec<f64>>()
@@ -81,9 +88,17 @@ fn taken(ridge: &BlockedRidge, axis: &Functions) -> Vec<f64> {
     all.max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum())).unwrap_or_default()
 }
 
-/// Gains of blocks as a share of the error, and their sum in standard errors.
-fn sized(gains: &[f64], ridge: &BlockedRidge) -> (f64, f64) {
-    (gains.iter().sum::<f64>() / ridge.loss().max(f64::MIN_POSITIVE), errors(gains))
+/// Share of the validation losses of a regression that a function of an axis takes, and its logarithm in standard
+/// errors.
+fn reduction(ridge: &BlockedRidge, axis: &Functions) -> (f64, f64) {
+    reduced(&ridge.losses, &taken(ridge, axis))
+}
+
+/// Gains of blocks as a share of their losses, and its logarithm in standard errors.
+fn reduced(losses: &[f64], gains: &[f64]) -> (f64, f64) {
+    let after: Vec<f64> = losses.iter().zip(gains).map(|(loss, gain)| loss - gain).collect();
+    let (log, error) = jackknife::log_ratio(losses, &after);
+    (1.0 - log.exp(), -log / error.max(f64::MIN_POSITIVE))
 }
 
 /// Whether the given model with one free function has a significantly smaller validation error than the last model.
@@ -99,11 +114,13 @@ fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, so
         FormErrorKind::Snap | FormErrorKind::LoadRate => false,
     });
     columns.extend(nuisance.columns());
-    let strength = Some(solution.ridge.strength);
-    let ridge = BlockedRidge::new(&columns, &plain.response(), &solution.weight, &plain.problem.block, strength);
-    let with: Vec<f64> = ridge.losses.iter().zip(taken(&ridge, axis)).map(|(loss, gain)| loss - gain).collect();
-    let better: Vec<f64> = solution.ridge.losses.iter().zip(&with).map(|(end, with)| end - with).collect();
-    with.iter().sum::<f64>() < (1.0 - LEFT_SHARE) * solution.ridge.loss() && errors(&better) > LEFT_ERRORS
+    let last = &solution.ridge;
+    let block = &plain.problem.block;
+    let ridge = BlockedRidge::new(&columns, &plain.response(), &solution.weight, block, Some(last.strength));
+    let with = ridge.losses.iter().zip(taken(&ridge, axis)).map(|(loss, gain)| loss - gain);
+    let better: Vec<f64> = last.losses.iter().zip(with).map(|(end, with)| end - with).collect();
+    let (share, errors) = reduced(&last.losses, &better);
+    share > LEFT_SHARE && errors > LEFT_ERRORS
 }
 
 /// A weighted residual with clipped outliers.
@@ -135,7 +152,7 @@ fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
     let highest = (FASTEST_LINE_HZ.min(0.5 / row_s) * whole_s) as usize;
     let powers: Vec<f64> = (2..highest.max(2)).into_par_iter().map(|k| power(k as f64 / whole_s)).collect();
     let Some(strongest) = (0..powers.len()).max_by(|a, b| powers[*a].total_cmp(&powers[*b])) else { return (0.0, 0.0) };
-    let square: f64 = dot(values, values);
+    let losses: Vec<f64> = blocks.iter().map(|rows| dot(&values[rows.clone()], &values[rows.clone()])).collect();
     let tried = (-LINE_STEPS..=LINE_STEPS).map(|step| {
         let hz = ((strongest + 2) as f64 + 0.5 * f64::from(step) / f64::from(LINE_STEPS)) / whole_s;
         let waves: [Vec<f64>; 2] = [
@@ -160,8 +177,7 @@ fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
             ];
             2.0 * (coefficients[0] * own[3] + coefficients[1] * own[4]) - dot(&coefficients, &there)
         });
-        let gains: Vec<f64> = gains.collect();
-        (gains.iter().sum::<f64>() / square.max(f64::MIN_POSITIVE), errors(&gains))
+        reduced(&losses, &gains.collect::<Vec<f64>>())
     });
     tried.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
 }
