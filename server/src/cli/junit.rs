@@ -11,6 +11,7 @@ use crate::view::Run;
 /// test cases are skipped if no run has completed.
 pub fn junit(
     arguments: &Arguments,
+    required: &[Requirement],
     ended: &Result<Run, Exit>,
     found: Option<&Found>,
     demands: &[(&Requirement, RequirementResult)],
@@ -32,15 +33,17 @@ pub fn junit(
     let mut cases = vec![(case, time_s, outcome)];
     cases.extend(demands.iter().map(|(demand, kept)| {
         let outcome = match kept {
-            RequirementResult::Yes(_) => None,
-            RequirementResult::No(message) | RequirementResult::Unsure(message) => Some(("failure", message.clone())),
+            RequirementResult::Pass(_) => None,
+            RequirementResult::Fail(message)
+            | RequirementResult::Marginal(message)
+            | RequirementResult::Inconclusive(message) => Some(("failure", message.clone())),
             RequirementResult::Unknown(message) => Some(("error", message.clone())),
         };
-        (demand.text().to_owned(), 0.0, outcome)
+        (demand.text.clone(), 0.0, outcome)
     }));
     if demands.is_empty() {
         let skipped = || Some(("skipped", "no run has completed, so this limit was not checked".to_owned()));
-        cases.extend(arguments.require.iter().map(|demand| (demand.text().to_owned(), 0.0, skipped())));
+        cases.extend(required.iter().map(|demand| (demand.text.clone(), 0.0, skipped())));
     }
     let count =
         |kind: &str| cases.iter().filter(|(_, _, outcome)| outcome.as_ref().is_some_and(|o| o.0 == kind)).count();
@@ -90,7 +93,7 @@ pub(super) mod tests {
     #[test]
     fn a_run_that_never_was_is_an_error_in_the_report() {
         let asked = asked(&["friction", "--require", "tau_c < 0.03 Nm", "--require", "c_v > 0 Nm·s/rad"]);
-        let report = junit(&asked, &Err(Exit::bad_input("repeats = 0 < 1")), None, &[]);
+        let report = junit(&asked, &asked.require, &Err(Exit::bad_input("repeats = 0 < 1")), None, &[]);
         assert!(report.contains("tests=\"3\" failures=\"0\" errors=\"1\" skipped=\"2\""), "{report}");
         assert!(report.contains("<error message=\"repeats = 0 &lt; 1\"/>"), "{report}");
         let skipped = "name=\"tau_c &lt; 0.03 Nm\" time=\"0.000\">\n      <skipped message=\"no run has completed";
@@ -100,8 +103,8 @@ pub(super) mod tests {
     #[test]
     fn a_broken_limit_is_a_failure_of_its_own() {
         let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
-        let demands = [(&demand, RequirementResult::No("message".to_owned()))];
-        let report = junit(&asked(&["friction"]), &Err(Exit::bad_input("no run")), None, &demands);
+        let demands = [(&demand, RequirementResult::Fail("message".to_owned()))];
+        let report = junit(&asked(&["friction"]), &[], &Err(Exit::bad_input("no run")), None, &demands);
         assert!(report.contains("tests=\"2\" failures=\"1\" errors=\"1\" skipped=\"0\""), "{report}");
         assert!(report.contains("name=\"tau_c &lt; 0.03 Nm\""), "{report}");
     }

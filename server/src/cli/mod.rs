@@ -14,6 +14,7 @@ mod identify;
 mod job;
 mod junit;
 mod library;
+mod limits;
 mod log;
 mod memory;
 mod model;

@@ -1,34 +1,34 @@
-//! Requirements of a script on a result: `tau_c < 0.035 Nm`.
+//! Limits on the quantities of a result: `tau_c < 0.035 Nm` of a script, or a line of a limits file.
 
 use crate::view::{Identification, Quantity};
 use jointbench_instrument::spelling::nearest;
 use jointbench_procedure::catalogue::Findable;
 use std::str::FromStr;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Below,
-    Above,
-}
-
 /// A limit on one quantity of an identification.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Requirement {
-    text: String,
-    name: String,
-    side: Side,
-    limit: f64,
-    unit: String,
+    pub text: String,
+    pub name: String,
+    pub lower: Option<f64>,
+    pub upper: Option<f64>,
+    /// Width by which the interval has to stay inside the limits.
+    pub guard_band: f64,
+    pub unit: String,
+    /// Without an interval the value does not decide.
+    pub needs_interval: bool,
 }
 
-/// Result of a requirement.
+/// Verdict of a requirement, with its figures in a sentence.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RequirementResult {
-    Yes(String),
+    Pass(String),
     /// The value exceeds the limit.
-    No(String),
-    /// The value is within the limit, but its interval is not.
-    Unsure(String),
+    Fail(String),
+    /// The value is within the limit, but its interval or the guard band is not.
+    Marginal(String),
+    /// The value has no interval.
+    Inconclusive(String),
     /// The quantity is missing, or has another unit.
     Unknown(String),
 }
@@ -39,7 +39,6 @@ impl FromStr for Requirement {
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || format!("{text:?}: expected NAME < VALUE UNIT or NAME > VALUE UNIT, such as 'tau_c < 0.035 Nm'");
         let place = text.find(['<', '>']).ok_or_else(wrong)?;
-        let side = if text[place..].starts_with('<') { Side::Below } else { Side::Above };
         let rest = text[place + 1..].trim_start_matches('=').trim();
         let (value, unit) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
         let limit = value.parse::<f64>().ok().filter(|limit| limit.is_finite()).ok_or_else(wrong)?;
@@ -47,16 +46,20 @@ impl FromStr for Requirement {
         if name.is_empty() {
             return Err(wrong());
         }
-        let (text, name, unit) = (text.trim().to_owned(), name.to_owned(), unit.trim().to_owned());
-        Ok(Self { text, name, side, limit, unit })
+        let (lower, upper) = if text[place..].starts_with('<') { (None, Some(limit)) } else { (Some(limit), None) };
+        Ok(Self {
+            text: text.trim().to_owned(),
+            name: name.to_owned(),
+            lower,
+            upper,
+            guard_band: 0.0,
+            unit: unit.trim().to_owned(),
+            needs_interval: false,
+        })
     }
 }
 
 impl Requirement {
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-
     /// Whether a procedure with these results can meet the requirement, or why not.
     pub fn can_be_met_by(&self, procedure: &str, finds: &[Findable]) -> Result<(), String> {
         match finds.iter().find(|findable| findable.is(&self.name)) {
@@ -86,35 +89,61 @@ impl Requirement {
             let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name.as_str()).collect();
             let there = if names.is_empty() { "it contains no quantities".to_owned() } else { self.instead(&names) };
             return RequirementResult::Unknown(format!(
-                "--require '{}': the result does not contain {}; {there}",
+                "'{}': the result does not contain {}; {there}",
                 self.text, self.name
             ));
         };
-        let Some(factor) = factor(&self.unit, &quantity.unit) else {
-            return RequirementResult::Unknown(self.in_unit(&quantity.unit));
-        };
-        self.judge(quantity, self.limit * factor)
+        match factor(&self.unit, &quantity.unit) {
+            Some(factor) => self.judge(quantity, factor),
+            None => RequirementResult::Unknown(self.in_unit(&quantity.unit)),
+        }
     }
 
-    fn judge(&self, quantity: &Quantity, limit: f64) -> RequirementResult {
-        let keeps = |value: f64| match self.side {
-            Side::Below => value <= limit,
-            Side::Above => value >= limit,
+    fn judge(&self, quantity: &Quantity, factor: f64) -> RequirementResult {
+        // Distance to the nearer limit, negative beyond it.
+        let margin = |value: f64| {
+            let below = self.lower.map(|lower| value - lower * factor);
+            let above = self.upper.map(|upper| upper * factor - value);
+            below.into_iter().chain(above).fold(f64::INFINITY, f64::min)
         };
         let (value, interval) = crate::report::with_interval(quantity.value, quantity.ci95, &quantity.unit);
         let message = match &interval {
             Some(ends) => format!("{}: {} = {value} [{ends}]", self.text, self.name),
             None => format!("{}: {} = {value}", self.text, self.name),
         };
-        if !keeps(quantity.value) {
-            RequirementResult::No(message)
-        } else if quantity.ci95.is_some_and(|ends| !ends.into_iter().all(keeps)) {
-            RequirementResult::Unsure(format!("{message}: the interval exceeds the limit"))
-        } else {
-            RequirementResult::Yes(message)
+        let guard_band = self.guard_band * factor;
+        let own = margin(quantity.value);
+        if own < 0.0 {
+            return RequirementResult::Fail(message);
         }
+        if own < guard_band {
+            return RequirementResult::Marginal(format!("{message}: the value is in the guard band"));
+        }
+        let Some(ends) = quantity.ci95 else {
+            return match self.needs_interval {
+                true => RequirementResult::Inconclusive(format!(
+                    "{message}: without an interval it does not decide; measure more repeats"
+                )),
+                false => RequirementResult::Pass(message),
+            };
+        };
+        let least = ends.into_iter().map(margin).fold(f64::INFINITY, f64::min);
+        if least >= guard_band {
+            return RequirementResult::Pass(message);
+        }
+        // The width of an interval falls with the square root of the number of repeats.
+        let times = ((own - least) / (own - guard_band)).powi(2).ceil();
+        let decides = match times <= MOST_TIMES {
+            true => format!("{times:.0} times as many repeats would decide if the value stays"),
+            false => "the value is too near to the limit for any number of repeats".to_owned(),
+        };
+        let what = if guard_band > 0.0 { "guard band" } else { "limit" };
+        RequirementResult::Marginal(format!("{message}: the interval exceeds the {what}; {decides}"))
     }
 }
+
+/// More repeats are no advice.
+const MOST_TIMES: f64 = 100.0;
 
 /// Factor from the written unit to the unit of the quantity: the same unit, or with a prefix.
 fn factor(written: &str, own: &str) -> Option<f64> {
@@ -163,19 +192,46 @@ pub(super) mod tests {
     #[test]
     fn the_whole_interval_must_keep_the_limit() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
-        assert!(matches!(check("tau_c < 0.035 Nm"), RequirementResult::Yes(_)));
-        assert!(matches!(check("tau_c<=35 mNm"), RequirementResult::Yes(_)));
-        assert!(matches!(check("tau_c > 0.02 Nm"), RequirementResult::Yes(_)));
-        assert!(matches!(check("tau_c < 0.030 Nm"), RequirementResult::No(_)));
+        assert!(matches!(check("tau_c < 0.035 Nm"), RequirementResult::Pass(_)));
+        assert!(matches!(check("tau_c<=35 mNm"), RequirementResult::Pass(_)));
+        assert!(matches!(check("tau_c > 0.02 Nm"), RequirementResult::Pass(_)));
+        assert!(matches!(check("tau_c < 0.030 Nm"), RequirementResult::Fail(_)));
         assert!(
-            matches!(check("tau_c < 0.0308 Nm"), RequirementResult::Unsure(message) if message.contains("30.60 mNm [30.20 … 31.00]"))
+            matches!(check("tau_c < 0.0308 Nm"), RequirementResult::Marginal(message) if message.contains("30.60 mNm [30.20 … 31.00]"))
         );
+    }
+
+    #[test]
+    fn a_marginal_result_says_what_would_decide() {
+        let limit = |upper: f64, guard_band: f64| Requirement {
+            text: "tau_c".to_owned(),
+            name: "tau_c".to_owned(),
+            lower: Some(20.0),
+            upper: Some(upper),
+            guard_band,
+            unit: "mNm".to_owned(),
+            needs_interval: true,
+        };
+        assert!(matches!(limit(32.0, 0.5).check(&found()), RequirementResult::Pass(_)));
+        let RequirementResult::Marginal(why) = limit(30.8, 0.0).check(&found()) else {
+            panic!("the interval ends at 31.0")
+        };
+        assert!(
+            why.ends_with("the interval exceeds the limit; 4 times as many repeats would decide if the value stays"),
+            "{why}"
+        );
+        let RequirementResult::Marginal(why) = limit(31.0, 0.5).check(&found()) else { panic!("30.6 is above 30.5") };
+        assert!(why.ends_with("the value is in the guard band"), "{why}");
+        assert!(matches!(limit(30.5, 0.0).check(&found()), RequirementResult::Fail(_)));
+        let mut bare = found();
+        bare.result.quantities[0].ci95 = None;
+        assert!(matches!(limit(32.0, 0.0).check(&bare), RequirementResult::Inconclusive(_)));
     }
 
     #[test]
     fn an_unknown_requirement_has_a_reason() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
-        let why = "--require 'tau_x < 1 Nm': the result does not contain tau_x; did you mean tau_c? available: tau_c";
+        let why = "'tau_x < 1 Nm': the result does not contain tau_x; did you mean tau_c? available: tau_c";
         assert_eq!(check("tau_x < 1 Nm"), RequirementResult::Unknown(why.to_owned()));
         assert_eq!(check("tau_c < 1 A"), RequirementResult::Unknown("tau_c is in Nm: write the limit so".to_owned()));
         assert_eq!(check("tau_c < 1"), RequirementResult::Unknown("tau_c is in Nm: write the limit so".to_owned()));

@@ -4,6 +4,7 @@ use super::arguments::{Run as Arguments, UnitArguments};
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::junit::junit;
+use super::limits::{self, Measured};
 use super::outcome::{Found, ending, is_over};
 use super::progress::RunProgress;
 use super::require::{Requirement, RequirementResult};
@@ -18,15 +19,17 @@ pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(250);
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach)?;
     arguments.junit.iter().try_for_each(|path| files::writable(path))?;
-    let ended = check_requirements(&client, arguments).and_then(|()| start(&client, arguments));
+    let required = requirements(&client, arguments);
+    let ended = required.as_ref().map_err(Exit::clone).and_then(|_| start(&client, arguments));
+    let required = required.unwrap_or_default();
     let found =
         ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
     let demands: Vec<(&Requirement, RequirementResult)> = match &found {
-        Some(found) => arguments.require.iter().map(|demand| (demand, check(demand, found))).collect(),
+        Some(found) => required.iter().map(|demand| (demand, check(demand, found))).collect(),
         None => Vec::new(),
     };
     if let Some(path) = &arguments.junit {
-        files::write(path, junit(arguments, &ended, found.as_ref(), &demands).as_bytes())?;
+        files::write(path, junit(arguments, &required, &ended, found.as_ref(), &demands).as_bytes())?;
     }
     let run = ended?;
     let message = if is_over(run.summary.state) { ending(&run) } else { String::new() };
@@ -45,22 +48,31 @@ pub fn run(arguments: &Arguments) -> Done {
     }
 }
 
-/// Refuses a requirement that the procedure cannot meet, before any motion.
-fn check_requirements(client: &Client, arguments: &Arguments) -> Done {
-    if arguments.require.is_empty() {
-        return Ok(());
+/// The requirements of the arguments and of the limits file. One that the procedure cannot meet is refused before any
+/// motion.
+fn requirements(client: &Client, arguments: &Arguments) -> Result<Vec<Requirement>, Exit> {
+    if arguments.require.is_empty() && arguments.limits.is_none() {
+        return Ok(Vec::new());
     }
-    let id = match (&arguments.procedure, arguments.continues) {
-        (None, Some(before)) => client.get::<Run>(&format!("/runs/{before}"))?.summary.procedure,
-        (id, _) => id.clone().unwrap_or_default(),
+    let (id, unit) = match (&arguments.procedure, arguments.continues) {
+        (None, Some(before)) => {
+            let run: Run = client.get(&format!("/runs/{before}"))?;
+            (run.summary.procedure, run.summary.unit)
+        }
+        (id, _) => (id.clone().unwrap_or_default(), unit(&arguments.unit)),
     };
+    let mut all = arguments.require.clone();
+    if let Some(path) = &arguments.limits {
+        let of = |text: fn(&Unit) -> &Option<String>| unit.as_ref().and_then(|unit| text(unit).as_deref());
+        let measured = Measured { part: of(|unit| &unit.part), revision: of(|unit| &unit.revision), procedure: &id };
+        all.extend(limits::read(path, &measured)?);
+    }
     // The daemon refuses an unknown procedure.
-    let Some(procedure) = procedure(&id) else { return Ok(()) };
+    let Some(procedure) = procedure(&id) else { return Ok(all) };
     let finds = procedure.finds();
-    arguments.require.iter().try_for_each(|demand| {
-        let wrong = |why| Exit::bad_input(format!("--require '{}': {why}", demand.text()));
-        demand.can_be_met_by(&id, &finds).map_err(wrong)
-    })
+    let wrong = |demand: &Requirement, why| Exit::bad_input(format!("'{}': {why}", demand.text));
+    all.iter().try_for_each(|demand| demand.can_be_met_by(&id, &finds).map_err(|why| wrong(demand, why)))?;
+    Ok(all)
 }
 
 fn shown(client: &Client, run: &Run) -> Found {
@@ -78,9 +90,10 @@ fn check(demand: &Requirement, found: &Found) -> RequirementResult {
 /// 1 for a failed result or an exceeded limit, 3 for no decision.
 fn judge(found: Option<&Found>, demands: &[(&Requirement, RequirementResult)], quiet: bool) -> Done {
     let results = demands.iter().map(|(_, kept)| match kept {
-        RequirementResult::Yes(message) => ("kept", message, 0),
-        RequirementResult::No(message) => ("broken", message, 1),
-        RequirementResult::Unsure(message) => ("unsure", message, 3),
+        RequirementResult::Pass(message) => ("pass", message, 0),
+        RequirementResult::Fail(message) => ("fail", message, 1),
+        RequirementResult::Marginal(message) => ("marginal", message, 3),
+        RequirementResult::Inconclusive(message) => ("inconclusive", message, 3),
         RequirementResult::Unknown(message) => ("unknown", message, 2),
     });
     // A requirement that cannot be checked is reported with the exit code.
@@ -126,8 +139,8 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
         let unit = run.summary.unit.as_ref().map(|unit| format!(", unit {}", unit.line())).unwrap_or_default();
         println!("run {id}: {procedure} on {bench}{unit}{goes_on}  {}", client.page(&format!("/runs/{id}")));
     }
-    let waits =
-        arguments.wait || arguments.junit.is_some() || arguments.timeout.is_some() || !arguments.require.is_empty();
+    let is_judged = !arguments.require.is_empty() || arguments.limits.is_some();
+    let waits = arguments.wait || arguments.junit.is_some() || arguments.timeout.is_some() || is_judged;
     if !waits {
         return Ok(run);
     }
@@ -296,17 +309,17 @@ mod tests {
             let demands: Vec<_> = kept.iter().map(|kept| (&demand, kept.clone())).collect();
             judge(None, &demands, true).err().map_or(0, |exit| exit.code)
         };
-        assert_eq!(code(&[RequirementResult::Yes(message())]), 0);
-        assert_eq!(code(&[RequirementResult::Yes(message()), RequirementResult::Unsure(message())]), 3);
+        assert_eq!(code(&[RequirementResult::Pass(message())]), 0);
+        assert_eq!(code(&[RequirementResult::Pass(message()), RequirementResult::Marginal(message())]), 3);
         assert_eq!(
             code(&[
-                RequirementResult::Unsure(message()),
-                RequirementResult::No(message()),
-                RequirementResult::Unsure(message())
+                RequirementResult::Marginal(message()),
+                RequirementResult::Fail(message()),
+                RequirementResult::Marginal(message())
             ]),
             1
         );
-        assert_eq!(code(&[RequirementResult::No(message()), RequirementResult::Unknown(message())]), 2);
+        assert_eq!(code(&[RequirementResult::Fail(message()), RequirementResult::Unknown(message())]), 2);
     }
 
     #[test]
@@ -320,7 +333,7 @@ mod tests {
         let code = |found: Found, kept: RequirementResult| {
             judge(Some(&found), &[(&demand, kept)], true).err().map_or(0, |exit| exit.code)
         };
-        let (yes, no) = (RequirementResult::Yes(String::new()), RequirementResult::No(String::new()));
+        let (yes, no) = (RequirementResult::Pass(String::new()), RequirementResult::Fail(String::new()));
         assert_eq!(code(shown(Identified::Identified), yes.clone()), 0);
         assert_eq!(code(shown(Identified::IdentifiedWithWarning), yes.clone()), 0);
         assert_eq!(code(shown(Identified::Inconclusive), yes.clone()), 3);

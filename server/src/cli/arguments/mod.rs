@@ -218,6 +218,9 @@ pub struct Run {
     /// interval must be within the limit: exit code 1 if the value exceeds it, 3 if only the interval exceeds it
     #[arg(long, value_name = "LIMIT")]
     pub require: Vec<Requirement>,
+    /// File with the limits of parts and revisions; waits for the end. Those of the part and revision of the unit apply
+    #[arg(long, value_name = "LIMITS.TOML")]
+    pub limits: Option<PathBuf>,
     /// Write a JUnit report with one test case per limit; waits for the end
     #[arg(long, value_name = "REPORT.XML")]
     pub junit: Option<PathBuf>,
@@ -253,9 +256,21 @@ Exit codes: 0 no further effect to add (unexplained structure may remain, see th
 2 bad arguments, 3 the data do not decide, or the budget is used up.";
 
 const RUN: &str = "\
+A limits file has one [[limit]] for each quantity; part, revision and procedure are optional, and the line that names most of
+them applies. `pass` needs the whole 95 % interval inside the limits by the guard band; `fail` is a value beyond a limit; all
+between is `marginal`; a value without an interval is `inconclusive`.
+
+  [[limit]]
+  part = \"JA-100\"
+  quantity = \"tau_c\"
+  lower = 0.02
+  upper = 0.035
+  unit = \"Nm\"
+  guard_band = 0.0005
+
 Exit codes, when waiting for the end: 0 identified and all limits met, 1 the run or its identification failed or a limit was \
 exceeded, 2 bad arguments (also --continue of a complete run, and --require of a quantity that the result does not contain), \
-3 the identification is inconclusive, or an interval exceeds a limit.";
+3 the identification is inconclusive, or a limit is marginal or inconclusive.";
 
 #[derive(Debug, Args)]
 pub struct Autopilot {
