@@ -11,7 +11,7 @@ pub fn backup(arguments: &Backup) -> Done {
     let report = runtime()?.block_on(store::backup(data, file)).map_err(LabError::from)?;
     match report.damaged.first() {
         None => {
-            println!("{}: {} runs, {} rows of samples", file.display(), report.runs, report.rows);
+            println!("{}: runs: {}; rows of samples: {}", file.display(), report.runs, report.rows);
             Ok(())
         }
         Some(first) => Err(Exit::failed(format!(

@@ -42,5 +42,5 @@ fn print(report: &VerifyReport) {
         );
     }
     let VerifyReport { runs, rows, records, .. } = report;
-    println!("{runs} runs, {rows} rows of samples, {records} records read; {} damaged", report.damaged.len());
+    println!("runs: {runs}; rows of samples: {rows}; records read: {records}; damaged: {}", report.damaged.len());
 }
