@@ -108,7 +108,7 @@ pub fn read(path: &Path, measured: &Measured) -> Result<Vec<Requirement>, Exit> 
 
 fn parse(text: &str, measured: &Measured) -> Result<Vec<Requirement>, String> {
     let file: LimitsFile = toml::from_str(text).map_err(|fault| fault.to_string())?;
-    let line = |limit: &Spanned<Limit>| text[..limit.span().start].lines().count().max(1);
+    let line = |limit: &Spanned<Limit>| text[..limit.span().start].matches('\n').count() + 1;
     if let Some((limit, fault)) = file.limit.iter().find_map(|limit| Some((limit, limit.get_ref().fault()?))) {
         return Err(format!("line {}: {fault}", line(limit)));
     }

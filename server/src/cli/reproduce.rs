@@ -241,7 +241,7 @@ fn chapter_text(chapter: &ProcedureResult, title: &str, page: Option<&Path>) -> 
             "| {} | {} | {} | {value} | {} | {} | {} | {} | {} |",
             one.table,
             titled(&one.found),
-            one.document.map(number).unwrap_or_default(),
+            one.document.map(|value| with_interval(value, None, &one.found.unit).0).unwrap_or_default(),
             interval.unwrap_or_default(),
             one.given.map(number).unwrap_or_default(),
             yes(one.is_inside()),

@@ -41,7 +41,7 @@ pub(in crate::linear) struct Fold {
 pub struct BlockedRidge {
     /// Rows of each block.
     pub blocks: Vec<Range<usize>>,
-    pub weight: Vec<f64>,
+    pub(in crate::linear) weight: Vec<f64>,
     pub(in crate::linear) base: Vec<Vec<f64>>,
     scale: Vec<f64>,
     pub(in crate::linear) response: Vec<f64>,
@@ -144,11 +144,6 @@ impl BlockedRidge {
 
     pub fn loss(&self) -> f64 {
         self.losses.iter().sum()
-    }
-
-    /// Number of columns of the base.
-    pub fn columns(&self) -> usize {
-        self.base.len()
     }
 
     /// Coefficients of the original columns, over all rows.

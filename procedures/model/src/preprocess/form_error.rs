@@ -57,10 +57,3 @@ pub struct FormError {
     /// Time step of the original samples [s].
     pub sample_s: f64,
 }
-
-impl FormError {
-    /// Whether each row is near a reversal or rest, where the filter mixes both sides.
-    pub fn near_reversals(&self) -> Vec<bool> {
-        self.turn_s.iter().map(|turn_s| *turn_s < self.near_s).collect()
-    }
-}

@@ -133,15 +133,6 @@ impl Solution {
         }
     }
 
-    /// The ridge regression with other weights.
-    pub fn reweighted(&self, model: &LinearModel, weight: &[f64]) -> BlockedRidge {
-        let mut columns = effect_columns(model);
-        if let Some(form_error) = model.problem.form_error.as_deref() {
-            columns.extend(nuisance(model, form_error, |_| false).columns());
-        }
-        BlockedRidge::new(&columns, &model.response(), weight, &model.problem.block, Some(self.ridge.strength))
-    }
-
     /// Standard errors of the coefficients of the effects, by a jackknife over blocks.
     pub fn standard_errors(&self) -> Vec<f64> {
         let replicates: Vec<Vec<f64>> = self.ridge.replicates().collect();

@@ -6,8 +6,7 @@ use crate::linear::basis::dot;
 use crate::linear::blocked_ridge::{BlockedRidge, ranges};
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
-use crate::preprocess::form_error::{FormError, FormErrorKind};
-use crate::regression::linear_model::LinearModel;
+use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::solution::{DELAY, Solution, effect_columns, nuisance};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::residual_analysis::functions::{Functions, functions};
@@ -40,17 +39,13 @@ pub struct Unexplained {
 }
 
 /// The significant unexplained structure. `end` is the last model of a search from `start`.
-///
-/// A function of an axis has to reach its share also away from reversals and rests, where form error lives.
 pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> Option<Unexplained> {
     let model = &end.main;
     let ridge = &solution.ridge;
-    let away = solution.reweighted(model, &away_from_reversals(model, solution));
     let all = functions(model.problem);
     let judged: Vec<(f64, f64)> = all.par_iter().map(|axis| reduction(ridge, axis)).collect();
     let shows = |share: f64, errors: f64| share > LEFT_SHARE && errors > LEFT_ERRORS;
     let axes = all.iter().zip(&judged).filter(|(_, (share, errors))| shows(*share, *errors));
-    let axes = axes.filter(|(axis, _)| reduction(&away, axis).0 > LEFT_SHARE);
     let mut found: Vec<(Option<&Functions>, Vec<Signal>, f64)> =
         axes.map(|(axis, (share, _))| (Some(axis), axis.over.clone(), *share)).collect();
     let weighted = clipped(&solution.residual, &solution.weight);
@@ -66,20 +61,12 @@ pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> 
     Some(Unexplained { over, share, is_all })
 }
 
-/// Weights that are zero near reversals, unless too few rows would remain.
-fn away_from_reversals(model: &LinearModel, solution: &Solution) -> Vec<f64> {
-    let near = model.problem.form_error.as_deref().map_or_else(Vec::new, FormError::near_reversals);
-    let weight: Vec<f64> = solution.weight.iter().zip(near).map(|(w, near)| if near { 0.0 } else { *w }).collect();
-    let enough = weight.iter().filter(|w| **w > 0.0).count() > solution.ridge.columns();
-    if enough { weight } else { solution.weight.clone() }
-}
-
 fn taken(ridge: &BlockedRidge, axis: &Functions) -> Vec<f64> {
-    let is_visible = |c: &&Vec<f32>| c.iter().zip(&ridge.weight).any(|(v, w)| f64::from(*v) * w != 0.0);
-    let columns: Vec<&Vec<f32>> = axis.columns.iter().filter(is_visible).collect();
-    if columns.is_empty() {
+    if axis.columns.is_empty() {
         return vec![0.0; ridge.blocks.len()];
     }
+    let scale = |c: &Vec<f32>| c.iter().map(|v| v * v).sum::<f32>() > 0.0;
+    let columns: Vec<&Vec<f32>> = axis.columns.iter().filter(|c| scale(c)).collect();
     let added = Added::new(ridge, &columns);
     let of = |strength: &f64| {
         added.gains(*strength, |_| true).iter().map(|gain| gain.validation_losses).collect::<Vec<f64>>()

@@ -7,7 +7,7 @@
 use crate::effect::Regime;
 use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::Prepared;
-use crate::preprocess::form_error::{FormError, FormErrorKind};
+use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::{Evidence, chance, errors, evidence};
 use crate::regression::linear_model::{LinearModel, Term};
@@ -206,7 +206,10 @@ fn candidates<'l, 'p>(
         let is_wanted = |c: &&Regressor<'p>| is_out(c.id()) && wanted(c) && !c.effect.corrects().is_some_and(is_sought);
         library.candidates.iter().filter(is_wanted).collect()
     };
-    let near = now.main.problem.form_error.as_deref().map_or_else(Vec::new, FormError::near_reversals);
+    let near: Vec<bool> = match now.main.problem.form_error.as_deref() {
+        Some(form_error) => form_error.turn_s.iter().map(|turn_s| *turn_s < form_error.near_s).collect(),
+        None => Vec::new(),
+    };
     let keeps_form_error = |c: &Regressor| match c.effect.regime() {
         Regime::SteadyState => true,
         Regime::Transient => c.id() != DELAY,

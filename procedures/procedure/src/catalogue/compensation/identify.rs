@@ -120,15 +120,13 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
 
 /// The best method with its gain, and errors before and after.
 fn gain(best: &Followed, none: &Followed) -> String {
-    let [_, _, _, (ratio, ci95), ..] = best.figures(none);
-    let percent = |share: f64| format!("{:.0}", 100.0 * (1.0 - share));
-    let interval = ci95.map(|[low, high]| format!(" [{} … {}]", percent(high), percent(low))).unwrap_or_default();
+    let [_, _, _, (ratio, _), ..] = best.figures(none);
     let errors = [none, best].map(|one| [one.rms(), one.rho()[2]].map(|rad| words::figure(rad, "rad")));
     format!(
-        "Best method: {}. It reduces the sum of absolute errors by {}{interval} %, the RMS error from {} to {} and the \
-         maximum error from {} to {}.",
+        "Best method: {}. It reduces the sum of absolute errors by {}, the RMS error from {} to {} and the maximum error \
+         from {} to {}.",
         best.method.words()[1],
-        percent(ratio),
+        words::percent(1.0 - ratio),
         errors[0][0],
         errors[1][0],
         errors[0][1],
