@@ -139,14 +139,13 @@ fn one_of_each_kind(plan: &Plan) -> Due {
     kinds.into_values().collect()
 }
 
-/// Both contain noise, and errors of compensation also that of the friction that each run found: the value may be outside
-/// the uninterrupted run's interval by its width.
+/// Both contain noise: the value may be outside the uninterrupted run's interval by half its width.
 fn same(what: &str, found: &Identification, unbroken: &Identification) {
     assert_eq!(found.verdict, unbroken.verdict, "{what}: {}", found.summary);
     for whole in &unbroken.quantities {
         let Some([low, high]) = whole.ci95 else { continue };
         let value = found.quantity(&whole.name).unwrap_or_else(|| panic!("{what}: no {}", whole.name)).value;
-        let margin = high - low;
+        let margin = 0.5 * (high - low);
         let holds = (low - margin..=high + margin).contains(&value);
         assert!(holds, "{what}, {}: {value:e} beyond {low:e} … {high:e}", whole.name);
     }

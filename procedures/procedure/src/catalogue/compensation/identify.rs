@@ -1,12 +1,13 @@
 //! Tracking errors of each compensation method: ρ₁ = Σ|θ_d − θ|, ρ₂ = Σ(θ_d − θ)², ρ_max (eq. 4.9, 4.10), and their RMS.
-//! The intervals follow from the scatter between periods of the reference. A maximum has none.
+//! They have no interval: the scatter between periods leaves out the error of the friction that is compensated, which is
+//! larger.
 //!
 //! A velocity loop has no position reference, so that the initial state of its integrator shifts the whole
 //! trajectory. Therefore the first period is omitted, and the reference begins where the motion is closest to rest,
 //! at the mean of the error.
 
 use super::Method;
-use crate::findings::{Mean, Unusable, quantity};
+use crate::findings::{Unusable, quantity};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
 use jointbench_model::words;
@@ -34,8 +35,6 @@ struct Followed {
     reference_rad: Vec<f64>,
     /// θ_d − θ at the link (rad).
     error_rad: Vec<f64>,
-    /// Whole periods of the reference.
-    periods: usize,
     /// Largest feedforward in excess of the total drive torque and its noise. A value of 0 or less means never active
     /// (motor) (Nm).
     over_nm: f64,
@@ -51,39 +50,11 @@ impl Followed {
         (self.rho()[1] / self.error_rad.len() as f64).sqrt()
     }
 
-    /// Mean of a function of the error over each period.
-    fn of_periods(&self, f: fn(f64) -> f64) -> Vec<f64> {
-        let rows = self.error_rad.len() / self.periods.max(1);
-        let means = self.error_rad.chunks_exact(rows.max(1)).take(self.periods);
-        means.map(|errors| errors.iter().map(|e| f(*e)).sum::<f64>() / errors.len() as f64).collect()
-    }
-
-    /// Each of [`FIGURES`] with its interval. `none`: the same without compensation.
-    fn figures(&self, none: &Self) -> [(f64, Option<[f64; 2]>); 6] {
+    /// Each of [`FIGURES`]. `none`: the same without compensation.
+    fn figures(&self, none: &Self) -> [f64; 6] {
         let [rho_1, rho_2, rho_max] = self.rho();
-        let n = self.error_rad.len() as f64;
-        let (absolute, squares) = (self.of_periods(f64::abs), self.of_periods(|e| e * e));
-        let pairs = absolute.iter().zip(none.of_periods(f64::abs));
-        let ratios: Vec<f64> = pairs.map(|(one, without)| one / without).collect();
-        let (ratio, rms) = (rho_1 / none.rho()[0], self.rms());
-        let is_none = self.method == Method::None;
-        [
-            (rho_1, around(rho_1, &absolute, n)),
-            (rho_2, around(rho_2, &squares, n)),
-            (rho_max, None),
-            (ratio, if is_none { None } else { around(ratio, &ratios, 1.0) }),
-            // The root of the interval of the mean square.
-            (rms, around(rms * rms, &squares, 1.0).map(|ends| ends.map(f64::sqrt))),
-            (self.over_nm, None),
-        ]
+        [rho_1, rho_2, rho_max, rho_1 / none.rho()[0], self.rms(), self.over_nm]
     }
-}
-
-/// Interval of an error from the scatter of its means over the periods, times a number; never below zero.
-fn around(value: f64, of_periods: &[f64], times: f64) -> Option<[f64; 2]> {
-    let mean = Mean::of(of_periods)?;
-    let reach = times * (mean.ci95[1] - mean.value);
-    Some([(value - reach).max(0.0), value + reach])
 }
 
 pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
@@ -95,9 +66,9 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
     let mut quantities = Vec::new();
     for one in &followed {
         let [suffix, title_of_method] = one.method.words();
-        for ([name, symbol, title, unit], (value, ci95)) in FIGURES.into_iter().zip(one.figures(none)) {
+        for ([name, symbol, title, unit], value) in FIGURES.into_iter().zip(one.figures(none)) {
             let words = [&format!("{name}_{suffix}"), symbol, title, unit];
-            quantities.push(quantity(words, value, ci95).in_configuration(title_of_method));
+            quantities.push(quantity(words, value, None).in_configuration(title_of_method));
         }
     }
     let best = followed.iter().min_by(|a, b| a.rho()[0].total_cmp(&b.rho()[0]));
@@ -120,7 +91,7 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
 
 /// The best method with its gain, and errors before and after.
 fn gain(best: &Followed, none: &Followed) -> String {
-    let [_, _, _, (ratio, _), ..] = best.figures(none);
+    let [_, _, _, ratio, ..] = best.figures(none);
     let errors = [none, best].map(|one| [one.rms(), one.rho()[2]].map(|rad| words::figure(rad, "rad")));
     format!(
         "Best method: {}. It reduces the sum of absolute errors by {}, the RMS error from {} to {} and the maximum error \
@@ -176,7 +147,6 @@ fn follow(period_s: f64, run: &RunTable, method: Method) -> Option<Followed> {
         time_s: rows.map(|i| time[i] - time[first]).collect(),
         reference_rad,
         error_rad,
-        periods: ((time[last] - time[first]) / period_s).round() as usize,
         over_nm: if method == Method::None || over_a.is_infinite() { 0.0 } else { km * (over_a - doubt_a) },
     })
 }
