@@ -99,7 +99,6 @@ thresholds! {
     USELESS_Z = 1.0, "standard deviations", "a run that separates less is not recommended", "`--test next_run`";
     NEARLY_COVERED = 0.9, "fraction of speed or load", "so much of a speed or load is as good as all of it", "presentation";
     WORTH_SEEING = 0.05, "fraction of response", "an unseen effect below this size is not worth a run; one whose detection limit is larger is not testable: it could hide an effect that is worth a run", "`--test next_run`";
-    CERTAIN_SIZE = 1.4, "ratio", "an effect that was not found is smaller than this multiple of its detection limit (95 %)", "most that (z₀.₉₇₅ + 1.3 z₀.₉₅ / z₀.₈) / (z₀.₉₇₅ + 1.3) can be, rounded up";
 }
 
 /// The table of docs/diagnosis.md.

@@ -49,8 +49,13 @@ impl Scale {
         Self { scale, unit: format!("{prefix}{unit}") }
     }
 
-    /// Three digits.
+    /// Three digits and the unit.
     pub fn figure(&self, value: f64) -> String {
+        format!("{} {}", self.number(value), self.unit).trim_end().to_owned()
+    }
+
+    /// Three digits.
+    pub fn number(&self, value: f64) -> String {
         let scaled = value * self.scale;
         let digits = match scaled.abs() {
             s if s >= 100.0 => 0,
@@ -58,9 +63,9 @@ impl Scale {
             s if s >= 1.0 || s == 0.0 => 2,
             s if s >= 0.1 => 3,
             s if s >= 0.01 => 4,
-            _ => return format!("{scaled:.2e} {}", self.unit).trim_end().to_owned(),
+            _ => return format!("{scaled:.2e}"),
         };
-        format!("{scaled:.digits$} {}", self.unit).trim_end().to_owned()
+        format!("{scaled:.digits$}")
     }
 }
 

@@ -2,8 +2,15 @@
 
 use crate::report::diagnosis::{Diagnosis, Discovery, Invisible, Silent};
 use crate::report::fit::Fit;
-use crate::thresholds::{CERTAIN_SIZE, WORTH_SEEING};
+use crate::thresholds::{DETECTION_POWER, WORTH_SEEING};
 use crate::words::percent;
+
+/// Quantiles of the standard normal distribution: two-sided 95 %, one-sided 95 % and 80 %.
+const Z: [f64; 3] = [1.960, 1.645, 0.842];
+
+/// Size that is found with 95 % power, as a multiple of the detection limit (80 %), with the critical size of a single
+/// test. A test of many effects has a larger critical size, and a smaller multiple.
+const UPPER_LIMIT: f64 = (Z[0] + DETECTION_POWER * Z[1] / Z[2]) / (Z[0] + DETECTION_POWER);
 
 impl Diagnosis {
     /// Each effect that was not found with its upper limit. Those that the run could hardly show are not testable:
@@ -30,7 +37,7 @@ fn bounded(fit: &Fit, silent: Vec<Silent>, mut not_visible: Vec<Invisible>) -> (
     let (hidden, mut tested): (Vec<_>, Vec<_>) =
         silent.into_iter().partition(|one| one.minimum_detectable_rms > WORTH_SEEING * signal_rms);
     for one in &mut tested {
-        one.upper_rms = Some(CERTAIN_SIZE * one.minimum_detectable_rms);
+        one.upper_rms = Some(UPPER_LIMIT * one.minimum_detectable_rms);
     }
     not_visible.extend(hidden.into_iter().map(|one| {
         let share = one.minimum_detectable_rms / signal_rms;
