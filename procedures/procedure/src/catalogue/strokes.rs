@@ -7,7 +7,8 @@ use super::legs::{Legs, sample_rate};
 use super::{Findable, Procedure, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{
-    Line, Plateau, Unusable, curve, legs, plateaus, quantity, scatter, select_legs, settled, solve, t95, verdict,
+    Line, Plateau, Unusable, curve, jackknife95, legs, plateaus, quantity, scatter, select_legs, settled, solve,
+    verdict,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -188,9 +189,7 @@ fn without_gravity(prepared: &Prepared, points: &[Plateau], fastest_rad_s: f64) 
         return None;
     }
     let interval = |of: &dyn Fn(&[f64; 6]) -> f64| {
-        let mean = replicates.iter().map(of).sum::<f64>() / n;
-        let variance = (n - 1.0) / n * replicates.iter().map(|r| (of(r) - mean).powi(2)).sum::<f64>();
-        let reach = t95(n - 1.0) * variance.sqrt();
+        let reach = jackknife95(&replicates.iter().map(of).collect::<Vec<f64>>());
         [of(&values) - reach, of(&values) + reach]
     };
     let line = |k: usize| {

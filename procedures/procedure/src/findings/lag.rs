@@ -5,7 +5,7 @@
 //! between its readings. Errors once and twice in a turn are no lag and are fitted too. Zeros and hysteresis differ
 //! between stretches of motion, so that each stretch has its own offset.
 
-use super::solve::{solve, t95};
+use super::solve::{jackknife95, solve};
 
 /// Readings of both instruments in one tick, each with its time by the bench's clock.
 #[derive(Debug, Clone, Copy)]
@@ -107,10 +107,7 @@ fn reach(rows: &[Row], y: &[f64]) -> Option<f64> {
         Some(solve(&rows, &y)?.values[0])
     };
     let left: Vec<f64> = (0..PARTS).map(without).collect::<Option<_>>()?;
-    let parts = PARTS as f64;
-    let mean = left.iter().sum::<f64>() / parts;
-    let variance = left.iter().map(|s| (s - mean).powi(2)).sum::<f64>() * (parts - 1.0) / parts;
-    Some(t95(parts - 1.0) * variance.sqrt())
+    Some(jackknife95(&left))
 }
 
 #[cfg(test)]

@@ -24,10 +24,10 @@ pub(crate) fn combined(a: (f64, [f64; 2]), b: (f64, [f64; 2]), sign: f64) -> (f6
     (value, [value - reach, value + reach])
 }
 
-/// A figure with its interval in one unit: `0.12 mNm [−0.20 mNm … 0.44 mNm]`.
+/// A figure with its interval in the same unit: `0.120 mNm [-0.200 … 0.440]`.
 pub(crate) fn bounded((value, [low, high]): (f64, [f64; 2]), unit: &str) -> String {
     let scale = Scale::of(value.abs().max(low.abs()).max(high.abs()), unit);
-    format!("{} [{} … {}]", scale.figure(value), scale.figure(low), scale.figure(high))
+    format!("{} [{} … {}]", scale.figure(value), scale.number(low), scale.number(high))
 }
 
 /// Whether two directions differ at 95 %, with their difference `what` and its interval.

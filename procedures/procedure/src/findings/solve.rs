@@ -43,9 +43,24 @@ pub fn t95(freedom: f64) -> f64 {
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
 }
 
+/// Half width of a 95 % interval, from the values of a figure without each of several parts (jackknife).
+pub fn jackknife95(without: &[f64]) -> f64 {
+    let n = without.len() as f64;
+    let mean = without.iter().sum::<f64>() / n;
+    let variance = (n - 1.0) / n * without.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+    t95(n - 1.0) * variance.sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The jackknife of a mean of 1, 2, 3 and 6 is its standard error √(14/3/4), times t₃ = 3.182.
+    #[test]
+    fn the_jackknife_of_a_mean_is_its_standard_error() {
+        let without = [1.0, 2.0, 3.0, 6.0].map(|value| (12.0 - value) / 3.0);
+        assert!((jackknife95(&without) - 3.182 * (14.0f64 / 12.0).sqrt()).abs() < 1e-3);
+    }
 
     /// y = 1 + 2x with deviations: slope 1.98, offset 1.04, Σ² = 0.036, standard error of the slope √(0.012/10).
     #[test]

@@ -9,7 +9,7 @@ use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
-use crate::findings::{solve, t95};
+use crate::findings::{jackknife95, solve};
 use crate::identification::{Identification, Quantity, SeriesRole, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -150,11 +150,7 @@ impl Peak {
         if turns < 3 {
             return Self { rad, ci95: None };
         }
-        let n = turns as f64;
-        let parts: Vec<f64> = (0..turns).map(|turn| without(Some(turn))).collect();
-        let mean = parts.iter().sum::<f64>() / n;
-        let variance = (n - 1.0) / n * parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>();
-        let reach = t95(n - 1.0) * variance.sqrt();
+        let reach = jackknife95(&(0..turns).map(|turn| without(Some(turn))).collect::<Vec<f64>>());
         Self { rad, ci95: Some([rad - reach, rad + reach]) }
     }
 

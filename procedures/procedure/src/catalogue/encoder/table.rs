@@ -117,16 +117,9 @@ impl<'a> Class<'a> {
 
     /// The largest mean of any bin, without the readings of one turn.
     pub fn peak(&self, left: &dyn Fn(&Sweep, usize) -> f64, without_turn: Option<usize>) -> f64 {
-        let mut sums = vec![(0.0, 0u32); self.bins];
-        for (i, angle) in self.sweep.angle_rad.iter().enumerate() {
-            if without_turn != Some(self.turn(i)) {
-                let (sum, count) = &mut sums[bin(*angle, self.bins)];
-                *sum += left(self.sweep, i);
-                *count += 1;
-            }
-        }
-        let mean = |(sum, count): &(f64, u32)| (*count > 0).then(|| (sum / f64::from(*count)).abs());
-        sums.iter().filter_map(mean).fold(0.0, f64::max)
+        let kept = (0..self.sweep.angle_rad.len()).filter(|i| without_turn != Some(self.turn(*i)));
+        let means = means_of(kept.map(|i| (self.sweep, i)), self.bins, left);
+        means.into_iter().flatten().map(f64::abs).fold(0.0, f64::max)
     }
 
     /// Whole turns of the sweep.
@@ -149,13 +142,20 @@ pub fn means<'s>(
     bins: usize,
     left: &dyn Fn(&Sweep, usize) -> f64,
 ) -> Vec<Option<f64>> {
+    means_of(sweeps.flat_map(|sweep| (0..sweep.angle_rad.len()).map(move |i| (sweep, i))), bins, left)
+}
+
+/// The same of single readings.
+fn means_of<'s>(
+    readings: impl Iterator<Item = (&'s Sweep, usize)>,
+    bins: usize,
+    left: &dyn Fn(&Sweep, usize) -> f64,
+) -> Vec<Option<f64>> {
     let mut sums = vec![(0.0, 0u32); bins];
-    for sweep in sweeps {
-        for (i, angle) in sweep.angle_rad.iter().enumerate() {
-            let (sum, count) = &mut sums[bin(*angle, bins)];
-            *sum += left(sweep, i);
-            *count += 1;
-        }
+    for (sweep, i) in readings {
+        let (sum, count) = &mut sums[bin(sweep.angle_rad[i], bins)];
+        *sum += left(sweep, i);
+        *count += 1;
     }
     sums.into_iter().map(|(sum, count)| (count > 0).then(|| sum / f64::from(count))).collect()
 }

@@ -1,7 +1,7 @@
 //! Dahl parameters by least squares of the motor displacement, and the derived parameters of LuGre and Maxwell slip.
 
 use super::loops::{Swings, dahl, swings};
-use crate::findings::{Unusable, curve, quantity, scatter, solve, t95};
+use crate::findings::{Unusable, curve, jackknife95, quantity, scatter, solve};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::Values;
 use jointbench_instrument::RunTable;
@@ -129,10 +129,7 @@ fn around(value: f64, reach: f64) -> [f64; 2] {
 
 /// Half width of a 95 % interval, by the jackknife.
 fn spread(jackknife: &[Dahl], figure: &dyn Fn(Dahl) -> f64) -> Option<f64> {
-    let n = jackknife.len() as f64;
-    let mean = jackknife.iter().map(|d| figure(*d)).sum::<f64>() / n;
-    let variance = (n - 1.0) / n * jackknife.iter().map(|d| (figure(*d) - mean).powi(2)).sum::<f64>();
-    (jackknife.len() > 2).then(|| t95(n - 1.0) * variance.sqrt())
+    (jackknife.len() > 2).then(|| jackknife95(&jackknife.iter().map(|d| figure(*d)).collect::<Vec<f64>>()))
 }
 
 /// Gauss–Newton with halved steps; the zero of each step is subtracted.
