@@ -100,7 +100,7 @@ impl Limit {
     }
 }
 
-/// The limits of a file that apply. For each quantity the line that names most of part, revision and procedure applies.
+/// The limits of a file that apply. For each quantity the entry that names most of part, revision and procedure applies.
 pub fn read(path: &Path, measured: &Measured) -> Result<Vec<Requirement>, Exit> {
     let text = files::read_text(path)?;
     parse(&text, measured).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))
@@ -166,7 +166,7 @@ unit = \"Nm·s/rad\"
     }
 
     #[test]
-    fn the_most_specific_line_of_a_quantity_applies() {
+    fn the_most_specific_entry_of_a_quantity_applies() {
         let texts = |measured: &Measured| -> Vec<String> {
             parse(FILE, measured).unwrap().into_iter().map(|requirement| requirement.text).collect()
         };

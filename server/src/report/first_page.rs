@@ -94,7 +94,7 @@ fn verdict(result: &Shown) -> Markup {
     }
 }
 
-/// Verdict of the procedure, or the outcome of its limits.
+/// The verdict in words.
 pub(super) fn word_of(result: &Shown) -> &'static str {
     match result.verdict {
         Identified::Identified => "Identified",

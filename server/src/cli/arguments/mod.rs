@@ -256,8 +256,8 @@ Exit codes: 0 no further effect to add (unexplained structure may remain, see th
 2 bad arguments, 3 the data do not decide, or the budget is used up.";
 
 const RUN: &str = "\
-A limits file has one [[limit]] for each quantity; part, revision and procedure are optional, and the line that names most of
-them applies. `pass` needs the whole 95 % interval inside the limits by the guard band; `fail` is a value beyond a limit; all
+A limits file has one [[limit]] for each quantity; part, revision and procedure are optional, and the entry that names most
+of them applies. `pass` needs the whole 95 % interval inside the limits by the guard band; `fail` is a value beyond a limit; all
 between is `marginal`; a value without an interval is `inconclusive`.
 
   [[limit]]
