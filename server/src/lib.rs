@@ -12,6 +12,7 @@ pub mod daemon;
 pub mod error;
 pub mod job;
 pub mod lab;
+pub mod limits;
 pub mod listener;
 pub mod live;
 mod priority;

@@ -25,6 +25,13 @@ pub async fn earlier(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<
     Ok(Json(lab.earlier(id).await?))
 }
 
+/// JUnit report of an ended run: a test case for the run, and one for each of its limits
+#[utoipa::path(get, path = "/runs/{id}/junit", operation_id = "get_junit", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "The report", body = String, content_type = "application/xml"), Refusals))]
+pub async fn junit(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<impl IntoResponse, Problem> {
+    Ok(([(header::CONTENT_TYPE, "application/xml")], lab.junit(id).await?))
+}
+
 #[derive(Debug, Clone, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]

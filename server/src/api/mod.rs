@@ -160,11 +160,13 @@ fn measurements() -> OpenApiRouter<Lab> {
         .routes(routes!(runs::differences))
         .routes(routes!(derived::spectrum))
         .routes(routes!(identifications::get))
+        .routes(routes!(identifications::junit))
         .routes(routes!(identifications::earlier))
         .routes(routes!(identifications::trends))
         .routes(routes!(identifications::model_overlay))
         .routes(routes!(identifications::report))
         .routes(routes!(units::list))
+        .routes(routes!(units::chart))
         .routes(routes!(transfer::export))
         .routes(routes!(transfer::export_meta))
 }

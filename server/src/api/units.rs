@@ -3,7 +3,7 @@
 use super::extract::{Answer, Json, Query};
 use super::refusals::Refusals;
 use crate::lab::Lab;
-use crate::view::UnitList;
+use crate::view::{ControlChart, UnitList};
 use axum::extract::State;
 use serde::Deserialize;
 use utoipa::IntoParams;
@@ -26,4 +26,23 @@ pub async fn list(State(lab): State<Lab>, Query(query): Query<UnitQuery>) -> Ans
         true => lab.units_while_typing(&query.search).await?,
         false => lab.units(&query.search).await?,
     }))
+}
+
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct ControlChartQuery {
+    /// Terms as in the list of runs, such as `part:P -unit:REF1`: without the reference unit REF1.
+    pub search: String,
+    /// Id of the procedure, such as `friction`.
+    pub procedure: String,
+    /// Name of the quantity; the first one with an interval if omitted.
+    pub quantity: Option<String>,
+}
+
+/// Individuals chart of a quantity over units, with the rules that points violate, and the capability for the limits of the runs
+#[utoipa::path(get, path = "/units/chart", operation_id = "get_control_chart", tag = "runs", params(ControlChartQuery),
+    responses((status = 200, description = "The chart", body = ControlChart), Refusals))]
+pub async fn chart(State(lab): State<Lab>, Query(query): Query<ControlChartQuery>) -> Answer<ControlChart> {
+    Ok(Json(lab.control_chart(&query.search, &query.procedure, query.quantity.as_deref()).await?))
 }

@@ -4,7 +4,6 @@ use super::arguments::Autopilot as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::offline::decided;
-use super::outcome::is_over;
 use super::progress::RunProgress;
 use super::run::{POLL_INTERVAL, choose_bench, parameters};
 use crate::view::{Autopilot, AutopilotState, AutopilotStep, Diagnosis, Model, NewAutopilot, NewExperiment, Run};
@@ -63,7 +62,7 @@ fn wait(client: &Client, id: i64, prints: bool) -> Result<Autopilot, Exit> {
         }
         if let Some(run) = autopilot.runs.last() {
             let run: Run = client.get(&format!("/runs/{run}"))?;
-            if let Some(progress) = run.progress.filter(|_| !is_over(run.summary.state)) {
+            if let Some(progress) = run.progress.filter(|_| !run.summary.state.is_over()) {
                 shown.get_or_insert_with(RunProgress::begin).show(&progress);
             }
         }

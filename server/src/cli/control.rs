@@ -3,7 +3,6 @@
 use super::arguments::{Control, Reset, Stop};
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::outcome::{ending, is_over};
 use super::run::{POLL_INTERVAL, choose_bench, wait};
 use crate::view::{self, Acknowledgement, Bench, Run, RunList, RunState, Safe};
 
@@ -13,7 +12,7 @@ pub fn stop(arguments: &Stop) -> Done {
     let how = if arguments.now { "abort" } else { "stop" };
     let _: Run = client.post(&format!("/runs/{id}/{how}"), &())?;
     let run = wait(&client, id)?;
-    println!("{}", ending(&run));
+    println!("{}", run.ending());
     let failed = matches!(run.summary.state, RunState::Failed | RunState::Interrupted);
     match failed || run.summary.safe == Some(Safe::UnsafeUnknown) {
         true => Err(Exit::failed("")),
@@ -34,11 +33,11 @@ fn request(arguments: &Control, how: &str, wanted: RunState) -> Done {
     let client = Client::new(&arguments.reach)?;
     let id = named_or_on(&client, arguments.run)?;
     let mut run: Run = client.post(&format!("/runs/{id}/{how}"), &())?;
-    while run.summary.state != wanted && !is_over(run.summary.state) {
+    while run.summary.state != wanted && !run.summary.state.is_over() {
         std::thread::sleep(POLL_INTERVAL);
         run = client.get(&format!("/runs/{id}"))?;
     }
-    println!("{}", ending(&run));
+    println!("{}", run.ending());
     match run.summary.state == wanted {
         true => Ok(()),
         false => Err(Exit::failed("")),
@@ -59,7 +58,7 @@ fn named_or_on(client: &Client, named: Option<i64>) -> Result<i64, Exit> {
         return Ok(id);
     }
     let list: RunList = client.get("/runs?limit=100")?;
-    let on: Vec<String> = list.runs.iter().filter(|run| !is_over(run.state)).map(|run| run.id.to_string()).collect();
+    let on: Vec<String> = list.runs.iter().filter(|run| !run.state.is_over()).map(|run| run.id.to_string()).collect();
     match on.as_slice() {
         [one] => one.parse().map_err(|_| Exit::failed(format!("run {one}: expected a number"))),
         [] => Err(Exit::bad_input("no run is active")),

@@ -4,7 +4,6 @@ mod hidden;
 
 use super::arguments::Demo;
 use super::exit::{Done, Exit};
-use super::outcome::ending;
 use super::print;
 use super::progress::RunProgress;
 use super::serve::{runtime, settings};
@@ -69,7 +68,7 @@ async fn show(lab: &Lab, hidden: &Hidden) -> Result<i64, Exit> {
     println!();
     println!("1  Measure: procedure {procedure} on {bench}");
     let run = measure(lab, &hidden.setup).await?;
-    println!("   {}", ending(&run));
+    println!("   {}", run.ending());
 
     println!();
     println!("2  Fit the initial model, diagnose it, add missing effects");
@@ -106,7 +105,7 @@ async fn measure(lab: &Lab, &Setup { bench, procedure, .. }: &Setup) -> Result<R
     let run = lab.run(run).await?;
     match run.summary.state {
         RunState::Completed => Ok(run),
-        _ => Err(Exit::failed(ending(&run))),
+        _ => Err(Exit::failed(run.ending())),
     }
 }
 

@@ -10,6 +10,9 @@ use crate::report::with_interval;
 use crate::view::{Identification, Identified, Shown, command, word};
 use std::path::PathBuf;
 
+/// Digits of a SHA-256 in a line of text.
+const SHOWN_DIGITS: usize = 12;
+
 pub fn identify(arguments: &Identify) -> Done {
     let runtime = runtime()?;
     let run = arguments.run;
@@ -54,19 +57,18 @@ pub fn report(arguments: &Report) -> Done {
     Ok(())
 }
 
-pub(super) fn verdict(found: &Identification) -> String {
-    let (procedure, run, result) = (&found.procedure, found.run, &found.result);
-    format!("{procedure} of run {run}: {}. {}", word(result.verdict), result.summary)
-}
-
 pub(super) fn print(found: &Identification) {
     let result = &found.result;
-    println!("{}", verdict(found));
+    println!("{}", found.line());
     result.warnings.iter().for_each(|warning| println!("warning: {warning}"));
     if let Some(advice) = &result.advice {
         println!("advice: {advice}");
     }
     quantities(result);
+    if let Some(check) = &found.limits {
+        println!("\nLimits ({}):", &check.sha256[..SHOWN_DIGITS.min(check.sha256.len())]);
+        check.limits.iter().for_each(|limit| println!("{}: {}", word(limit.outcome), limit.message));
+    }
     if let Some(next) = &found.follow_up {
         println!("\nNext: {}\n  {}", next.why, command(&next.procedure, &next.parameters));
     }

@@ -3,13 +3,11 @@
 use super::arguments::{Run as Arguments, UnitArguments};
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::junit::junit;
-use super::limits::{self, Measured};
-use super::outcome::{Found, ending, is_over};
+use super::outcome::{Found, title};
 use super::progress::RunProgress;
-use super::require::{Requirement, RequirementResult};
 use super::{files, identify};
-use crate::view::{Bench, NewRun, Run, RunState, Unit};
+use crate::limits::{self, Case, CaseOutcome, Measured, Requirement, RequirementResult};
+use crate::view::{Bench, Identification, LimitOutcome, NewRun, Run, RunState, Unit};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
 use std::time::{Duration, Instant};
@@ -19,20 +17,19 @@ pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(250);
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach)?;
     arguments.junit.iter().try_for_each(|path| files::writable(path))?;
-    let required = requirements(&client, arguments);
-    let ended = required.as_ref().map_err(Exit::clone).and_then(|_| start(&client, arguments));
-    let required = required.unwrap_or_default();
+    let limits = limits_text(&client, arguments);
+    let ended = limits.and_then(|limits| start(&client, arguments, limits));
     let found =
         ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
-    let demands: Vec<(&Requirement, RequirementResult)> = match &found {
-        Some(found) => required.iter().map(|demand| (demand, check(demand, found))).collect(),
+    let required: Vec<(&Requirement, RequirementResult)> = match &found {
+        Some(found) => arguments.require.iter().map(|limit| (limit, check(limit, found))).collect(),
         None => Vec::new(),
     };
     if let Some(path) = &arguments.junit {
-        files::write(path, junit(arguments, &required, &ended, found.as_ref(), &demands).as_bytes())?;
+        files::write(path, report(arguments, &ended, found.as_ref(), &required).as_bytes())?;
     }
     let run = ended?;
-    let message = if is_over(run.summary.state) { ending(&run) } else { String::new() };
+    let message = if run.summary.state.is_over() { run.ending() } else { String::new() };
     if arguments.json {
         let text = serde_json::to_string_pretty(&run).map_err(|fault| Exit::failed(fault.to_string()))?;
         println!("{text}");
@@ -42,54 +39,85 @@ pub fn run(arguments: &Arguments) -> Done {
             identify::print(found);
         }
     }
-    match is_over(run.summary.state) && run.summary.state != RunState::Completed {
+    match run.summary.state.is_over() && run.summary.state != RunState::Completed {
         true => Err(Exit::failed(if arguments.json { message } else { String::new() })),
-        false => judge(found.as_ref(), &demands, arguments.json),
+        false => judge(found.as_ref(), &required, arguments.json),
     }
 }
 
-/// The requirements of the arguments and of the limits file. One that the procedure cannot meet is refused before any
+/// The text of the limits file. A limit that does not apply or that the procedure cannot meet is refused before any
 /// motion.
-fn requirements(client: &Client, arguments: &Arguments) -> Result<Vec<Requirement>, Exit> {
-    if arguments.require.is_empty() && arguments.limits.is_none() {
-        return Ok(Vec::new());
-    }
-    let (id, unit) = match (&arguments.procedure, arguments.continues) {
-        (None, Some(before)) => {
-            let run: Run = client.get(&format!("/runs/{before}"))?;
-            (run.summary.procedure, run.summary.unit)
+fn limits_text(client: &Client, arguments: &Arguments) -> Result<Option<String>, Exit> {
+    let id = match (&arguments.procedure, arguments.continues) {
+        (None, Some(before)) if !arguments.require.is_empty() => {
+            client.get::<Run>(&format!("/runs/{before}"))?.summary.procedure
         }
-        (id, _) => (id.clone().unwrap_or_default(), unit(&arguments.unit)),
+        (id, _) => id.clone().unwrap_or_default(),
     };
-    let mut all = arguments.require.clone();
-    if let Some(path) = &arguments.limits {
-        let of = |text: fn(&Unit) -> &Option<String>| unit.as_ref().and_then(|unit| text(unit).as_deref());
-        let measured = Measured { part: of(|unit| &unit.part), revision: of(|unit| &unit.revision), procedure: &id };
-        all.extend(limits::read(path, &measured)?);
-    }
+    let wrong = |limit: &Requirement, why| Exit::bad_input(format!("'{}': {why}", limit.text));
     // The daemon refuses an unknown procedure.
-    let Some(procedure) = procedure(&id) else { return Ok(all) };
-    let finds = procedure.finds();
-    let wrong = |demand: &Requirement, why| Exit::bad_input(format!("'{}': {why}", demand.text));
-    all.iter().try_for_each(|demand| demand.can_be_met_by(&id, &finds).map_err(|why| wrong(demand, why)))?;
-    Ok(all)
+    if let Some(procedure) = procedure(&id) {
+        let finds = procedure.finds();
+        arguments
+            .require
+            .iter()
+            .try_for_each(|limit| limit.can_be_met_by(&id, &finds).map_err(|why| wrong(limit, why)))?;
+    }
+    let Some(path) = &arguments.limits else { return Ok(None) };
+    let text = files::read_text(path)?;
+    let unit = unit(&arguments.unit);
+    limits::checked(&text, &Measured::new(unit.as_ref(), &id))
+        .map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))?;
+    Ok(Some(text))
+}
+
+/// The JUnit report. The limits are skipped if no run has completed.
+fn report(
+    arguments: &Arguments,
+    ended: &Result<Run, Exit>,
+    found: Option<&Found>,
+    required: &[(&Requirement, RequirementResult)],
+) -> String {
+    let found_case = found.map(|found| found.as_ref().map_err(|exit| exit.message.as_str()));
+    let (suite, case) = match ended {
+        Ok(run) => (run.summary.bench.as_str(), limits::run_case(run, found_case)),
+        Err(exit) => {
+            let outcome = CaseOutcome::Error(exit.message.clone());
+            ("jointbench", Case { name: title(arguments), time_s: 0.0, outcome })
+        }
+    };
+    let mut cases = vec![case];
+    cases.extend(required.iter().map(|(limit, kept)| Case {
+        name: limit.text.clone(),
+        time_s: 0.0,
+        outcome: CaseOutcome::from(kept),
+    }));
+    let result = found.and_then(|found| found.as_ref().ok());
+    if let Some(found) = result {
+        cases.extend(found.limits.iter().flat_map(|check| &check.limits).map(limits::limit_case));
+    } else {
+        let kept = ended.as_ref().ok().map(limits::of_run).unwrap_or_default();
+        let unchecked = arguments.require.iter().filter(|_| required.is_empty()).chain(&kept);
+        cases.extend(unchecked.map(|limit| limits::skipped_case(&limit.text)));
+    }
+    limits::junit(suite, &cases, result.map_or(&[], |found| &found.result.warnings))
 }
 
 fn shown(client: &Client, run: &Run) -> Found {
     client.get(&format!("/runs/{}/identification", run.summary.id))
 }
 
-fn check(demand: &Requirement, found: &Found) -> RequirementResult {
+fn check(limit: &Requirement, found: &Found) -> RequirementResult {
     match found {
-        Ok(found) => demand.check(found),
+        Ok(found) => limit.check(&found.result),
         Err(exit) => RequirementResult::Unknown(exit.message.clone()),
     }
 }
 
-/// Prints the result of each requirement. Exit codes in order of priority: 2 for a requirement that cannot be checked,
-/// 1 for a failed result or an exceeded limit, 3 for no decision.
-fn judge(found: Option<&Found>, demands: &[(&Requirement, RequirementResult)], quiet: bool) -> Done {
-    let results = demands.iter().map(|(_, kept)| match kept {
+/// Prints the result of each requirement; those of a limits file are part of the result. Exit codes in order of priority:
+/// 2 for a requirement that cannot be checked, 1 for a failed result or an exceeded limit, 3 for no decision.
+fn judge(found: Option<&Found>, required: &[(&Requirement, RequirementResult)], quiet: bool) -> Done {
+    let results = required.iter().map(|(_, kept)| match kept {
         RequirementResult::Pass(message) => ("pass", message, 0),
         RequirementResult::Fail(message) => ("fail", message, 1),
         RequirementResult::Marginal(message) => ("marginal", message, 3),
@@ -103,24 +131,38 @@ fn judge(found: Option<&Found>, demands: &[(&Requirement, RequirementResult)], q
     let result = match found {
         None => Ok(()),
         Some(Ok(found)) => {
-            let message = if quiet { identify::verdict(found) } else { String::new() };
+            let message = if quiet { found.line() } else { String::new() };
             identify::ending(found).map_err(|exit| Exit { message, ..exit })
         }
         Some(Err(exit)) => Err(exit.clone()),
     };
-    let of_demands = results.map(|(_, message, code)| Exit {
+    let of_required = results.map(|(_, message, code)| Exit {
         code,
         message: if quiet || code == 2 { message.clone() } else { String::new() },
     });
-    let exits: Vec<Exit> = result.err().into_iter().chain(of_demands).collect();
+    let of_limits = found
+        .and_then(|found| found.as_ref().ok())
+        .and_then(of_limits)
+        .map(|exit| Exit { message: if quiet { exit.message } else { String::new() }, ..exit });
+    let exits: Vec<Exit> = result.err().into_iter().chain(of_required).chain(of_limits).collect();
     match [2, 1, 3].into_iter().find_map(|code| exits.iter().find(|exit| exit.code == code)) {
         None => Ok(()),
         Some(worst) => Err(worst.clone()),
     }
 }
 
+/// The exit of the worst limit of the file.
+fn of_limits(found: &Identification) -> Option<Exit> {
+    let check = found.limits.as_ref().filter(|check| check.outcome != LimitOutcome::Pass)?;
+    let message = check.limits.iter().find(|limit| limit.outcome == check.outcome)?.message.clone();
+    Some(match check.outcome {
+        LimitOutcome::Fail => Exit::failed(message),
+        _ => Exit::undecided(message),
+    })
+}
+
 /// The started run, or the ended run if the command waits.
-fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
+fn start(client: &Client, arguments: &Arguments, limits: Option<String>) -> Result<Run, Exit> {
     let run: Run = match arguments.continues {
         Some(before) => {
             let run: Run = client.get(&format!("/runs/{before}"))?;
@@ -131,7 +173,7 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
             }
             client.post(&format!("/runs/{before}/continue"), &())?
         }
-        None => client.post("/runs", &new_run(client, arguments)?)?,
+        None => client.post("/runs", &NewRun { limits, ..new_run(client, arguments)? })?,
     };
     let (id, procedure, bench) = (run.summary.id, &run.summary.procedure, &run.summary.bench);
     if !arguments.json {
@@ -186,6 +228,7 @@ fn new_run(client: &Client, arguments: &Arguments) -> Result<NewRun, Exit> {
         parameters: parameters(&arguments.set)?,
         unit: unit(&arguments.unit),
         operator: arguments.unit.operator.clone(),
+        limits: None,
     })
 }
 
@@ -250,7 +293,7 @@ fn wait_at_most(client: &Client, id: i64, limit: Option<Duration>) -> Result<Run
         // After a restart of the daemon, the end of a run appears before its safe state. A completed run can be read
         // only when it is stored. Other ends are final immediately.
         let waits_for_the_disk = run.summary.state == RunState::Completed && run.summary.not_stored.is_some();
-        if is_over(run.summary.state) && run.summary.safe.is_some() && !waits_for_the_disk {
+        if run.summary.state.is_over() && run.summary.safe.is_some() && !waits_for_the_disk {
             shown.end();
             return Ok(match exceeded {
                 Some(limit) if run.summary.state == RunState::Aborted => timed_out(run, limit),
@@ -273,9 +316,18 @@ fn timed_out(mut run: Run, limit: Duration) -> Run {
 
 #[cfg(test)]
 mod tests {
-    use super::super::junit::tests::asked;
     use super::*;
     use crate::view::Identified;
+
+    fn asked(words: &[&str]) -> Arguments {
+        use clap::Parser;
+        #[derive(Parser)]
+        struct Alone {
+            #[command(flatten)]
+            run: Arguments,
+        }
+        Alone::parse_from([&["run"], words].concat()).run
+    }
 
     #[test]
     fn values_are_json_where_they_can_be() {
@@ -303,11 +355,11 @@ mod tests {
 
     #[test]
     fn a_broken_limit_weighs_more_than_one_that_is_not_sure() {
-        let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
+        let limit: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
         let message = || "message".to_owned();
         let code = |kept: &[RequirementResult]| {
-            let demands: Vec<_> = kept.iter().map(|kept| (&demand, kept.clone())).collect();
-            judge(None, &demands, true).err().map_or(0, |exit| exit.code)
+            let required: Vec<_> = kept.iter().map(|kept| (&limit, kept.clone())).collect();
+            judge(None, &required, true).err().map_or(0, |exit| exit.code)
         };
         assert_eq!(code(&[RequirementResult::Pass(message())]), 0);
         assert_eq!(code(&[RequirementResult::Pass(message()), RequirementResult::Marginal(message())]), 3);
@@ -325,13 +377,13 @@ mod tests {
     #[test]
     fn what_was_not_identified_is_no_success() {
         let shown = |verdict| {
-            let mut found = super::super::require::tests::found();
+            let mut found = crate::limits::found();
             found.result.verdict = verdict;
             Ok(found)
         };
-        let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
+        let limit: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
         let code = |found: Found, kept: RequirementResult| {
-            judge(Some(&found), &[(&demand, kept)], true).err().map_or(0, |exit| exit.code)
+            judge(Some(&found), &[(&limit, kept)], true).err().map_or(0, |exit| exit.code)
         };
         let (yes, no) = (RequirementResult::Pass(String::new()), RequirementResult::Fail(String::new()));
         assert_eq!(code(shown(Identified::Identified), yes.clone()), 0);

@@ -3,7 +3,6 @@
 use super::arguments::Runs;
 use super::exit::Done;
 use super::offline::json_out;
-use super::outcome::is_over;
 use super::serve::runtime;
 use super::transfer::{Target, open};
 use crate::lab::{LabError, Order, RunFilter};
@@ -29,7 +28,7 @@ pub fn runs(arguments: &Runs) -> Done {
                 arguments.sort.as_deref().map(Order::parse).transpose().map_err(LabError::from)?.unwrap_or_default();
             let filter = RunFilter { limit: arguments.limit, offset: 0, search: Some(search.clone()), order };
             let mut list = runtime.block_on(lab.runs(&filter))?;
-            for run in list.runs.iter_mut().filter(|run| !is_over(run.state)) {
+            for run in list.runs.iter_mut().filter(|run| !run.state.is_over()) {
                 run.reason = Some(NO_DAEMON.to_owned());
             }
             list

@@ -81,7 +81,9 @@ impl Lab {
         if record.simulated {
             meta.other.insert(SIMULATED.to_owned(), true.into());
         }
-        TestedUnit { unit: record.unit.clone(), operator: record.operator.clone() }.add_to(&mut meta)?;
+        let tested =
+            TestedUnit { unit: record.unit.clone(), operator: record.operator.clone(), ..TestedUnit::default() };
+        tested.add_to(&mut meta)?;
         Ok((meta, record))
     }
 

@@ -5,8 +5,11 @@ use super::computation::{Subject as Turn, with_retries};
 use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
 use crate::job::Job;
-use crate::store::Subject;
-use crate::view::{Earlier, FollowUp, Identification, LiveMessage, Quantity, Shown, reread, word};
+use crate::limits::{self, LimitsFile, Measured};
+use crate::store::{RunRecord, Subject};
+use crate::view::{
+    self, Earlier, FollowUp, Identification, LimitCheck, LiveMessage, Quantity, Shown, reread, unit_view, word,
+};
 use jointbench_procedure::RunState;
 use jointbench_procedure::parameter::Values;
 use serde::Serialize;
@@ -84,8 +87,10 @@ impl Lab {
         let step = if cut { self.last_step(id).await? } else { None };
         let found: Identification = self.compute(Job::Identify { run: id, step }).await?;
         let verdict = found.result.verdict;
-        if record.state.is_final() && record.verdict.as_ref() != Some(&word(verdict)) {
-            match self.inner.store.keep_verdict(id, &word(verdict)).await {
+        let limits = found.limits.as_ref().map(|check| word(check.outcome));
+        let is_kept = record.verdict.as_ref() == Some(&word(verdict)) && record.limits == limits;
+        if record.state.is_final() && !is_kept {
+            match self.inner.store.keep_verdict(id, &word(verdict), limits.as_deref()).await {
                 Ok(()) => self.hub().publish(LiveMessage::Verdict { run: id, verdict }),
                 // The result is valid although its verdict is not stored.
                 Err(fault) => {
@@ -94,6 +99,30 @@ impl Lab {
             }
         }
         Ok(found)
+    }
+
+    /// The JUnit report of an ended run: one test case for the run, and one for each of its limits.
+    pub async fn junit(&self, id: i64) -> Answer<String> {
+        let run = self.run(id).await?;
+        if !run.summary.state.is_over() {
+            return Err(LabError::Conflict(format!("run {id} is not over: wait for its end")));
+        }
+        let found = match run.summary.state {
+            view::RunState::Completed => Some(self.identification(id).await),
+            _ => None,
+        };
+        let fault = found.as_ref().and_then(|found| found.as_ref().err()).map(ToString::to_string);
+        let found = found.and_then(Result::ok);
+        let of_run = found.as_ref().map(Ok).or(fault.as_deref().map(Err));
+        let mut cases = vec![limits::run_case(&run, of_run)];
+        match &found {
+            Some(found) => {
+                cases.extend(found.limits.iter().flat_map(|check| &check.limits).map(limits::limit_case));
+            }
+            None => cases.extend(limits::of_run(&run).iter().map(|limit| limits::skipped_case(&limit.text))),
+        }
+        let warnings = found.as_ref().map_or(&[][..], |found| &found.result.warnings);
+        Ok(limits::junit(&run.summary.bench, &cases, warnings))
     }
 
     pub(super) async fn identify_here(&self, id: i64, step: Option<String>) -> Answer<Identification> {
@@ -115,13 +144,15 @@ impl Lab {
             let before: Vec<String> = before.iter().map(i64::to_string).collect();
             found = found.introduced(&format!("Runs {} and {last} together:", before.join(", ")));
         }
+        let result = reread::<_, Shown>(&found)?.with_warnings(self.warnings(&runs).await?);
         Ok(Identification {
             run: id,
+            limits: limit_check(&record, &result)?,
             applies: applies(&record.procedure),
             procedure: record.procedure.clone(),
             software: concat!("jointbench ", env!("CARGO_PKG_VERSION")).to_owned(),
             follow_up: procedure.follow_up(&found).map(|next| reread(&next)).transpose()?,
-            result: reread::<_, Shown>(&found)?.with_warnings(self.warnings(&runs).await?),
+            result,
         })
     }
 
@@ -168,6 +199,14 @@ impl Lab {
             tracing::debug!(run.id = run, %fault, "no result of the run");
         }
     }
+}
+
+/// The result of a run compared with its limits.
+fn limit_check(record: &RunRecord, result: &Shown) -> Answer<Option<LimitCheck>> {
+    let Some(file) = LimitsFile::kept(&record.provenance) else { return Ok(None) };
+    let unit = record.unit.clone().map(unit_view);
+    let check = file.check(&Measured::new(unit.as_ref(), &record.procedure), result);
+    check.map(Some).map_err(|fault| LabError::Internal(format!("the limits of run {}: {fault}", record.id)))
 }
 
 fn no_result(run: i64, procedure: &str) -> LabError {

@@ -5,6 +5,7 @@ mod autopilot_task;
 mod benches;
 mod calibrations;
 mod computation;
+mod control_chart;
 mod derived;
 mod exclusions;
 mod experiment;

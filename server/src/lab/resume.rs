@@ -4,6 +4,7 @@ use super::benches::previewed;
 use super::units::TestedUnit;
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
+use crate::limits::LimitsFile;
 use crate::store::{EventRecord, RunRecord};
 use crate::view::{Preview, Run, reread};
 use jiff::Timestamp;
@@ -51,7 +52,7 @@ impl Lab {
             None => rest,
         };
         // Another person may continue the run.
-        let tested = TestedUnit { unit: record.unit, operator: None };
+        let tested = TestedUnit { unit: record.unit, operator: None, limits: LimitsFile::kept(&record.provenance) };
         self.launch(bench, rest, tested, by).await
     }
 

@@ -3,11 +3,12 @@
 use super::units::TestedUnit;
 use super::{Answer, Lab, LabError};
 use crate::bench::{BenchHandle, Status, show_unstored_end};
+use crate::limits::ACCEPTANCE_LIMITS;
 use crate::store::{NewRun, RunFilter, RunRecord, Search};
 use crate::view::{self, Run, RunEvent, RunList, Samples, reread, run_event, run_summary, run_view};
 use jointbench_instrument::{Meta, RunTable};
 use jointbench_procedure::{Control, Demand, Plan};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::time::Duration;
 use tokio::time::timeout;
@@ -18,7 +19,7 @@ const STORES: Duration = Duration::from_secs(2);
 impl Lab {
     /// Plans, checks the limits, and passes the plan to the thread of the bench.
     pub async fn start_run(&self, new: &view::NewRun, by: &str) -> Answer<Run> {
-        let tested = TestedUnit::checked(new.unit.as_ref(), new.operator.as_deref())?;
+        let tested = TestedUnit::of(new)?;
         let (bench, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
         self.launch(bench, plan, tested, by).await
     }
@@ -186,13 +187,17 @@ fn new_run(bench: &BenchHandle, plan: &Plan, tested: TestedUnit, by: &str) -> An
         "simulated": description.is_simulated(),
         "seed": description.seed(),
     });
+    let mut provenance: Map<String, Value> = reread(&provenance)?;
+    if let Some(limits) = &tested.limits {
+        provenance.insert(ACCEPTANCE_LIMITS.to_owned(), reread(limits)?);
+    }
     Ok(NewRun {
         bench: description.name.clone(),
         procedure: plan.procedure.clone(),
         kind: plan.kind.to_string(),
         simulated: description.is_simulated(),
         parameters: plan.parameters.clone(),
-        provenance: reread(&provenance)?,
+        provenance,
         meta: reread(&plan.meta)?,
         unit: tested.unit,
         operator: tested.operator,

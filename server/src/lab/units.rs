@@ -2,8 +2,11 @@
 
 use super::names::{LONGEST_UNIT_TEXT, checked};
 use super::{Answer, Lab, LabError};
+use crate::limits::{self, LimitsFile, Measured};
 use crate::store::{Search, UnitRecord, UnitRunRecord};
-use crate::view::{FirstPassYield, Identified, Unit, UnitList, UnitSummary, YieldGroup, reread, unit_view};
+use crate::view::{
+    FirstPassYield, Identified, LimitOutcome, NewRun, Unit, UnitList, UnitSummary, YieldGroup, reread, unit_view,
+};
 use jointbench_instrument::Meta;
 use jointbench_procedure::RunState;
 use std::cmp::Reverse;
@@ -17,17 +20,28 @@ const Z95: f64 = 1.959_963_984_540_054;
 const UNIT: &str = "unit";
 const OPERATOR: &str = "operator";
 
-/// The unit under test of a new run, and the person who starts it.
+/// The unit under test of a new run, the person who starts it, and the limits of the unit.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct TestedUnit {
     pub unit: Option<UnitRecord>,
     pub operator: Option<String>,
+    pub limits: Option<LimitsFile>,
 }
 
 impl TestedUnit {
     /// Checks the texts of a user.
     pub fn checked(unit: Option<&Unit>, operator: Option<&str>) -> Answer<Self> {
-        Ok(Self { unit: unit.map(checked_unit).transpose()?, operator: optional("operator", operator)? })
+        Ok(Self { unit: unit.map(checked_unit).transpose()?, operator: optional("operator", operator)?, limits: None })
+    }
+
+    /// Of a new run; the procedure has to be able to meet the limits.
+    pub fn of(new: &NewRun) -> Answer<Self> {
+        let checked = |text: &String| match limits::checked(text, &Measured::new(new.unit.as_ref(), &new.procedure)) {
+            Ok(()) => Ok(LimitsFile::of(text)),
+            Err(fault) => Err(LabError::Invalid(format!("limits: {fault}"))),
+        };
+        let limits = new.limits.as_ref().map(checked).transpose()?;
+        Ok(Self { limits, ..Self::checked(new.unit.as_ref(), new.operator.as_deref())? })
     }
 
     /// Moves the unit of an exported run from the metadata of its file. Other values of these keys stay there.
@@ -105,6 +119,7 @@ fn summary(runs: &[&UnitRunRecord]) -> Option<UnitSummary> {
     let named = |text: fn(&UnitRecord) -> &Option<String>| runs.iter().rev().find_map(|run| text(&run.unit).clone());
     let mut complete = runs.iter().filter(|run| is_complete(run));
     let first_verdict = complete.clone().next().and_then(|run| verdict(run));
+    let newest_complete = complete.next_back();
     Some(UnitSummary {
         serial: newest.unit.serial.clone(),
         part: named(|unit| &unit.part),
@@ -112,7 +127,8 @@ fn summary(runs: &[&UnitRunRecord]) -> Option<UnitSummary> {
         batch: named(|unit| &unit.batch),
         runs: runs.len() as u64,
         first_verdict,
-        newest_verdict: complete.next_back().and_then(|run| verdict(run)),
+        newest_verdict: newest_complete.and_then(|run| verdict(run)),
+        newest_limits: newest_complete.and_then(|run| limit_outcome(run)),
         newest_run: newest.run,
         newest_at: newest.created_at.clone(),
     })
@@ -125,6 +141,15 @@ fn is_complete(run: &UnitRunRecord) -> bool {
 
 fn verdict(run: &UnitRunRecord) -> Option<Identified> {
     run.verdict.as_ref().and_then(|verdict| reread(verdict).ok())
+}
+
+fn limit_outcome(run: &UnitRunRecord) -> Option<LimitOutcome> {
+    run.limits.as_ref().and_then(|outcome| reread(outcome).ok())
+}
+
+/// Identified, and within its limits if it has some.
+fn passes(run: &UnitRunRecord, verdict: Identified) -> bool {
+    verdict.is_identified() && limit_outcome(run).is_none_or(|outcome| outcome == LimitOutcome::Pass)
 }
 
 fn yields<'r>(units: impl Iterator<Item = &'r Vec<&'r UnitRunRecord>>) -> Vec<FirstPassYield> {
@@ -145,7 +170,7 @@ fn yields<'r>(units: impl Iterator<Item = &'r Vec<&'r UnitRunRecord>>) -> Vec<Fi
             ] {
                 let (units, passed) = counts.entry((group, part, revision, batch, &run.procedure)).or_default();
                 *units += 1;
-                *passed += u64::from(verdict.is_identified());
+                *passed += u64::from(passes(run, verdict));
             }
         }
     }
@@ -190,6 +215,7 @@ mod tests {
             state,
             created_at: "2026-01-31T00:00:00Z".into(),
             verdict: verdict.map(str::to_owned),
+            limits: None,
         }
     }
 
@@ -219,22 +245,28 @@ mod tests {
             run(3, "B", Some("7"), Completed, Some("inconclusive")),
             run(4, "B", None, Completed, Some("identified")),
             run(5, "C", Some("8"), Completed, None),
+            UnitRunRecord { limits: Some("fail".into()), ..run(6, "D", Some("9"), Completed, Some("identified")) },
         ]);
         let serials: Vec<_> = list.units.iter().map(|unit| unit.serial.as_str()).collect();
-        assert_eq!((list.total, serials), (3, vec!["C", "B", "A"]), "newest first");
-        let b = &list.units[1];
+        assert_eq!((list.total, serials), (4, vec!["D", "C", "B", "A"]), "newest first");
+        assert_eq!(list.units[0].newest_limits, Some(LimitOutcome::Fail));
+        let b = &list.units[2];
         assert_eq!((b.runs, b.newest_run, b.batch.as_deref()), (2, 4, Some("7")));
         assert_eq!((b.first_verdict, b.newest_verdict), (Some(Identified::Inconclusive), Some(Identified::Identified)));
-        let one = &list.units[2];
+        let one = &list.units[3];
         assert_eq!(
             (one.first_verdict, one.first_verdict),
             (one.newest_verdict, Some(Identified::IdentifiedWithWarning))
         );
         let figures: Vec<_> =
             list.yields.iter().map(|one| (one.group, one.batch.as_deref(), one.passed, one.units)).collect();
-        let expected =
-            [(YieldGroup::Part, None, 1, 2), (YieldGroup::Revision, None, 1, 2), (YieldGroup::Batch, Some("7"), 1, 2)];
-        assert_eq!(figures, expected, "C has no verdict yet");
+        let expected = [
+            (YieldGroup::Part, None, 1, 3),
+            (YieldGroup::Revision, None, 1, 3),
+            (YieldGroup::Batch, Some("7"), 1, 2),
+            (YieldGroup::Batch, Some("9"), 0, 1),
+        ];
+        assert_eq!(figures, expected, "C has no verdict yet, D exceeds a limit");
     }
 
     #[test]

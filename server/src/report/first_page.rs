@@ -3,14 +3,16 @@
 
 use super::figure::small_svg;
 use super::number::with_interval;
-use super::{Report, sign_off};
-use crate::view::{Figure, Identified, Quantity, Shown, word};
+use super::{Report, limits, sign_off};
+use crate::view::{Figure, Identified, LimitCheck, Quantity, Shown, word};
 use jointbench_model::words::Scale;
 use jointbench_procedure::procedure;
 use maud::{Markup, PreEscaped, html};
 
 /// Quantities that have room on the page. The appendix has all of them.
 const MOST_QUANTITIES: usize = 12;
+/// Limits that have room.
+const MOST_LIMITS: usize = 8;
 /// Letters of the summary that have room.
 const MOST_LETTERS: usize = 700;
 
@@ -21,12 +23,25 @@ impl Report {
             section.first {
                 h1 { (title) " " span.badge { (self.origin()) } }
                 (self.subject())
-                @if let Some(result) = result { (verdict(result)) (quantities(result)) }
+                @if let Some(result) = result { (verdict(result)) }
+                @if let (Some(check), Some(result)) = (self.limits(), result) {
+                    (limits::limits(check, result, MOST_LIMITS))
+                }
+                @if let Some(result) = result { (quantities(result, self.most_quantities())) }
                 (self.figures_of_first_page(result))
                 (self.error_line())
                 (sign_off::block(&self.signed()))
             }
         }
+    }
+
+    fn limits(&self) -> Option<&LimitCheck> {
+        self.identification.as_ref()?.limits.as_ref()
+    }
+
+    /// The limits take the room of quantities.
+    fn most_quantities(&self) -> usize {
+        MOST_QUANTITIES - self.limits().map_or(0, |check| check.limits.len().min(MOST_LIMITS))
     }
 
     /// Unit, people, time and state as one table of two columns.
@@ -119,11 +134,11 @@ fn shortened(summary: &str) -> String {
 }
 
 /// Quantities with an interval first, because they are the results.
-fn quantities(result: &Shown) -> Markup {
+fn quantities(result: &Shown, most: usize) -> Markup {
     let (certain, others): (Vec<&Quantity>, Vec<&Quantity>) =
         result.quantities.iter().partition(|quantity| quantity.ci95.is_some());
     let all: Vec<&Quantity> = certain.into_iter().chain(others).collect();
-    let shown = &all[..all.len().min(MOST_QUANTITIES)];
+    let shown = &all[..all.len().min(most)];
     html! {
         @if !shown.is_empty() {
             table {

@@ -5,6 +5,7 @@
 
 mod figure;
 mod first_page;
+mod limits;
 mod model;
 mod number;
 mod pairs;

@@ -8,7 +8,8 @@ use maud::{Markup, html};
 use serde_json::{Map, Value};
 
 /// Facts with a place of their own in the tables.
-const PLACED: [&str; 10] = [
+const PLACED: [&str; 11] = [
+    "acceptance_limits",
     "bench_description",
     "by",
     "calibrated",
@@ -39,6 +40,11 @@ impl Report {
             @if let Some(source) = table("imported") { (section("Imported data", source)) }
             (section("Further facts", &others))
             @if let Some(text) = text { h3 { "Bench description" } pre { (text) } }
+            @if let Some(file) = of("acceptance_limits") {
+                h3 { "Limits file" }
+                p.quiet { "SHA-256 " (plain(&file["sha256"])) }
+                pre { (plain(&file["text"])) }
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::figure::svg;
 use super::first_page::word_of;
+use super::limits::limits;
 use super::number::with_interval;
 use crate::view::{Identification, command};
 use maud::{Markup, PreEscaped, html};
@@ -28,6 +29,7 @@ pub fn result(found: &Identification) -> Markup {
                 }
             }
         }
+        @if let Some(check) = &found.limits { (limits(check, result, check.limits.len())) }
         @if let Some(next) = &found.follow_up {
             p {
                 "Next: " (next.why) ": " code { (command(&next.procedure, &next.parameters)) }

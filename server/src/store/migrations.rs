@@ -31,6 +31,7 @@ const FILES: &[(&str, &str)] = &[
     ("0021_warnings.sql", include_str!("../../../migrations/0021_warnings.sql")),
     ("0022_units.sql", include_str!("../../../migrations/0022_units.sql")),
     ("0023_effect_uses.sql", include_str!("../../../migrations/0023_effect_uses.sql")),
+    ("0024_limit_outcomes.sql", include_str!("../../../migrations/0024_limit_outcomes.sql")),
 ];
 
 #[derive(Debug)]

@@ -62,6 +62,8 @@ pub struct RunRecord {
     pub note: Option<String>,
     /// Verdict of the procedure, if it was computed.
     pub verdict: Option<String>,
+    /// Outcome of its limits, computed with the verdict.
+    pub limits: Option<String>,
     /// Values of the last model version, as in the list of runs.
     pub model: Option<Value>,
     /// Damage of the record, in a list. The other fields hold the readable data.
@@ -94,6 +96,7 @@ impl RunRecord {
             tags: Vec::new(),
             note: None,
             verdict: None,
+            limits: None,
             model: None,
             damaged: Some(damaged),
         }
@@ -119,6 +122,8 @@ pub struct UnitRunRecord {
     pub state: RunState,
     pub created_at: String,
     pub verdict: Option<String>,
+    /// Outcome of its limits.
+    pub limits: Option<String>,
 }
 
 /// A note on a run.

@@ -15,6 +15,7 @@ use sqlx::{QueryBuilder, Row, SqliteConnection};
 pub(super) const LISTED: &str = "SELECT runs_told.*, \
     (SELECT json_group_array(tag) FROM (SELECT tag FROM tags WHERE run = runs_told.id ORDER BY tag)) AS tags, \
     (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict, \
+    (SELECT limits FROM verdicts WHERE run = runs_told.id) AS limits, \
     (SELECT text FROM notes WHERE run = runs_told.id ORDER BY id DESC LIMIT 1) AS note, \
     (SELECT json_object('id', id, 'validation_rms', validation_rms, 'noise_floor_rms', noise_floor_rms, \
         'unit', json_extract(fit, '$.unit'), \
@@ -47,6 +48,7 @@ fn record(row: &SqliteRow, channels: Vec<Channel>) -> Result<RunRecord, StoreErr
         tags: json(row, "tags")?,
         note: row.try_get("note")?,
         verdict: row.try_get("verdict")?,
+        limits: row.try_get("limits")?,
         model: row.try_get::<Option<&str>, _>("model")?.map(serde_json::from_str).transpose()?,
         channels,
         damaged: None,
@@ -79,10 +81,10 @@ impl Store {
         insert_run(&mut *self.writer.acquire().await?, new).await
     }
 
-    /// Stores the verdict of the procedure on an ended run.
-    pub async fn keep_verdict(&self, run: RunId, verdict: &str) -> Result<(), StoreError> {
-        let keep = sqlx::query("INSERT OR REPLACE INTO verdicts (run, verdict) VALUES (?, ?)");
-        keep.bind(run).bind(verdict).execute(&self.writer).await?;
+    /// Stores the verdict of the procedure on an ended run, and the outcome of its limits.
+    pub async fn keep_verdict(&self, run: RunId, verdict: &str, limits: Option<&str>) -> Result<(), StoreError> {
+        let keep = sqlx::query("INSERT OR REPLACE INTO verdicts (run, verdict, limits) VALUES (?, ?, ?)");
+        keep.bind(run).bind(verdict).bind(limits).execute(&self.writer).await?;
         Ok(())
     }
 

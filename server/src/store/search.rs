@@ -11,7 +11,7 @@ use serde::de::{DeserializeOwned, IntoDeserializer, value};
 use sqlx::{QueryBuilder, Sqlite};
 
 /// Fields with their column; a prefix of the value is enough.
-const FIELDS: [(&str, &str); 9] = [
+const FIELDS: [(&str, &str); 11] = [
     ("bench", "bench"),
     ("procedure", "procedure"),
     ("kind", "kind"),
@@ -21,10 +21,12 @@ const FIELDS: [(&str, &str); 9] = [
     ("part", "part"),
     ("batch", "batch"),
     ("operator", "operator"),
+    ("verdict", "(SELECT verdict FROM verdicts WHERE run = runs_told.id)"),
+    ("limits", "(SELECT limits FROM verdicts WHERE run = runs_told.id)"),
 ];
 /// Numeric fields with their column.
 const NUMBERS: [(&str, &str); 3] = [("id", "id"), ("rows", "rows"), ("duration", "duration_s")];
-const KEYS: &str = "bench: procedure: kind: state: safe: unit: part: batch: operator: tag: note: simulated:yes \
+const KEYS: &str = "bench: procedure: kind: state: safe: unit: part: batch: operator: verdict: limits: tag: note: simulated:yes \
     after:2026-01-31 before: id> rows> duration>2min";
 /// Units of a duration in seconds; the default is seconds.
 const DURATIONS: [(&str, f64); 4] = [("min", 60.0), ("h", 3600.0), ("m", 60.0), ("s", 1.0)];

@@ -14,7 +14,8 @@ impl Store {
         let search = Search::parse(search)?;
         let mut query = QueryBuilder::new(
             "SELECT id, serial, part, revision, batch, operator, unit_checksum, procedure, state, created_at, \
-             (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict \
+             (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict, \
+             (SELECT limits FROM verdicts WHERE run = runs_told.id) AS limits \
              FROM runs_told WHERE serial IN (SELECT serial FROM runs_told",
         );
         search.push(&mut query);
@@ -32,6 +33,7 @@ fn unit_run(row: &SqliteRow) -> Result<Option<UnitRunRecord>, StoreError> {
         state: word(row.try_get("state")?)?,
         created_at: row.try_get("created_at")?,
         verdict: row.try_get("verdict")?,
+        limits: row.try_get("limits")?,
     }))
 }
 

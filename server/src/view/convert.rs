@@ -71,6 +71,7 @@ pub fn run_summary(record: &RunRecord) -> view::RunSummary {
         tags: record.tags.clone(),
         note: record.note.clone(),
         verdict: record.verdict.as_ref().and_then(|verdict| reread(verdict).ok()),
+        limits: record.limits.as_ref().and_then(|outcome| reread(outcome).ok()),
         // An unreadable model is omitted.
         is_modelled,
         model: record.model.as_ref().filter(|_| is_modelled).and_then(|model| reread(model).ok()),

@@ -1,5 +1,6 @@
 //! Results of procedures.
 
+use super::{LimitCheck, word};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -36,6 +37,17 @@ pub struct Identification {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub follow_up: Option<FollowUp>,
     pub applies: Applies,
+    /// The limits of the run, and whether the result meets them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<LimitCheck>,
+}
+
+impl Identification {
+    /// The verdict in a line of text.
+    pub fn line(&self) -> String {
+        let Self { procedure, run, result, .. } = self;
+        format!("{procedure} of run {run}: {}. {}", word(result.verdict), result.summary)
+    }
 }
 
 /// Whether the result can be applied to the bench (`POST /bench/{bench}/calibrations`).

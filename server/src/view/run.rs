@@ -1,6 +1,6 @@
 //! Runs, their journal and their samples.
 
-use super::{FittedParameter, Identified, Unit};
+use super::{FittedParameter, Identified, LimitOutcome, Unit, word};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -19,6 +19,12 @@ pub enum RunState {
     Failed,
     /// The daemon ended before the run did.
     Interrupted,
+}
+
+impl RunState {
+    pub fn is_over(self) -> bool {
+        matches!(self, Self::Completed | Self::Stopped | Self::Aborted | Self::Failed | Self::Interrupted)
+    }
 }
 
 /// Safe state reached at the end.
@@ -67,6 +73,9 @@ pub struct RunSummary {
     /// Verdict of the procedure, available shortly after the end of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Identified>,
+    /// Whether its result meets its limits; absent without limits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<LimitOutcome>,
     /// Whether the models of its kind describe it: a run for the zero of a sensor, a compensation or a warm-up has no model.
     pub is_modelled: bool,
     /// The latest active model version of the run.
@@ -148,6 +157,31 @@ pub struct Run {
     pub progress: Option<Progress>,
 }
 
+impl Run {
+    /// How the run ended, in a sentence.
+    pub fn ending(&self) -> String {
+        let summary = &self.summary;
+        let mut text = format!("run {} {}: {} rows", summary.id, word(summary.state), summary.rows);
+        if let Some(duration_s) = summary.duration_s {
+            text += &format!(" in {duration_s:.1} s of bench time");
+        }
+        if let Some(safe) = summary.safe {
+            text += &format!(", bench {}", word(safe));
+        }
+        if let Some(reason) = &summary.reason {
+            text += &format!(": {reason}");
+        }
+        if let Some(why) = &summary.not_stored {
+            text += &format!("; not yet stored: {why}");
+        }
+        let can_go_on = jointbench_procedure::procedure(&summary.procedure).is_some_and(|one| one.can_resume().is_ok());
+        if can_go_on && summary.state.is_over() && summary.state != RunState::Completed && summary.rows > 0 {
+            text += &format!("; complete it with `jointbench run --continue {}`", summary.id);
+        }
+        text
+    }
+}
+
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ChannelInfo {
     pub name: String,
@@ -187,6 +221,10 @@ pub struct NewRun {
     /// Person who starts the run; at most 80 characters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub operator: Option<String>,
+    /// Text of a limits file (TOML, at most 64 kB). The entries for the part, revision and procedure of the run apply; it
+    /// is kept with the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<String>,
 }
 
 /// One entry of the journal of a run, which is append-only.

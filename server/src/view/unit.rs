@@ -1,6 +1,6 @@
 //! Units under test.
 
-use super::Identified;
+use super::{Identified, LimitOutcome};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -44,6 +44,8 @@ pub struct UnitSummary {
     pub first_verdict: Option<Identified>,
     /// Verdict of the newest complete run.
     pub newest_verdict: Option<Identified>,
+    /// Whether that run meets its limits; `null` without limits.
+    pub newest_limits: Option<LimitOutcome>,
     pub newest_run: i64,
     /// Start of the newest run.
     #[schema(format = DateTime)]
@@ -62,7 +64,7 @@ pub enum YieldGroup {
 }
 
 /// First-pass yield: the fraction of units whose first complete run of a procedure was identified, with or without a
-/// warning. A unit counts with the part, revision and batch of that run. Stopped and failed runs do not count.
+/// warning, and meets all its limits. A unit counts with the part, revision and batch of that run. Stopped and failed runs do not count.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FirstPassYield {
     pub group: YieldGroup,

@@ -8,6 +8,7 @@ mod disk;
 mod headers;
 mod import;
 mod jobs;
+mod limit_files;
 mod limits;
 mod live;
 mod log;

@@ -112,3 +112,32 @@ fn a_unit_is_one_line_with_a_serial_number_and_returns_from_a_file() {
     let (_, list) = daemon.get("/api/v1/units");
     assert_eq!((&list["units"][0]["serial"], &list["yields"]), (&"SN9".into(), &json!([])), "{list}");
 }
+
+/// The same mock joint under six serial numbers: nothing is beyond chance, and the units hardly differ.
+#[test]
+fn a_quantity_of_the_units_has_a_control_chart_and_a_capability() {
+    let daemon = TestDaemon::start();
+    let limits = "[[limit]]\nquantity = \"tau_c\"\nlower = 1.0\nupper = 90.0\nunit = \"mNm\"\n";
+    for serial in ["A", "B", "C", "D", "E", "REF"] {
+        let mut new = run_of(&json!({"serial": serial, "part": "P"}), "Z");
+        new["limits"] = limits.into();
+        let (_, run) = daemon.post("/api/v1/runs", &new.to_string());
+        daemon.wait_for_end(run["id"].as_i64().unwrap());
+    }
+    daemon.wait_for("/api/v1/units", |list| {
+        list["units"].as_array().unwrap().iter().all(|one| !one["newest_limits"].is_null())
+    });
+    let (status, chart) = daemon.get("/api/v1/units/chart?search=part:P%20-unit:REF&procedure=friction&quantity=tau_c");
+    let points = chart["points"].as_array().unwrap();
+    let units: Vec<_> = points.iter().map(|point| point["unit"].as_str().unwrap()).collect();
+    assert_eq!((status, units), (200, vec!["A", "B", "C", "D", "E"]), "without the reference unit: {chart}");
+    assert!(points.iter().all(|point| point["violates"].as_array().unwrap().is_empty()), "{chart}");
+    let capability = &chart["capability"];
+    assert_eq!((&capability["lower"], &capability["upper"]), (&json!(0.001), &json!(0.09)), "in Nm: {chart}");
+    let lowest = capability["cpk_ci95"][0].as_f64().unwrap();
+    assert!(lowest > 1.0 && chart["sigma"].as_f64().unwrap() < 0.01, "{chart}");
+    assert!(chart["quantities"].as_array().unwrap().contains(&"c_v".into()), "{chart}");
+
+    let (status, problem) = daemon.get("/api/v1/units/chart?procedure=friction&quantity=tau_x");
+    assert!(status == 404 && problem["detail"].as_str().unwrap().contains("has the quantity tau_x"), "{problem}");
+}

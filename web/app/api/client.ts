@@ -41,6 +41,8 @@ export const api = {
 	start: (run: NewRun) => callApi('post', '/api/v1/runs', { body: run }),
 	/** Units under test and their first-pass yield. */
 	units: (query: { search?: string; typing?: boolean }, signal?: Signal) => callApi('get', '/api/v1/units', { query }, signal),
+	/** Individuals chart of a quantity over units. */
+	controlChart: (query: { search: string; procedure: string; quantity?: string | undefined }, signal?: Signal) => callApi('get', '/api/v1/units/chart', { query }, signal),
 	control: (id: number, what: 'pause' | 'resume' | 'stop' | 'abort') =>
 		callApi('post', `/api/v1/runs/{id}/${what}`, { path: { id } }),
 	/** Starts a run with the remaining steps of this run. */

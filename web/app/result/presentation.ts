@@ -1,4 +1,4 @@
-import type { CampaignPart, Identification, IdentifiedQuantity } from '../api/types';
+import type { CampaignPart, Identification, IdentifiedQuantity, LimitCheck } from '../api/types';
 import { type Scale, formatInterval, formatEstimate, formatNumber, scaleFor } from '../format/number';
 import type { StatusLabel } from '../ui/states';
 
@@ -10,6 +10,16 @@ const VERDICTS: Record<Identification['verdict'], StatusLabel> = {
 };
 
 export const verdictLabel = (verdict: Identification['verdict']) => VERDICTS[verdict];
+
+const LIMIT_OUTCOMES: Record<LimitCheck['outcome'], StatusLabel> = {
+	pass: { label: 'PASS', icon: '✓', tone: 'good' },
+	marginal: { label: 'MARGINAL', icon: '◔', tone: 'warn' },
+	inconclusive: { label: 'INCONCLUSIVE', icon: '◔', tone: 'warn' },
+	fail: { label: 'FAIL', icon: '✕', tone: 'bad' },
+};
+
+/** Outcome of a limit, or of all limits of a run. */
+export const limitLabel = (outcome: LimitCheck['outcome']) => LIMIT_OUTCOMES[outcome];
 
 type Verdict = StatusLabel & {
 	/** The result without the label and without the parts of a campaign. */

@@ -1,5 +1,5 @@
 /** The search terms that the daemon supports. */
-const TERMS = ['bench:', 'procedure:', 'kind:', 'state:', 'safe:', 'unit:', 'part:', 'batch:', 'operator:', 'tag:', 'note:', 'simulated:yes', 'simulated:no', 'after:', 'before:', 'id>', 'rows>', 'duration>'];
+const TERMS = ['bench:', 'procedure:', 'kind:', 'state:', 'safe:', 'unit:', 'part:', 'batch:', 'operator:', 'verdict:', 'limits:', 'tag:', 'note:', 'simulated:yes', 'simulated:no', 'after:', 'before:', 'id>', 'rows>', 'duration>'];
 
 /** Possible completions of the last search term; `values`: known values of a key. Each completion is the whole text. */
 export function searchCompletions(text: string, values: Record<string, readonly string[]>): string[] {

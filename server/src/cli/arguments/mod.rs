@@ -16,8 +16,8 @@ pub use units::{UnitArguments, Units};
 
 use super::log::LogForm;
 use super::ports::Ports;
-use super::require::Requirement;
 use super::user_effects::OwnEffects;
+use crate::limits::Requirement;
 use clap::{Args, Parser, Subcommand};
 use jointbench_instrument::Kind;
 use std::path::PathBuf;
@@ -218,8 +218,9 @@ pub struct Run {
     /// interval must be within the limit: exit code 1 if the value exceeds it, 3 if only the interval exceeds it
     #[arg(long, value_name = "LIMIT")]
     pub require: Vec<Requirement>,
-    /// File with the limits of parts and revisions; waits for the end. Those of the part and revision of the unit apply
-    #[arg(long, value_name = "LIMITS.TOML")]
+    /// File with the limits of parts and revisions, which is kept with the run; waits for the end. Those of the part and
+    /// revision of the unit apply
+    #[arg(long, value_name = "LIMITS.TOML", conflicts_with = "continues")]
     pub limits: Option<PathBuf>,
     /// Write a JUnit report with one test case per limit; waits for the end
     #[arg(long, value_name = "REPORT.XML")]
@@ -258,7 +259,7 @@ Exit codes: 0 no further effect to add (unexplained structure may remain, see th
 const RUN: &str = "\
 A limits file has one [[limit]] for each quantity; part, revision and procedure are optional, and the entry that names most
 of them applies. `pass` needs the whole 95 % interval inside the limits by the guard band; `fail` is a value beyond a limit; all
-between is `marginal`; a value without an interval is `inconclusive`.
+between is `marginal`; a value without an interval is `inconclusive`. A run that continues another one keeps its limits.
 
   [[limit]]
   part = \"JA-100\"

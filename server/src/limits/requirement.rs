@@ -1,6 +1,6 @@
 //! Limits on the quantities of a result: `tau_c < 0.035 Nm` of a script, or a line of a limits file.
 
-use crate::view::{Identification, Quantity};
+use crate::view::{LimitOutcome, LimitResult, Quantity, Shown};
 use jointbench_instrument::spelling::nearest;
 use jointbench_procedure::catalogue::Findable;
 use std::str::FromStr;
@@ -83,8 +83,28 @@ impl Requirement {
         format!("{} is in {unit}: write the limit so", self.name)
     }
 
-    pub fn check(&self, found: &Identification) -> RequirementResult {
-        let quantities = &found.result.quantities;
+    /// Lower and upper limit in the unit of the quantity. `None` if its unit is another one.
+    pub fn bounds_in(&self, unit: &str) -> Option<[Option<f64>; 2]> {
+        let factor = factor(&self.unit, unit)?;
+        Some([self.lower, self.upper].map(|limit| limit.map(|limit| limit * factor)))
+    }
+
+    /// Compares the result of a run with the limit.
+    pub fn outcome(self, result: &Shown) -> LimitResult {
+        let (outcome, message) = match self.check(result) {
+            RequirementResult::Pass(message) => (LimitOutcome::Pass, message),
+            RequirementResult::Fail(message) => (LimitOutcome::Fail, message),
+            RequirementResult::Marginal(message) => (LimitOutcome::Marginal, message),
+            RequirementResult::Inconclusive(message) | RequirementResult::Unknown(message) => {
+                (LimitOutcome::Inconclusive, message)
+            }
+        };
+        let Self { text, name, lower, upper, guard_band, unit, needs_interval: _ } = self;
+        LimitResult { quantity: name, lower, upper, guard_band, unit, text, outcome, message }
+    }
+
+    pub fn check(&self, result: &Shown) -> RequirementResult {
+        let quantities = &result.quantities;
         let Some(quantity) = quantities.iter().find(|quantity| quantity.name == self.name) else {
             let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name.as_str()).collect();
             let there = if names.is_empty() { "it contains no quantities".to_owned() } else { self.instead(&names) };
@@ -157,9 +177,9 @@ fn factor(written: &str, own: &str) -> Option<f64> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
-    use crate::view::{Applies, Identified, Shown};
+    use crate::view::{Applies, Identification, Identified};
 
     /// A friction result of 30.6 mNm ± 0.4 mNm.
     pub fn found() -> Identification {
@@ -186,12 +206,12 @@ pub(super) mod tests {
         };
         let applies = Applies { can: false, what: String::new() };
         let procedure = "friction".to_owned();
-        Identification { run: 1, procedure, software: String::new(), result, follow_up: None, applies }
+        Identification { run: 1, procedure, software: String::new(), result, follow_up: None, applies, limits: None }
     }
 
     #[test]
     fn the_whole_interval_must_keep_the_limit() {
-        let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
+        let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found().result);
         assert!(matches!(check("tau_c < 0.035 Nm"), RequirementResult::Pass(_)));
         assert!(matches!(check("tau_c<=35 mNm"), RequirementResult::Pass(_)));
         assert!(matches!(check("tau_c > 0.02 Nm"), RequirementResult::Pass(_)));
@@ -212,25 +232,27 @@ pub(super) mod tests {
             unit: "mNm".to_owned(),
             needs_interval: true,
         };
-        assert!(matches!(limit(32.0, 0.5).check(&found()), RequirementResult::Pass(_)));
-        let RequirementResult::Marginal(why) = limit(30.8, 0.0).check(&found()) else {
+        assert!(matches!(limit(32.0, 0.5).check(&found().result), RequirementResult::Pass(_)));
+        let RequirementResult::Marginal(why) = limit(30.8, 0.0).check(&found().result) else {
             panic!("the interval ends at 31.0")
         };
         assert!(
             why.ends_with("the interval exceeds the limit; 4 times as many repeats would decide if the value stays"),
             "{why}"
         );
-        let RequirementResult::Marginal(why) = limit(31.0, 0.5).check(&found()) else { panic!("30.6 is above 30.5") };
+        let RequirementResult::Marginal(why) = limit(31.0, 0.5).check(&found().result) else {
+            panic!("30.6 is above 30.5")
+        };
         assert!(why.ends_with("the value is in the guard band"), "{why}");
-        assert!(matches!(limit(30.5, 0.0).check(&found()), RequirementResult::Fail(_)));
+        assert!(matches!(limit(30.5, 0.0).check(&found().result), RequirementResult::Fail(_)));
         let mut bare = found();
         bare.result.quantities[0].ci95 = None;
-        assert!(matches!(limit(32.0, 0.0).check(&bare), RequirementResult::Inconclusive(_)));
+        assert!(matches!(limit(32.0, 0.0).check(&bare.result), RequirementResult::Inconclusive(_)));
     }
 
     #[test]
     fn an_unknown_requirement_has_a_reason() {
-        let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
+        let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found().result);
         let why = "'tau_x < 1 Nm': the result does not contain tau_x; did you mean tau_c? available: tau_c";
         assert_eq!(check("tau_x < 1 Nm"), RequirementResult::Unknown(why.to_owned()));
         assert_eq!(check("tau_c < 1 A"), RequirementResult::Unknown("tau_c is in Nm: write the limit so".to_owned()));

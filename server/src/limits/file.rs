@@ -1,15 +1,17 @@
-//! `--limits`: a file with the limits of parts and revisions.
+//! A file with the limits of parts and revisions.
 
-use super::exit::Exit;
-use super::files;
-use super::require::Requirement;
+use super::requirement::Requirement;
+use crate::view::Unit;
+use jointbench_procedure::procedure;
 use serde::Deserialize;
-use std::path::Path;
 use toml::Spanned;
+
+/// The file is kept with each run.
+const LONGEST_FILE: usize = 64 << 10;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct LimitsFile {
+struct Content {
     #[serde(default)]
     limit: Vec<Spanned<Limit>>,
 }
@@ -37,7 +39,13 @@ pub struct Measured<'a> {
     pub procedure: &'a str,
 }
 
-impl Measured<'_> {
+impl<'a> Measured<'a> {
+    pub fn new(unit: Option<&'a Unit>, procedure: &'a str) -> Self {
+        let part = unit.and_then(|unit| unit.part.as_deref());
+        let revision = unit.and_then(|unit| unit.revision.as_deref());
+        Self { part, revision, procedure }
+    }
+
     /// For a line of text: `friction of part P, revision B`.
     fn line(&self) -> String {
         let of = |what: &str, text: Option<&str>| text.map(|text| format!("{what} {text}"));
@@ -100,14 +108,10 @@ impl Limit {
     }
 }
 
-/// The limits of a file that apply. For each quantity the entry that names most of part, revision and procedure applies.
-pub fn read(path: &Path, measured: &Measured) -> Result<Vec<Requirement>, Exit> {
-    let text = files::read_text(path)?;
-    parse(&text, measured).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))
-}
-
-fn parse(text: &str, measured: &Measured) -> Result<Vec<Requirement>, String> {
-    let file: LimitsFile = toml::from_str(text).map_err(|fault| fault.to_string())?;
+/// The limits of a file that apply, or its fault with the line. For each quantity the entry that names most of part,
+/// revision and procedure applies.
+pub fn applicable(text: &str, measured: &Measured) -> Result<Vec<Requirement>, String> {
+    let file: Content = toml::from_str(text).map_err(|fault| fault.to_string())?;
     let line = |limit: &Spanned<Limit>| text[..limit.span().start].matches('\n').count() + 1;
     if let Some((limit, fault)) = file.limit.iter().find_map(|limit| Some((limit, limit.get_ref().fault()?))) {
         return Err(format!("line {}: {fault}", line(limit)));
@@ -133,6 +137,19 @@ fn parse(text: &str, measured: &Measured) -> Result<Vec<Requirement>, String> {
         true => Err(format!("no limit applies to {}: add a [[limit]] with its quantity", measured.line())),
         false => Ok(chosen.iter().map(|(limit, _)| limit.get_ref().requirement()).collect()),
     }
+}
+
+/// Checks before a run that its procedure can meet the limits of a file.
+pub fn checked(text: &str, measured: &Measured) -> Result<(), String> {
+    if text.len() > LONGEST_FILE {
+        return Err(format!("the file has {} bytes, at most {LONGEST_FILE} are allowed", text.len()));
+    }
+    let limits = applicable(text, measured)?;
+    let Some(procedure) = procedure(measured.procedure) else { return Ok(()) };
+    let finds = procedure.finds();
+    limits.iter().try_for_each(|limit| {
+        limit.can_be_met_by(measured.procedure, &finds).map_err(|why| format!("'{}': {why}", limit.text))
+    })
 }
 
 #[cfg(test)]
@@ -168,7 +185,7 @@ unit = \"Nm·s/rad\"
     #[test]
     fn the_most_specific_entry_of_a_quantity_applies() {
         let texts = |measured: &Measured| -> Vec<String> {
-            parse(FILE, measured).unwrap().into_iter().map(|requirement| requirement.text).collect()
+            applicable(FILE, measured).unwrap().into_iter().map(|requirement| requirement.text).collect()
         };
         assert_eq!(texts(&of(None, None)), ["tau_c < 0.04 Nm"]);
         assert_eq!(texts(&of(Some("JA"), Some("B"))), ["tau_c 0.02 … 0.035 Nm, guard band 0.001 Nm"]);
@@ -177,7 +194,7 @@ unit = \"Nm·s/rad\"
 
     #[test]
     fn a_fault_names_its_line_and_the_cure() {
-        let fault = |text: &str| parse(text, &of(Some("JA"), None)).unwrap_err();
+        let fault = |text: &str| applicable(text, &of(Some("JA"), None)).unwrap_err();
         assert!(fault("[[limit]]\nquantity = 1\n").contains("line 2"), "{}", fault("[[limit]]\nquantity = 1\n"));
         assert!(fault("[[limit]]\nquantity = \"x\"\nlow = 1\n").contains("unknown field `low`"));
         let twice = "[[limit]]\nquantity = \"x\"\nupper = 1\n\n[[limit]]\nquantity = \"x\"\nupper = 2\n";

@@ -1,0 +1,56 @@
+//! Limits on the quantities of a result: files with the limits of parts and revisions, and the one-line form of scripts.
+//!
+//! The text of a limits file is kept with its run. The result is compared with it at each request.
+
+mod file;
+mod junit;
+mod requirement;
+
+use file::applicable;
+pub use file::{Measured, checked};
+pub use junit::{Case, CaseOutcome, junit, limit_case, run_case, skipped_case};
+#[cfg(test)]
+pub(crate) use requirement::tests::found;
+pub use requirement::{Requirement, RequirementResult};
+
+use crate::view::{LimitCheck, LimitResult, Run, Shown};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use sha2::{Digest, Sha256};
+
+/// Key in the provenance of a run.
+pub const ACCEPTANCE_LIMITS: &str = "acceptance_limits";
+
+/// A limits file as it is kept with a run.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LimitsFile {
+    pub sha256: String,
+    pub text: String,
+}
+
+impl LimitsFile {
+    pub fn of(text: &str) -> Self {
+        let sha256 = Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
+        Self { sha256, text: text.to_owned() }
+    }
+
+    /// From the provenance of a run. `None` for a run without limits.
+    pub fn kept(provenance: &Map<String, Value>) -> Option<Self> {
+        serde_json::from_value(provenance.get(ACCEPTANCE_LIMITS)?.clone()).ok()
+    }
+
+    /// The limits of the file that apply, compared with a result.
+    pub fn check(&self, measured: &Measured, result: &Shown) -> Result<LimitCheck, String> {
+        let limits: Vec<LimitResult> =
+            applicable(&self.text, measured)?.into_iter().map(|limit| limit.outcome(result)).collect();
+        let outcomes = limits.iter().map(|limit| limit.outcome);
+        let outcome = outcomes.max().ok_or("the file has no limits")?;
+        Ok(LimitCheck { sha256: self.sha256.clone(), outcome, limits })
+    }
+}
+
+/// The limits that are kept with a run and apply to it.
+pub fn of_run(run: &Run) -> Vec<Requirement> {
+    let Some(file) = LimitsFile::kept(&run.provenance) else { return Vec::new() };
+    applicable(&file.text, &Measured::new(run.summary.unit.as_ref(), &run.summary.procedure)).unwrap_or_default()
+}
