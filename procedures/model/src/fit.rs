@@ -72,7 +72,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         terms.push(term);
         parameters.extend(found);
     }
-    let undetermined = undetermined_inertia(&mut parameters, prepared);
+    let undetermined = stated_inertia(&mut terms, &mut parameters, prepared);
     let nuisance = nuisance(main, &prepared.unit());
     parameters.extend(assembly.hidden.iter().flat_map(|h| unseen(assembly, &h.effect, &h.why)));
     let order = |effect: &str| assembly.effects.iter().position(|e| e == effect);
@@ -150,19 +150,26 @@ fn notes(assembly: &TwoStageModel, nuisance: Option<&Nuisance>, undetermined: Op
 }
 
 /// At steady state the acceleration is small, and mostly noise of the velocity. If the set-up states another inertia,
-/// the run does not determine it: the interval is extended to the stated one.
-fn undetermined_inertia(parameters: &mut [Parameter], prepared: &Prepared) -> Option<String> {
+/// the run does not determine it: the stated one is used, with an interval that contains all of the fitted one.
+fn stated_inertia(terms: &mut [TermReport], parameters: &mut [Parameter], prepared: &Prepared) -> Option<String> {
+    const INERTIA: &str = "inertia";
     let stated = prepared.main.view.constants.rotor_inertia.filter(|_| prepared.main.settled)?;
-    let is_other = |p: &&mut Parameter| p.effect == "inertia" && !(p.ci95[0]..=p.ci95[1]).contains(&stated);
-    parameters.iter_mut().find(is_other).map(|p| {
-        p.ci95 = [p.ci95[0].min(stated), p.ci95[1].max(stated)];
-        p.state = ParameterState::Unidentified;
-        p.note = Some("not determined by this run".into());
-        format!(
-            "the run does not determine the inertia: constant speeds contain hardly any acceleration, and the set-up states {}; record a trajectory",
-            figure(stated, &p.unit)
-        )
-    })
+    let is_other = |p: &&mut Parameter| p.effect == INERTIA && !(p.ci95[0]..=p.ci95[1]).contains(&stated);
+    let p = parameters.iter_mut().find(is_other)?;
+    let half = p.ci95.map(|end| (end - stated).abs()).into_iter().fold(0.0, f64::max);
+    *p = Parameter {
+        value: stated,
+        ci95: [(stated - half).max(0.0), stated + half],
+        state: ParameterState::Unidentified,
+        note: Some("not determined by this run; the value of the set-up".into()),
+        ..p.clone()
+    };
+    terms.iter_mut().filter(|term| term.effect == INERTIA).for_each(|term| term.linear = vec![stated]);
+    Some(format!(
+        "the run does not determine the inertia: constant speeds contain hardly any acceleration. The model uses \
+         the {} that the set-up states; record a trajectory",
+        figure(stated, &p.unit)
+    ))
 }
 
 /// The formula of an effect in this data, if it differs from the library.

@@ -82,7 +82,7 @@ fn c_remembers_a_torque_with_noise_as_the_model_does_a_smooth_one() {
 
 /// An exported figure includes the known problems of the fit.
 #[test]
-fn an_inertia_that_is_not_the_set_ups_says_so_in_every_export() {
+fn an_inertia_that_the_run_does_not_determine_is_the_set_ups_in_every_export() {
     let mut stairs = Staircase { noise_nm: 0.002, scatter_nm: 0.0, seed: 1 }.run(|at| 0.02 * at.velocity.signum());
     let (mut meta, trace) = stairs.into_parts();
     meta.rotor_inertia_kg_m2 = Some(1.0);
@@ -99,7 +99,8 @@ fn an_inertia_that_is_not_the_set_ups_says_so_in_every_export() {
     }
     let mujoco = export(&fit, Format::Mujoco).unwrap();
     let before = mujoco.split("<joint").next().unwrap().trim_end();
-    assert!(before.ends_with("<!-- armature, motor side: not determined by this run -->"), "{mujoco}");
+    let comment = "<!-- armature, motor side: not determined by this run; the value of the set-up -->";
+    assert!(before.ends_with(comment) && mujoco.contains("armature=\"2500\""), "{mujoco}");
 }
 
 /// Linear interpolation between the points of a table, at the named axes; the last axis is the fastest.

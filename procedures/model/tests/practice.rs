@@ -98,7 +98,7 @@ fn a_brake_decides_the_bands_of_its_hysteresis() {
 }
 
 #[test]
-fn an_inertia_that_settled_motion_hardly_shows_is_held_against_the_set_up() {
+fn an_inertia_that_settled_motion_hardly_shows_is_the_set_ups() {
     let Some(folder) = shared("hidden-effects") else { return };
     let run = read(&folder.join("friction-load_linear"));
     let reported = |run: &RunTable| fit(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap();
@@ -106,8 +106,14 @@ fn an_inertia_that_settled_motion_hardly_shows_is_held_against_the_set_up() {
     let note = found.notes.iter().find(|note| note.contains("the set-up states")).unwrap();
     assert!(note.starts_with("the run does not determine the inertia") && note.contains("4.48e-5 kg·m²"), "{note}");
     let inertia = found.parameters.iter().find(|p| p.effect == "inertia").unwrap();
-    assert!(inertia.state == ParameterState::Unidentified && inertia.ci95[1] >= 4.48e-5, "{inertia:?}");
-    let meta = jointbench_instrument::Meta { rotor_inertia_kg_m2: Some(inertia.value), ..run.meta().clone() };
-    let agreed = reported(&RunTable::new(meta, run.trace().clone()).unwrap());
+    assert_eq!((inertia.state, Some(inertia.value)), (ParameterState::Unidentified, run.meta().rotor_inertia_kg_m2));
+    assert!(inertia.ci95[0] < 4e-5 && inertia.ci95[1] > 5e-5, "{inertia:?}");
+    let with = |stated: Option<f64>| {
+        let meta = jointbench_instrument::Meta { rotor_inertia_kg_m2: stated, ..run.meta().clone() };
+        reported(&RunTable::new(meta, run.trace().clone()).unwrap())
+    };
+    let unstated = with(None).parameters.into_iter().find(|p| p.effect == "inertia").unwrap().value;
+    assert!(unstated < 4e-5, "{unstated}");
+    let agreed = with(Some(unstated));
     assert_eq!(agreed.notes.iter().find(|note| note.contains("the set-up states")), None);
 }

@@ -20,7 +20,8 @@ const OF_CORNERS: f64 = 2.05;
 /// Parameters of the terms with 95 % intervals.
 ///
 /// The half width combines two parts: the largest jackknife interval over blocks (Student's t) of all filter corners,
-/// and the scatter of the estimate over the corners. The interval of a nonlinear parameter reaches to its neighbours
+/// and the scatter of the estimate over the corners. At a physical bound it reaches from the bound to the half width
+/// without the bound. The interval of a nonlinear parameter reaches to its neighbours
 /// on the grid.
 pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
     let solution = Solution::of(model)?;
@@ -59,13 +60,12 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
                 possible: info.bounds(name),
                 shape: None,
             };
-            let ci95 = [value - half, value + half];
+            let is_at_bound = solution.bound.iter().any(|(at, _)| *at == k);
+            let ci95 = [if is_at_bound { value } else { value - half }, value + half];
             let (mut state, mut note) = parameter_state::judge(&slot, ci95, half == 0.0 && value == 0.0);
-            if solution.bound.contains(&k) {
+            if is_at_bound {
                 state = ParameterState::AtBound;
-                note = Some(
-                    "at its physical bound: the unconstrained estimate lies outside, within its standard error".into(),
-                );
+                note = Some("at its physical bound: the unconstrained estimate lies beyond it by chance".into());
             }
             parameters.push(Parameter {
                 effect: info.id.into(),

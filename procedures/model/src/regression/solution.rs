@@ -82,8 +82,8 @@ pub struct Solution {
     pub error: Vec<(usize, f64)>,
     pub relatives: Vec<f64>,
     pub residual: Vec<f64>,
-    /// Coefficients that are held at their bound of zero.
-    pub bound: Vec<usize>,
+    /// Coefficients that are held at their bound of zero, with their standard errors before.
+    pub bound: Vec<(usize, f64)>,
 }
 
 impl Solution {
@@ -113,8 +113,8 @@ impl Solution {
         let nothing = vec![0.0; response.len()];
         let mut bound = Vec::new();
         let mut ridge = BlockedRidge::new(&columns, &response, &weight, &model.problem.block, strength);
-        while let Some(at) = beyond(model, &ridge) {
-            bound.push(at);
+        while let Some((at, error)) = beyond(model, &ridge) {
+            bound.push((at, error));
             columns[at].values = &nothing;
             ridge = BlockedRidge::new(&columns, &response, &weight, &model.problem.block, Some(ridge.strength));
         }
@@ -133,10 +133,14 @@ impl Solution {
         }
     }
 
-    /// Standard errors of the coefficients of the effects, by a jackknife over blocks.
+    /// Standard errors of the coefficients of the effects, by a jackknife over blocks. That of a coefficient at its bound
+    /// is the one without the bound.
     pub fn standard_errors(&self) -> Vec<f64> {
         let replicates: Vec<Vec<f64>> = self.ridge.replicates().collect();
-        let of = |k: usize| jackknife::variance_about_mean(replicates.iter().map(|r| r[k])).sqrt();
+        let of = |k: usize| match self.bound.iter().find(|(at, _)| *at == k) {
+            Some((_, error)) => *error,
+            None => jackknife::variance_about_mean(replicates.iter().map(|r| r[k])).sqrt(),
+        };
         (0..self.coefficients.len()).map(of).collect()
     }
 
@@ -180,9 +184,9 @@ impl Solution {
     }
 }
 
-/// The most negative of the coefficients that cannot be negative, if it is negative by chance. A significantly
-/// negative coefficient contradicts physics and has to be reported, so it is not held at zero.
-fn beyond(model: &LinearModel, ridge: &BlockedRidge) -> Option<usize> {
+/// The most negative of the coefficients that cannot be negative, if it is negative by chance, with its standard error. A
+/// significantly negative coefficient contradicts physics and has to be reported, so it is not held at zero.
+fn beyond(model: &LinearModel, ridge: &BlockedRidge) -> Option<(usize, f64)> {
     /// Standard errors below zero that a few coefficients hardly ever reach by chance.
     const CHANCE: f64 = 3.0;
     let names =
@@ -195,11 +199,13 @@ fn beyond(model: &LinearModel, ridge: &BlockedRidge) -> Option<usize> {
     }
     let replicates: Vec<Vec<f64>> = ridge.replicates().collect();
     let groups = replicates.len() as f64;
-    let errors = |at: &usize| {
-        let square: f64 = replicates.iter().map(|r| (r[*at] - coefficients[*at]).powi(2)).sum();
-        coefficients[*at] / ((groups - 1.0) / groups * square).sqrt().max(f64::MIN_POSITIVE)
+    let with_error = |at: usize| {
+        let square: f64 = replicates.iter().map(|r| (r[at] - coefficients[at]).powi(2)).sum();
+        (at, ((groups - 1.0) / groups * square).sqrt().max(f64::MIN_POSITIVE))
     };
-    below.into_iter().filter(|at| errors(at) > -CHANCE).min_by(|a, b| errors(a).total_cmp(&errors(b)))
+    let errors = |(at, error): &(usize, f64)| coefficients[*at] / error;
+    let chance = below.into_iter().map(with_error).filter(|one| errors(one) > -CHANCE);
+    chance.min_by(|a, b| errors(a).total_cmp(&errors(b)))
 }
 
 /// Weights of the rows, from the residual of the model.
