@@ -38,11 +38,21 @@ pub fn units(arguments: &Units) -> Done {
     Ok(())
 }
 
-const HEAD: [&str; 9] =
-    ["unit", "part", "revision", "batch", "runs", "first verdict", "newest verdict", "newest run", "started (local)"];
+const HEAD: [&str; 10] = [
+    "unit",
+    "part",
+    "revision",
+    "batch",
+    "runs",
+    "first verdict",
+    "newest verdict",
+    "limits",
+    "newest run",
+    "started (local)",
+];
 const YIELD_HEAD: [&str; 7] = ["by", "part", "revision", "batch", "procedure", "yield", "95 % interval"];
 
-fn cells(unit: &UnitSummary) -> [String; 9] {
+fn cells(unit: &UnitSummary) -> [String; 10] {
     let text = |text: &Option<String>| text.clone().unwrap_or_default();
     let verdict =
         |verdict: Option<Identified>| verdict.map(|verdict| word(verdict).replace('_', " ")).unwrap_or_default();
@@ -54,6 +64,7 @@ fn cells(unit: &UnitSummary) -> [String; 9] {
         unit.runs.to_string(),
         verdict(unit.first_verdict),
         verdict(unit.newest_verdict),
+        unit.newest_limits.map(word).unwrap_or_default(),
         unit.newest_run.to_string(),
         local(&unit.newest_at, &TimeZone::system()),
     ]
