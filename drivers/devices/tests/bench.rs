@@ -4,6 +4,7 @@ use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::Bench;
 use jointbench_instrument::roles::Regulation;
 use jointbench_instrument::units::{Amperes, RadPerSec, Volts};
+use std::f64::consts::TAU;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -218,4 +219,62 @@ fn a_bench_that_stood_still_does_not_race_to_make_up_for_it() {
     clock.sleep_until_s(clock.now_s() + 4.0);
     let took_s = begun.elapsed().as_secs_f64();
     assert!(took_s > 0.28, "4 s at ten times the pace of the wall passed in {took_s} s");
+}
+
+/// The bench of the documents draws none of its values, whatever the seed.
+#[test]
+fn the_bench_of_the_documents_has_exactly_their_values() {
+    let started = |joint, axis, seed| {
+        let mock = MockBench::start(MockSettings { documents: true, axis, ..MockSettings::new(joint, seed) }).unwrap();
+        (mock.truth().clone(), mock.settings().constants())
+    };
+    for seed in [1, 7] {
+        for (joint, [coulomb_nm, viscous_nm_s, rise_nm, stribeck_rad_s, exponent]) in
+            [(Joint::JointA, [0.030, 1.512e-4, 0.009, 0.06, 0.8]), (Joint::JointB, [0.031, 7.835e-5, 0.026, 0.08, 1.9])]
+        {
+            let (truth, constants) = started(joint, 2, seed);
+            assert_eq!((truth.coulomb_nm, truth.viscous_nm_s), (coulomb_nm, viscous_nm_s));
+            let [stribeck] = &truth.hidden[..] else { panic!("{:?}", truth.hidden) };
+            let given = ["rise_nm", "velocity_rad_s", "exponent"].map(|name| stribeck.parameters[name]);
+            let expected = [rise_nm, stribeck_rad_s * truth.gear_ratio, exponent];
+            assert!(given.iter().zip(expected).all(|(given, expected)| (given - expected).abs() < 1e-12), "{given:?}");
+            assert_eq!(constants.brake_rated_torque_nm, 15.0);
+        }
+        let offset_rad = started(Joint::EncoderShaft, 2, seed).0.encoders.offset_rad;
+        assert!((offset_rad * f64::from(1 << 18) / TAU - 1437.0).abs() < 1e-9);
+        // Table 3.1: Coulomb friction in both directions, and mean viscous friction.
+        for (axis, coulomb_nm, viscous_nm_s) in [
+            (1, [0.435, 0.395], 1.48e-3),
+            (2, [0.126, 0.0709], 0.817e-3),
+            (3, [0.105, 0.132], 1.38e-3),
+            (4, [11.2e-3, 16.9e-3], 71.2e-6),
+            (5, [9.26e-3, 14.5e-3], 82.6e-6),
+            (6, [3.96e-3, 10.5e-3], 36.7e-6),
+        ] {
+            let (truth, _) = started(Joint::Puma, axis, seed);
+            let offset = truth.hidden.iter().find(|hidden| hidden.effect == "direction_offset").unwrap();
+            let offset_nm = offset.parameters["offset_nm"];
+            for (expected_nm, sign) in coulomb_nm.into_iter().zip([1.0, -1.0]) {
+                let found_nm = truth.coulomb_nm + sign * offset_nm;
+                assert!((found_nm / expected_nm - 1.0).abs() < 5e-3, "axis {axis}: {found_nm} Nm");
+            }
+            assert!((truth.viscous_nm_s / viscous_nm_s - 1.0).abs() < 5e-3, "axis {axis}: {}", truth.viscous_nm_s);
+        }
+    }
+}
+
+/// The position loop of the thesis lags behind the integral of its set-point, friction in addition.
+#[test]
+fn the_joints_of_the_documents_lag_behind_their_set_point() {
+    for (joint, gain_per_s) in [(Joint::JointA, 23.3), (Joint::JointB, 24.0)] {
+        let (_mock, mut bench) = open(MockSettings { documents: true, ..MockSettings::new(joint, 1) });
+        arm(&mut bench);
+        let (velocity_rad_s, duration_s) = (20.0, 1.5);
+        let start_rad = bench.joint.read().unwrap().motor_position.0;
+        stretch(&mut bench, velocity_rad_s, 0.0, duration_s);
+        let moved_rad = bench.joint.read().unwrap().motor_position.0 - start_rad;
+        let lag_rad = velocity_rad_s * duration_s - moved_rad;
+        let expected_rad = velocity_rad_s / gain_per_s;
+        assert!((1.02..1.5).contains(&(lag_rad / expected_rad)), "{joint:?}: {lag_rad} rad, {expected_rad} rad");
+    }
 }

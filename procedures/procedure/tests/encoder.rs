@@ -273,7 +273,7 @@ fn offset_and_delay_are_those_that_the_mock_was_given() {
     let (truth, _mock, mut bench) = open(3, false);
     let conducted = run_in_memory(&mut bench, procedure("encoder_offset").unwrap(), &Default::default()).unwrap();
     let offset = conducted.identification.unwrap();
-    check(&offset, "offset", truth.startup_rad, POINT_RAD);
+    check(&offset, "offset", truth.offset_rad, POINT_RAD);
     let effects = ["offset", "harmonic_1", "harmonic_2", "delay"].map(String::from);
     let spec = ModelSpec::new(conducted.table.kind(), &effects).unwrap();
     let model = fit(&conducted.table, &spec, &Options::default()).unwrap();

@@ -166,7 +166,7 @@ fn given(truth: &Truth, name: &str) -> Option<f64> {
         "delta_s" => stribeck("exponent"),
         "k" => Some(truth.stiffness_nm_rad),
         "beta_0" => Some(truth.directional_offset_rad),
-        "offset" => Some(encoders.startup_rad),
+        "offset" => Some(encoders.offset_rad),
         "startup_spread" => Some(encoders.startup_spread_rad),
         "delay" => Some(encoders.delay_s),
         "filter_delay" => Some(encoders.filter_delay_s),

@@ -4,7 +4,7 @@ use super::error::{Collector, ConfigErrors};
 use super::figures::{Sheet, check_reach};
 use super::instruments::{calibrations, instruments};
 use super::raw::{RawBench, RawFile, RawMock};
-use super::values::{choice, positive};
+use super::values::{choice, positive, within};
 use super::{BenchDescription, Source};
 use jointbench_devices::sim::{Load, MockInstrument, PlannedTrouble, Supply, Transport, Trouble};
 use jointbench_devices::{Joint, MockSettings};
@@ -62,9 +62,7 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
     let sheet = match &source {
         // Limits and constants depend on the simulated joint, which is unknown.
         None if raw.mock.is_some() => return None,
-        Some(Source::Mock(MockSettings { joint, load, .. })) => {
-            Sheet::simulated(joint.limits(*load), joint.constants(*load))
-        }
+        Some(Source::Mock(settings)) => Sheet::simulated(settings.limits(), settings.constants()),
         _ => Sheet::of(raw),
     };
     let (limits, constants) = (sheet.limits(raw, wrong), sheet.constants(raw, wrong));
@@ -140,16 +138,23 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     if let (Some(given), Some(Joint::EncoderShaft | Joint::Puma)) = (&raw.load, joint) {
         wrong.add(given.span(), "this joint has no load: remove load");
     }
-    if let (Some(given), Some(Joint::JointA | Joint::JointB | Joint::EncoderShaft)) = (&raw.servo, joint) {
-        wrong.add(given.span(), "this joint has no Puma-type servo: remove servo");
+    if let Some(Joint::JointA | Joint::JointB | Joint::EncoderShaft) = joint {
+        if let Some(given) = &raw.servo {
+            wrong.add(given.span(), "this joint has no Puma-type servo: remove servo");
+        }
+        if let Some(given) = &raw.axis {
+            wrong.add(given.span(), "only joint \"puma\" has axes: remove axis");
+        }
     }
     let gains = raw.servo.as_ref().map(|given| *given.get_ref()).unwrap_or_default();
     let supplies = [("dp821a", Supply::Dp821a), ("hmp4040", Supply::Hmp4040)];
     let supply =
         raw.supply.as_ref().map_or(Some(Supply::default()), |supply| choice(supply, "supply", &supplies, wrong));
     let pace = raw.pace.as_ref().and_then(|pace| positive(pace, "pace", wrong));
+    let axis = raw.axis.as_ref().map(|axis| within(axis, "axis", 1..=6, wrong));
     let effects = raw.effects.iter().map(|effect| effect.get_ref().clone()).collect();
-    let mut settings = MockSettings::new(joint?, raw.seed.unwrap_or(1));
+    let mut settings = MockSettings { documents: raw.documents, ..MockSettings::new(joint?, raw.seed.unwrap_or(1)) };
+    settings.axis = axis.unwrap_or(Some(settings.axis))?;
     if raw.thermometer && !settings.has(MockInstrument::Thermometer) {
         settings.others.push(MockInstrument::Thermometer);
     }

@@ -12,8 +12,8 @@ mod values;
 pub use error::{ConfigError, ConfigErrors};
 
 use jiff::civil::Date;
-use jointbench_devices::sim::{ENCODER_COUNTS, Load, MockInstrument};
-use jointbench_devices::{InstrumentSettings, Joint, MockSettings, TorqueSensorSettings};
+use jointbench_devices::sim::{ENCODER_COUNTS, MockInstrument};
+use jointbench_devices::{InstrumentSettings, MockSettings, TorqueSensorSettings};
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::spelling::nearest;
@@ -81,11 +81,10 @@ impl BenchDescription {
 
     /// A mock bench with the constants and limits of its joint's data sheet.
     pub fn mock(name: &str, settings: MockSettings) -> Self {
-        let (joint, load): (Joint, Load) = (settings.joint, settings.load);
         Self {
             name: name.to_owned(),
-            limits: joint.limits(load),
-            constants: joint.constants(load),
+            limits: settings.limits(),
+            constants: settings.constants(),
             source: Source::Mock(settings),
             calibrated: Vec::new(),
             record: None,

@@ -46,6 +46,11 @@ impl RawBench {
 #[serde(deny_unknown_fields)]
 pub struct RawMock {
     pub joint: Spanned<String>,
+    /// Axis of the Puma.
+    pub axis: Option<Spanned<u8>>,
+    /// Exactly the values of the source documents.
+    #[serde(default)]
+    pub documents: bool,
     pub load: Option<Spanned<String>>,
     pub supply: Option<Spanned<String>>,
     pub seed: Option<u64>,

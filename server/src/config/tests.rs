@@ -25,6 +25,23 @@ fn a_mock_takes_the_data_sheet_and_what_is_given_goes_before_it() {
 }
 
 #[test]
+fn a_mock_of_the_documents_takes_their_brakes_and_axes() {
+    let mock = |line: &str| parse("b.toml", &format!("[[bench]]\nname = \"b\"\n[bench.mock]\n{line}\n"));
+    let rated_nm = |line| mock(line).unwrap()[0].constants.brake_rated_torque_nm;
+    assert_eq!(rated_nm("joint = \"a\""), 13.0);
+    assert_eq!(rated_nm("joint = \"a\"\ndocuments = true"), 15.0);
+    assert_eq!(rated_nm("joint = \"a\"\ndocuments = true\nload = \"gear_and_brake_b\""), 150.0);
+    assert_eq!(mock("joint = \"puma\"\naxis = 4").unwrap()[0].constants.gear_ratio, 76.0364);
+    for (line, expected) in [
+        ("joint = \"puma\"\naxis = 7", "line 5: axis 7: choose 1 to 6"),
+        ("joint = \"a\"\naxis = 2", "line 5: only joint \"puma\" has axes: remove axis"),
+    ] {
+        let message = mock(line).unwrap_err().to_string();
+        assert!(message.contains(expected), "{expected} in\n{message}");
+    }
+}
+
+#[test]
 fn every_mistake_is_named_at_its_line() {
     let text = "[[bench]]
 name = \"bench one\"

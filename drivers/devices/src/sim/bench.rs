@@ -1,7 +1,7 @@
 //! The mock bench as seen by its owner.
 
 use super::clock::SteppedClock;
-use super::data_sheet::{Joint, Load};
+use super::data_sheet::{DataSheet, Joint, Load};
 use super::firmware::{AMPERES_PER_VOLT, Firmware, Odrive, PUMA_COUNTS, Puma};
 use super::plant::{Hidden, Plant, Truth};
 #[cfg(unix)]
@@ -15,8 +15,9 @@ use crate::driver::{
 };
 use crate::instruments::{InstrumentSettings, JointSettings, TorqueSensorSettings};
 use crate::transport::{Address, PortSettings};
+use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::PowerSwitch;
-use jointbench_instrument::{Bench, Clock, Fault, FaultKind};
+use jointbench_instrument::{Bench, Clock, Fault, FaultKind, Limits};
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::sync::{Arc, Mutex};
@@ -45,6 +46,10 @@ pub enum Transport {
 pub struct MockSettings {
     /// The joint under test.
     pub joint: Joint,
+    /// Axis of the Puma, 1 to 6.
+    pub axis: u8,
+    /// Exactly the values of the source documents, instead of values drawn from the seed.
+    pub documents: bool,
     /// The load of the joint; determines torque sensor and brake.
     pub load: Load,
     /// Supply of the brake's coil.
@@ -83,6 +88,8 @@ impl MockSettings {
         };
         Self {
             joint,
+            axis: 2,
+            documents: false,
             load,
             supply: Supply::default(),
             seed,
@@ -96,6 +103,21 @@ impl MockSettings {
             others,
             gains: PumaGains::default(),
         }
+    }
+
+    fn data_sheet(&self) -> DataSheet {
+        let sheet = DataSheet::of(self.joint, self.axis);
+        if self.documents { sheet.exact() } else { sheet }
+    }
+
+    /// The constants that a description of this bench states.
+    pub fn constants(&self) -> JointConstants {
+        self.data_sheet().constants(self.load)
+    }
+
+    /// The limits of this bench.
+    pub fn limits(&self) -> Limits {
+        self.data_sheet().limits(self.load)
     }
 
     /// The smallest range of the torque sensor that suits the load, and its nominal torque (Nm).
@@ -176,14 +198,15 @@ impl MockBench {
         {
             return Err(MockError::Pace(pace));
         }
-        let hidden = Hidden::draw(settings.joint, settings.seed, &settings.effects)
+        let sheet = settings.data_sheet();
+        let hidden = Hidden::draw(sheet, settings.seed, &settings.effects)
             .map_err(|effect| MockError::UnknownEffect { effect, joint: settings.joint })?;
-        let mut plant = Plant::new(settings.joint, settings.load, settings.seed, hidden);
+        let mut plant = Plant::new(sheet, settings.load, settings.seed, hidden);
         plant.filter_s2(settings.filter);
-        let truth = plant.truth(settings.joint, settings.seed);
+        let truth = plant.truth(settings.seed);
         let joint: Box<dyn Firmware + Send> = match settings.joint {
             Joint::Puma => Box::new(Puma::new()),
-            other => Box::new(Odrive::new(other)),
+            _ => Box::new(Odrive::new(sheet)),
         };
         let rig = Arc::new(Mutex::new(Rig::new(plant, joint, settings.supply, &settings.others, &settings.troubles)));
         let clock = Arc::new(SteppedClock::new(Arc::clone(&rig), settings.pace));
@@ -292,8 +315,7 @@ impl MockBench {
         if let Some(fault) = opened.asked.iter().find_map(|asked| asked.identity.as_ref().err()) {
             return Err(fault.clone());
         }
-        let (limits, constants) =
-            (self.settings.joint.limits(self.settings.load), self.settings.joint.constants(self.settings.load));
+        let (limits, constants) = (self.settings.limits(), self.settings.constants());
         let bench = opened.into_bench(name, true, self.clock(), limits, constants).expect("every instrument answers");
         Ok(Bench { power: Some(self.power_switch()), ..bench })
     }

@@ -12,6 +12,7 @@ mod lines;
 mod lorenz;
 mod odrive;
 mod odrive_lines;
+mod odrive_position;
 mod odrive_properties;
 mod puma;
 mod puma_loop;

@@ -3,7 +3,8 @@
 //! reads the link encoder.
 
 use super::Firmware;
-use crate::sim::data_sheet::Joint;
+use super::odrive_position::PositionLoop;
+use crate::sim::data_sheet::DataSheet;
 use crate::sim::plant::{AMBIENT_C, LINK_COUNTS, MOTOR_COUNTS, Plant, STEP_S, Signal};
 use crate::sim::trouble::Trouble;
 use std::f64::consts::TAU;
@@ -82,8 +83,12 @@ impl Estimator {
         self.shadow_count = counts;
     }
 
+    fn exact_turns(&self) -> f64 {
+        self.position_counts / self.counts_per_turn
+    }
+
     pub fn turns(&self) -> f32 {
-        (self.position_counts / self.counts_per_turn) as f32
+        self.exact_turns() as f32
     }
 
     pub fn turns_s(&self) -> f32 {
@@ -109,6 +114,7 @@ pub struct Odrive {
     pos_setpoint: f32,
     vel_setpoint: f32,
     integrator_torque: f32,
+    position_loop: Option<PositionLoop>,
     watchdog_s: f64,
     pub iq_setpoint: f32,
     reboot_until_s: Option<f64>,
@@ -118,11 +124,11 @@ pub struct Odrive {
 }
 
 impl Odrive {
-    pub fn new(joint: Joint) -> Self {
-        let sheet = joint.data_sheet();
+    pub fn new(sheet: impl Into<DataSheet>) -> Self {
+        let sheet: DataSheet = sheet.into();
         let inertia = sheet.rotor_inertia_kg_m2 + sheet.tuned_inertia_kg_m2 / sheet.ratio.powi(2);
-        // Gains for a velocity loop of 300 rad/s with an integrator of 60 /s, in the drive's unit, Nm per turn/s.
-        let vel_gain = (inertia * 300.0 * TAU) as f32;
+        // In the drive's unit, Nm per turn/s.
+        let vel_gain = (inertia * sheet.loops.velocity_rad_s * TAU) as f32;
         let config = Config {
             torque_constant: sheet.torque_constant_nm_per_a as f32,
             current_lim: 10.0,
@@ -132,7 +138,7 @@ impl Odrive {
             vel_limit: 2.0,
             vel_limit_tolerance: 1.2,
             vel_gain,
-            vel_integrator_gain: 60.0 * vel_gain,
+            vel_integrator_gain: sheet.loops.integral_per_s as f32 * vel_gain,
             pos_gain: 20.0,
             vel_ramp_rate: 1.0,
             torque_mode_vel_limit: true,
@@ -161,6 +167,7 @@ impl Odrive {
             pos_setpoint: 0.0,
             vel_setpoint: 0.0,
             integrator_torque: 0.0,
+            position_loop: sheet.loops.position_per_s.map(PositionLoop::new),
             watchdog_s: 0.0,
             iq_setpoint: 0.0,
             reboot_until_s: None,
@@ -280,7 +287,12 @@ impl Odrive {
         let (position, velocity) = (self.encoders[0].turns(), self.encoders[0].turns_s());
         let mut torque = self.input_torque;
         if config.control_mode >= VELOCITY_MODE {
-            let mut wanted = self.vel_setpoint;
+            let mut wanted = match &mut self.position_loop {
+                Some(position_loop) if config.control_mode == VELOCITY_MODE => {
+                    position_loop.advance(self.vel_setpoint, self.encoders[0].exact_turns())
+                }
+                _ => self.vel_setpoint,
+            };
             if config.control_mode >= POSITION_MODE {
                 wanted += config.pos_gain * (self.pos_setpoint - position);
             }
@@ -350,6 +362,9 @@ impl Firmware for Odrive {
         if self.state == CLOSED_LOOP {
             let torque = self.control();
             self.iq_setpoint = torque / self.config.torque_constant;
+        }
+        if self.state != CLOSED_LOOP || self.config.control_mode != VELOCITY_MODE {
+            self.position_loop.iter_mut().for_each(PositionLoop::rest);
         }
         // A controller with an invalid state (nan) switches the current off.
         plant.inputs.motor_current_a = if self.iq_setpoint.is_finite() { self.iq_setpoint.into() } else { 0.0 };

@@ -3,6 +3,7 @@
 
 use super::hidden::HiddenEncoder;
 use super::{Noise, Signal};
+use crate::sim::data_sheet::DataSheet;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -51,8 +52,8 @@ pub struct EncoderTruth {
     pub delay_s: f64,
     /// Contribution of the filter, 0 if it is off.
     pub filter_delay_s: f64,
-    /// Offset since power-up.
-    pub startup_rad: f64,
+    /// Offset by mounting, and since power-up.
+    pub offset_rad: f64,
     /// Standard deviation of that offset over power-ups.
     pub startup_spread_rad: f64,
     /// Half the difference between both directions.
@@ -82,6 +83,7 @@ pub struct Encoders {
     pub filtered: bool,
     noise: Noise,
     hidden: HiddenEncoder,
+    mounting_points: f64,
     startup_points: f64,
     phase_rad: f64,
     angle_rad: f64,
@@ -90,13 +92,16 @@ pub struct Encoders {
 }
 
 impl Encoders {
-    pub fn new(noise: Noise, hidden: HiddenEncoder) -> Self {
+    pub fn new(sheet: &DataSheet, noise: Noise, hidden: HiddenEncoder) -> Self {
+        // An exact bench starts with exactly the offset of its mounting.
+        let startup_points = if sheet.is_exact { 0.0 } else { STARTUP_POINTS * noise.trait_of(Signal::EncoderStartup) };
         Self {
             pose: Pose::default(),
             filtered: false,
             noise,
             hidden,
-            startup_points: STARTUP_POINTS * noise.trait_of(Signal::EncoderStartup),
+            mounting_points: sheet.mounting_points,
+            startup_points,
             phase_rad: TAU * noise.trait_of(Signal::EncoderPhase),
             angle_rad: 0.0,
             travelled_rad: 0.0,
@@ -126,7 +131,11 @@ impl Encoders {
         let angle_rad = self.drag_rad - self.delay_s() * velocity_rad_s + slipped_rad;
         let points = S2_COUNTS * angle_rad / TAU;
         let error_points = self.shape_points(angle_rad) + self.hidden.error_points(angle_rad);
-        (points + error_points + self.startup_points).floor() as i64
+        (points + error_points + self.offset_points()).floor() as i64
+    }
+
+    fn offset_points(&self) -> f64 {
+        self.mounting_points + self.startup_points
     }
 
     fn delay_s(&self) -> f64 {
@@ -146,7 +155,7 @@ impl Encoders {
         EncoderTruth {
             delay_s: self.delay_s(),
             filter_delay_s: self.delay_s() - DELAY_S,
-            startup_rad: rad(self.startup_points),
+            offset_rad: rad(self.offset_points()),
             startup_spread_rad: rad(STARTUP_SPREAD * STARTUP_POINTS),
             hysteresis_rad: rad(HYSTERESIS_POINTS),
             eccentricity_rad: rad(ECCENTRIC_POINTS),
@@ -182,7 +191,7 @@ mod tests {
     fn hidden_points(effect: &str, turns: f64, angle_rad: f64) -> (f64, HiddenEffect) {
         let hidden = Hidden::draw(Joint::EncoderShaft, 5, &[effect.to_owned()]).unwrap();
         let counts = |hidden: HiddenEncoder| {
-            let mut encoders = Encoders::new(Noise::new(5), hidden);
+            let mut encoders = Encoders::new(&Joint::EncoderShaft.into(), Noise::new(5), hidden);
             encoders.advance(turns * TAU);
             encoders.advance(angle_rad);
             encoders.s2_counts(0.0) as f64

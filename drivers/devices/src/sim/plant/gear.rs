@@ -105,7 +105,7 @@ mod tests {
     fn hiding(effect: &str) -> (Gear, impl Fn(&str) -> f64) {
         let hidden = Hidden::draw(Joint::JointA, 5, &[effect.to_owned()]).unwrap();
         let truth = hidden.described().remove(0).parameters;
-        (Gear::new(&Joint::JointA.data_sheet(), 0.01, hidden.gear), move |name: &str| truth[name])
+        (Gear::new(&Joint::JointA.into(), 0.01, hidden.gear), move |name: &str| truth[name])
     }
 
     /// Torque after the motor has twisted the gear to `twist_rad` and held it for `held_s`.
@@ -150,7 +150,7 @@ mod tests {
     }
 
     fn stiffness_nm_rad(joint: Joint, twist_rad: f64) -> f64 {
-        let gear = Gear::new(&joint.data_sheet(), 0.01, HiddenGear::default());
+        let gear = Gear::new(&joint.into(), 0.01, HiddenGear::default());
         let torque = |twist_rad: f64| gear.torque(twist_rad * gear.ratio, 0.0, 0.0, 0.0);
         (torque(twist_rad + 1e-6) - torque(twist_rad - 1e-6)) / 2e-6
     }

@@ -28,9 +28,9 @@ pub struct Line {
 }
 
 impl Line {
-    pub fn new(load: Load) -> Self {
+    pub fn new(load: Load, brake_nm: f64) -> Self {
         let geared = || Geared {
-            idle: Brake::new(HiddenBrake::default()),
+            idle: Brake::new(brake_nm, HiddenBrake::default()),
             friction: Friction::new(GRIP_NM[0].1, 0.0, inertia_kg_m2(load)),
         };
         let behind = match load {

@@ -11,6 +11,7 @@ mod gear;
 mod hidden;
 mod line;
 mod noise;
+mod scatter;
 mod thermal;
 mod truth;
 
@@ -18,7 +19,7 @@ pub use encoders::{EncoderTruth, S1_COUNTS, S2_COUNTS};
 pub use hidden::{HIDDEN_EFFECTS, HiddenEffect};
 pub use truth::Truth;
 
-use super::data_sheet::{DataSheet, Joint, Load};
+use super::data_sheet::{DataSheet, Load};
 use brake::Brake;
 use encoders::Encoders;
 use friction::Friction;
@@ -26,12 +27,15 @@ use gear::Gear;
 pub(super) use hidden::Hidden;
 use line::Line;
 pub(super) use noise::{Noise, Signal};
+use scatter::Scatter;
 use std::f64::consts::TAU;
 use thermal::Thermal;
 
 /// Substep: the ODrive's control period, 8 kHz.
 pub(super) const STEP_S: f64 = 125e-6;
 pub(super) const AMBIENT_C: f64 = 24.0;
+/// Largest deviation of a drawn specimen's friction from its data sheet.
+const SPECIMENS: f64 = 0.08;
 
 /// Counts per turn of the encoders.
 pub(super) const MOTOR_COUNTS: f64 = 4096.0;
@@ -71,6 +75,7 @@ pub(super) struct Plant {
     pub thermistor_fault_k: f64,
     sheet: DataSheet,
     friction: Friction,
+    scatter: Scatter,
     gear: Gear,
     line: Line,
     line_inertia_kg_m2: f64,
@@ -90,24 +95,26 @@ pub(super) struct Plant {
 }
 
 impl Plant {
-    pub fn new(joint: Joint, load: Load, seed: u64, hidden: Hidden) -> Self {
-        let sheet = joint.data_sheet();
+    pub fn new(sheet: impl Into<DataSheet>, load: Load, seed: u64, hidden: Hidden) -> Self {
+        let sheet: DataSheet = sheet.into();
         let line_inertia_kg_m2 = line::inertia_kg_m2(load);
         let noise = Noise::new(seed);
-        let coulomb_nm = sheet.coulomb_nm * (1.0 + 0.08 * noise.trait_of(Signal::Coulomb));
-        let viscous_nm_s = sheet.viscous_nm_s * (1.0 + 0.08 * noise.trait_of(Signal::Viscous));
+        let (spread, scatter) = if sheet.is_exact { (0.0, sheet.scatter) } else { (SPECIMENS, 0.0) };
+        let coulomb_nm = sheet.coulomb_nm * (1.0 + spread * noise.trait_of(Signal::Coulomb));
+        let viscous_nm_s = sheet.viscous_nm_s * (1.0 + spread * noise.trait_of(Signal::Viscous));
         Self {
             inputs: Inputs::default(),
-            brake: Brake::new(hidden.brake),
+            brake: Brake::new(sheet.brake_nm, hidden.brake),
             torque_constant_nm_per_a: sheet.torque_constant_nm_per_a,
             sensor_shift_nm: 0.0,
             thermistor_fault_k: 0.0,
             friction: Friction::new(coulomb_nm, viscous_nm_s, sheet.rotor_inertia_kg_m2),
+            scatter: Scatter::new(scatter, noise),
             gear: Gear::new(&sheet, sheet.link_inertia_kg_m2 + line_inertia_kg_m2, hidden.gear),
-            line: Line::new(load),
+            line: Line::new(load, sheet.brake_nm),
             line_inertia_kg_m2,
             thermal: Thermal::new(AMBIENT_C),
-            encoders: Encoders::new(noise, hidden.encoder),
+            encoders: Encoders::new(&sheet, noise, hidden.encoder),
             hidden,
             step: 0,
             motor_angle_rad: 0.0,
@@ -136,7 +143,9 @@ impl Plant {
         );
         let velocity = self.motor_velocity_rad_s;
         let held_nm = if self.inputs.holding_brake { HOLDING_NM } else { 0.0 };
-        let grip = held_nm + self.hidden.friction.grip(&self.friction, velocity, gear_nm, self.link_angle_rad);
+        let film_nm = self.friction.coulomb_nm * self.scatter.advance(self.motor_angle_rad);
+        let grip =
+            held_nm + film_nm + self.hidden.friction.grip(&self.friction, velocity, gear_nm, self.link_angle_rad);
         let drag_nm = self.hidden.friction.drag(&self.friction, velocity, self.thermal.gear_c());
         let friction_nm = self.friction.advance(velocity, grip) + drag_nm;
 
@@ -225,10 +234,10 @@ impl Plant {
         self.noise.at(signal, self.step)
     }
 
-    pub fn truth(&self, joint: Joint, seed: u64) -> Truth {
+    pub fn truth(&self, seed: u64) -> Truth {
         let reflected_kg_m2 = (self.gear.link_inertia_kg_m2() - self.line_inertia_kg_m2) / self.sheet.ratio.powi(2);
         Truth {
-            joint,
+            joint: self.sheet.joint,
             seed,
             hidden: self.hidden.described(),
             coulomb_nm: self.friction.coulomb_nm,

@@ -25,6 +25,7 @@ pub enum Signal {
     Temperature,
     Stage,
     Multimeter,
+    Stroke,
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -8,7 +8,7 @@ mod branches;
 mod heat;
 mod poles;
 
-use super::super::data_sheet::brake::{COIL_OHM_25C, RATED_CURRENT_A, RATED_TORQUE_NM};
+use super::super::data_sheet::brake::{COIL_OHM_25C, RATED_CURRENT_A};
 use super::hidden::HiddenBrake;
 use super::{CoilSupply, STEP_S};
 use branches::Branches;
@@ -35,6 +35,7 @@ const EDDY_MOST_RAD_S: f64 = 628.0;
 pub struct Brake {
     /// Resistance of a bad contact in the coil circuit.
     pub contact_ohm: f64,
+    rated_nm: f64,
     hidden: HiddenBrake,
     current_a: f64,
     branches: Branches,
@@ -48,8 +49,9 @@ pub struct Brake {
 }
 
 impl Brake {
-    pub fn new(hidden: HiddenBrake) -> Self {
+    pub fn new(rated_nm: f64, hidden: HiddenBrake) -> Self {
         Self {
+            rated_nm,
             branches: Branches::new(hidden.width),
             hidden,
             contact_ohm: 0.0,
@@ -90,12 +92,12 @@ impl Brake {
         let eddy = EDDY_PER_RAD_S * speed_rad_s / (1.0 + (speed_rad_s / EDDY_MOST_RAD_S).powi(2));
         let warm = 1.0 + PER_K * (self.heat.rotor_c - 25.0);
         let target_nm =
-            RATED_TORQUE_NM * self.branches.advance(field) * warm * (1.0 + eddy + self.hidden.eddy(speed_rad_s));
+            self.rated_nm * self.branches.advance(field) * warm * (1.0 + eddy + self.hidden.eddy(speed_rad_s));
         self.magnetic_nm += self.torque_gain * (target_nm - self.magnetic_nm);
 
         let turned_rad = velocity_rad_s * STEP_S;
         self.angle_rad += turned_rad;
-        let cogging_nm = RATED_TORQUE_NM * self.poles.advance(field, self.angle_rad, turned_rad);
+        let cogging_nm = self.rated_nm * self.poles.advance(field, self.angle_rad, turned_rad);
 
         let holding_nm = self.magnetic_nm + DRAG_NM;
         let before = self.wind_up_rad;
@@ -115,13 +117,13 @@ impl Brake {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::data_sheet::Joint;
+    use crate::sim::data_sheet::{Joint, brake::RATED_TORQUE_NM};
     use crate::sim::plant::Hidden;
 
     /// Torque at the end of holds of 2 s at each current, at constant speed.
     fn torque_nm(effects: &[&str], speed_rad_s: f64, currents_a: &[f64]) -> f64 {
         let names: Vec<String> = effects.iter().map(|effect| (*effect).to_owned()).collect();
-        let mut brake = Brake::new(Hidden::draw(Joint::JointA, 5, &names).unwrap().brake);
+        let mut brake = Brake::new(RATED_TORQUE_NM, Hidden::draw(Joint::JointA, 5, &names).unwrap().brake);
         let held = |current_a: &f64| {
             let supply = Some(CoilSupply { current_a: *current_a, voltage_v: 45.0 });
             (0..(2.0 / STEP_S) as usize).map(|_| brake.advance(supply, speed_rad_s)).last().unwrap()

@@ -45,8 +45,14 @@ impl HiddenFriction {
     /// The effects that the data sheet describes, drawn or not.
     pub fn of(sheet: &DataSheet) -> Self {
         let nonzero = |figure: f64| (figure != 0.0).then_some(figure);
+        let stribeck = || Stribeck {
+            rise_nm: sheet.breakaway_nm - sheet.coulomb_nm,
+            velocity_rad_s: sheet.stribeck_velocity_rad_s * sheet.ratio,
+            exponent: sheet.stribeck_exponent,
+        };
         let upright = |size| Wave { size, harmonic: 1.0, phase_rad: PI };
         Self {
+            stribeck: sheet.is_exact.then(stribeck),
             direction_offset_nm: nonzero(sheet.direction_offset_nm),
             viscous_asymmetry: nonzero(sheet.viscous_asymmetry),
             gravity_nm: nonzero(sheet.upright_nm).map(upright),

@@ -11,7 +11,7 @@ pub use friction::HiddenFriction;
 pub use gear::{Contact, HiddenGear};
 
 use super::{Noise, Signal};
-use crate::sim::data_sheet::Joint;
+use crate::sim::data_sheet::{DataSheet, Joint};
 use jointbench_instrument::Kind;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -89,11 +89,11 @@ pub struct Hidden {
 
 impl Hidden {
     /// Draws the named effects. `Err` contains a name that the bench of this joint cannot hide.
-    pub fn draw(joint: Joint, seed: u64, effects: &[String]) -> Result<Self, String> {
-        let sheet = joint.data_sheet();
+    pub fn draw(sheet: impl Into<DataSheet>, seed: u64, effects: &[String]) -> Result<Self, String> {
+        let sheet: DataSheet = sheet.into();
         let mut hidden = Self { friction: HiddenFriction::of(&sheet), ..Self::default() };
         for name in effects {
-            let shown = HIDDEN_EFFECTS.iter().enumerate().filter(|(_, (kind, _))| joint.shows(*kind));
+            let shown = HIDDEN_EFFECTS.iter().enumerate().filter(|(_, (kind, _))| sheet.joint.shows(*kind));
             let mut found = shown.filter_map(|(of, (kind, effects))| {
                 let at = effects.iter().position(|effect| effect == name)?;
                 Some((*kind, effects[at], (of << 8 | at) as u64))

@@ -1,5 +1,7 @@
 //! Data sheets of the joints under test and the brake, known to the owner of the bench.
 
+mod puma;
+
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
 use serde::{Deserialize, Serialize};
@@ -15,7 +17,7 @@ pub enum Joint {
     JointB,
     /// No gear: the shaft has only the two encoders of the encoder bench.
     EncoderShaft,
-    /// The shoulder of a Puma 560, 107.8:1, upright at the zero of its encoder.
+    /// An axis of a Puma 560, upright at the zero of its encoder.
     Puma,
 }
 
@@ -35,11 +37,17 @@ pub enum Load {
 /// Values of the thesis: tables of the joints, of friction (motor side) and of stiffness (link side).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DataSheet {
+    pub joint: Joint,
+    /// A bench has exactly the published values. Otherwise the seed draws its friction around them, without Stribeck
+    /// effect and scatter.
+    pub is_exact: bool,
     pub torque_constant_nm_per_a: f64,
     pub ratio: f64,
     pub max_torque_nm: f64,
     pub range_rad: Option<f64>,
     pub coulomb_nm: f64,
+    /// Standard deviation of Coulomb friction between strokes, as a fraction of it.
+    pub scatter: f64,
     pub breakaway_nm: f64,
     pub viscous_nm_s: f64,
     /// Half the difference of Coulomb friction between the directions, and the same for viscous friction as a fraction
@@ -66,10 +74,27 @@ pub(super) struct DataSheet {
     pub rotor_inertia_kg_m2: f64,
     pub max_motor_velocity_rad_s: f64,
     pub max_motor_current_a: f64,
+    /// Loops of the drive.
+    pub loops: Loops,
+    /// Rated torque of each brake.
+    pub brake_nm: f64,
+    /// Offset of encoder S2 by its mounting, in points of 2¹⁸.
+    pub mounting_points: f64,
 }
 
-/// Motor torque of the Puma per volt at its converter: its published Coulomb friction (Nm) over that of figure 3.2 (V).
-const PUMA_NM_PER_V: f64 = 0.231;
+/// Gains of the drive's loops.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Loops {
+    /// Gain of a position loop that follows the integral of the velocity set-point, as in the controller of the thesis.
+    /// `None`: the drive's velocity loop follows the set-point.
+    pub position_per_s: Option<f64>,
+    /// Bandwidth of the velocity loop.
+    pub velocity_rad_s: f64,
+    /// Integral gain of the velocity loop, as a multiple of its proportional gain.
+    pub integral_per_s: f64,
+}
+
+const VELOCITY_LOOP: Loops = Loops { position_per_s: None, velocity_rad_s: 300.0, integral_per_s: 60.0 };
 
 /// Magtrol HB-1750M, data sheet EN 04/2025.
 pub(super) mod brake {
@@ -86,12 +111,26 @@ pub(super) const LINE_RATIO: f64 = 10.0;
 /// Supplies rated current to a coil at 100 °C (40.4 V) with a margin.
 const COMPLIANCE_V: f64 = 45.0;
 
+/// Rated torque of the brakes of the thesis (table 3.1).
+const DOCUMENTS_BRAKE_NM: f64 = 15.0;
+/// ξ of the encoder bench (section 4.1.1), in points of 2¹⁸.
+const MOUNTING_POINTS: f64 = 1437.0;
+/// Motor current of joint A at its largest torque of 70 Nm: 9.7 A, and up to 2 A for friction.
+const FULL_TORQUE_A: f64 = 12.0;
+
+/// Position loops with the tracking errors of table 4.7 at 0.15 rad/s: a lag of 6.4 mrad, and friction in addition.
+const JOINT_A_LOOPS: Loops = Loops { position_per_s: Some(23.3), velocity_rad_s: 450.0, integral_per_s: 0.7 };
+const JOINT_B_LOOPS: Loops = Loops { position_per_s: Some(24.0), velocity_rad_s: 500.0, integral_per_s: 0.3 };
+
 const JOINT_A: DataSheet = DataSheet {
+    joint: Joint::JointA,
+    is_exact: false,
     torque_constant_nm_per_a: 0.0406,
     ratio: 177.8,
     max_torque_nm: 70.0,
     range_rad: Some(5.0 * TAU),
     coulomb_nm: 0.030,
+    scatter: 0.0,
     breakaway_nm: 0.039,
     viscous_nm_s: 1.512e-4,
     direction_offset_nm: 0.0,
@@ -108,14 +147,20 @@ const JOINT_A: DataSheet = DataSheet {
     rotor_inertia_kg_m2: 1.2e-5,
     max_motor_velocity_rad_s: 350.0,
     max_motor_current_a: 8.0,
+    loops: VELOCITY_LOOP,
+    brake_nm: brake::RATED_TORQUE_NM,
+    mounting_points: 0.0,
 };
 
 const JOINT_B: DataSheet = DataSheet {
+    joint: Joint::JointB,
+    is_exact: false,
     torque_constant_nm_per_a: 0.0798,
     ratio: 50.0,
     max_torque_nm: 20.0,
     range_rad: None,
     coulomb_nm: 0.031,
+    scatter: 0.0,
     breakaway_nm: 0.057,
     viscous_nm_s: 7.835e-5,
     direction_offset_nm: 0.0,
@@ -132,15 +177,21 @@ const JOINT_B: DataSheet = DataSheet {
     rotor_inertia_kg_m2: 4.4e-5,
     max_motor_velocity_rad_s: 350.0,
     max_motor_current_a: 8.0,
+    loops: VELOCITY_LOOP,
+    brake_nm: brake::RATED_TORQUE_NM,
+    mounting_points: 0.0,
 };
 
 /// The thesis only says "BLDC motor": all values are assumed.
 const ENCODER_SHAFT: DataSheet = DataSheet {
+    joint: Joint::EncoderShaft,
+    is_exact: false,
     torque_constant_nm_per_a: 0.08,
     ratio: 1.0,
     max_torque_nm: 1.0,
     range_rad: None,
     coulomb_nm: 0.010,
+    scatter: 0.0,
     breakaway_nm: 0.012,
     viscous_nm_s: 2e-5,
     direction_offset_nm: 0.0,
@@ -157,83 +208,68 @@ const ENCODER_SHAFT: DataSheet = DataSheet {
     rotor_inertia_kg_m2: 4.4e-5,
     max_motor_velocity_rad_s: 200.0,
     max_motor_current_a: 5.0,
+    loops: VELOCITY_LOOP,
+    brake_nm: brake::RATED_TORQUE_NM,
+    mounting_points: 0.0,
 };
 
-/// Friction: the lines of figure 3.2 of document 000, joint 2, in volts over link speed in degrees per
-/// second, converted with PUMA_NM_PER_V. Ratio, rotor and weight: Corke and Armstrong-Hélouvry, "A search
-/// for consensus among model parameters reported for the PUMA 560 robot", ICRA 1994. The rest is assumed.
-fn puma() -> DataSheet {
-    let ratio = 107.815;
-    let viscous = |line: f64| line * PUMA_NM_PER_V / (ratio * 1f64.to_radians());
-    let coulomb = |line: f64| line * PUMA_NM_PER_V;
-    let ([forward, backward], [out, back]) =
-        ([coulomb(0.545064), coulomb(0.307835)], [viscous(0.007581), viscous(0.005757)]);
-    DataSheet {
-        torque_constant_nm_per_a: PUMA_NM_PER_V,
-        ratio,
-        max_torque_nm: 97.0,
-        range_rad: Some(1.6),
-        coulomb_nm: 0.5 * (forward + backward),
-        breakaway_nm: 0.115,
-        viscous_nm_s: 0.5 * (out + back),
-        direction_offset_nm: 0.5 * (forward - backward),
-        viscous_asymmetry: (out - back) / (out + back),
-        upright_nm: 37.2,
-        stribeck_velocity_rad_s: 0.008,
-        stribeck_exponent: 2.0,
-        stiffness_nm_rad: 76e3,
-        bearing_nm_rad: f64::INFINITY,
-        lost_rad: 0.0,
-        soft_rad: 0.0,
-        link_inertia_kg_m2: 4.0,
-        tuned_inertia_kg_m2: 4.0,
-        rotor_inertia_kg_m2: 2.0e-4,
-        max_motor_velocity_rad_s: 120.0,
-        max_motor_current_a: 5.0,
-    }
-}
-
-impl Joint {
-    pub(super) fn data_sheet(self) -> DataSheet {
-        match self {
+impl From<Joint> for DataSheet {
+    fn from(joint: Joint) -> Self {
+        match joint {
             Joint::JointA => JOINT_A,
             Joint::JointB => JOINT_B,
             Joint::EncoderShaft => ENCODER_SHAFT,
-            Joint::Puma => puma(),
+            Joint::Puma => puma::axis(puma::SHOULDER),
         }
+    }
+}
+
+impl DataSheet {
+    /// The sheet of a joint. `axis` applies to the Puma.
+    pub fn of(joint: Joint, axis: u8) -> Self {
+        if joint == Joint::Puma { puma::axis(axis) } else { joint.into() }
+    }
+
+    /// The bench of the documents: exactly their values.
+    pub fn exact(self) -> Self {
+        let (loops, max_motor_current_a) = match self.joint {
+            Joint::JointA => (JOINT_A_LOOPS, FULL_TORQUE_A),
+            Joint::JointB => (JOINT_B_LOOPS, self.max_motor_current_a),
+            _ => (self.loops, self.max_motor_current_a),
+        };
+        let (brake_nm, mounting_points) = (DOCUMENTS_BRAKE_NM, MOUNTING_POINTS);
+        Self { is_exact: true, loops, max_motor_current_a, brake_nm, mounting_points, ..self }
     }
 
     /// The constants that a bench description of this joint and load states.
-    pub fn constants(self, load: Load) -> JointConstants {
-        let sheet = self.data_sheet();
+    pub fn constants(&self, load: Load) -> JointConstants {
         let (turns, brakes) = match load {
             Load::BrakeA => (1.0, 1.0),
             Load::GearAndBrakeB => (LINE_RATIO, 1.0),
             Load::None => (0.0, 0.0),
         };
         JointConstants {
-            torque_constant_nm_per_a: sheet.torque_constant_nm_per_a,
-            gear_ratio: sheet.ratio,
-            rotor_inertia_kg_m2: sheet.rotor_inertia_kg_m2,
+            torque_constant_nm_per_a: self.torque_constant_nm_per_a,
+            gear_ratio: self.ratio,
+            rotor_inertia_kg_m2: self.rotor_inertia_kg_m2,
             brake_compliance_v: brakes * COMPLIANCE_V,
             brake_rated_current_a: brakes * brake::RATED_CURRENT_A,
-            brake_rated_torque_nm: turns * brake::RATED_TORQUE_NM,
-            link_range_rad: sheet.range_rad,
+            brake_rated_torque_nm: turns * self.brake_nm,
+            link_range_rad: self.range_rad,
         }
     }
 
     /// The limits of the bench: the lowest of joint, torque range and brake.
-    pub fn limits(self, load: Load) -> Limits {
-        let sheet = self.data_sheet();
+    pub fn limits(&self, load: Load) -> Limits {
         let (sensor_nm, brakes) = match load {
             Load::BrakeA => (18.0, 1.0),
             Load::GearAndBrakeB => (150.0, 1.0),
             Load::None => (0.0, 0.0),
         };
         Limits {
-            motor_velocity_rad_s: sheet.max_motor_velocity_rad_s,
-            motor_current_a: sheet.max_motor_current_a,
-            link_torque_nm: sheet.max_torque_nm.min(sensor_nm),
+            motor_velocity_rad_s: self.max_motor_velocity_rad_s,
+            motor_current_a: self.max_motor_current_a,
+            link_torque_nm: self.max_torque_nm.min(sensor_nm),
             temperature_c: 70.0,
             brake_current_a: brakes * 0.62,
             brake_power_w: brakes * brake::CONTINUOUS_W,
