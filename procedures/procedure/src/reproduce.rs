@@ -2,34 +2,18 @@
 //!
 //! The caller provides the true values of the bench if they are known; they are only compared at the end.
 
+mod campaign;
+
+pub use campaign::Subject;
+
 use crate::bench_facts::BenchFacts;
-use crate::catalogue::{Procedure, brake_model, procedure};
+use crate::catalogue::{brake_model, procedure};
 use crate::identification::{Identification, Quantity};
 use crate::in_memory_run::{InMemoryRun, InMemoryRunFault, run_in_memory_with_facts};
+use campaign::Figure;
 use jointbench_instrument::Bench;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use statrs::distribution::{ContinuousCDF, Normal};
-use std::f64::consts::TAU;
-
-/// The subject of the documents that is on the bench.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Subject {
-    /// Joint A of the thesis, with brake A.
-    JointA,
-    /// Joint B of the thesis, with brake A.
-    JointB,
-    /// Joint A with the gear and brake B behind brake A.
-    GearAndBrakeB,
-    /// The encoder bench.
-    Encoder,
-    /// The same with the filter of the encoder under test enabled, when its delay without the filter is known.
-    FilteredEncoder {
-        /// Delay of the same encoder without the filter.
-        delay_without_s: f64,
-    },
-    /// Joint 2 of the arm of document 000.
-    Puma,
-}
 
 /// Requirement on a figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,6 +44,12 @@ pub struct Comparison {
 }
 
 impl Comparison {
+    /// Whether the interval contains the value of the document. `None` without one.
+    pub fn contains_document(&self) -> Option<bool> {
+        let ([low, high], document) = (self.found.ci95?, self.document?);
+        Some((low..=high).contains(&document))
+    }
+
     /// Whether the interval contains the true value of the bench. `None` without one.
     pub fn is_inside(&self) -> Option<bool> {
         let ([low, high], given) = (self.found.ci95?, self.given?);
@@ -111,174 +101,13 @@ pub struct ProcedureResult {
     pub duration_s: f64,
 }
 
-/// A figure to compare: table, quantity, value of the document, requirement.
-type Figure = (&'static str, &'static str, Option<f64>, Option<Requirement>);
-
-/// One procedure with its parameters, and the figures of the document.
-type Part = (&'static str, Value, Vec<Figure>);
-
-fn friction([tau_c, c_v, tau_h, omega_s, delta_s]: [f64; 5]) -> Vec<Figure> {
-    let table = "4.5, 4.6";
-    vec![
-        (table, "tau_c", Some(tau_c), Some(Requirement::WithinShare(0.02))),
-        (table, "c_v", Some(c_v), Some(Requirement::WithinShare(0.03))),
-        (table, "tau_h", Some(tau_h), Some(Requirement::WithinShare(0.05))),
-        (table, "omega_s", Some(omega_s), Some(Requirement::WithinShare(0.15))),
-        (table, "delta_s", Some(delta_s), None),
-    ]
-}
-
-fn compensation(figures: [f64; 9]) -> Vec<Figure> {
-    let names = [
-        "ratio_zero_area",
-        "ratio_interpolated",
-        "ratio_coulomb_viscous",
-        "ratio_observer",
-        "rho_max_none",
-        "rho_max_zero_area",
-        "rho_max_interpolated",
-        "rho_max_coulomb_viscous",
-        "rho_max_observer",
-    ];
-    let beyond = [("ratio_full", 0.5), ("over_full", 0.0)]
-        .map(|(name, most)| ("beyond", name, None, Some(Requirement::AtMost(most))));
-    names.into_iter().zip(figures).map(|(name, figure)| ("4.7", name, Some(figure), None)).chain(beyond).collect()
-}
-
-fn stiffness([inverse_k, k, beta_0]: [f64; 3]) -> Vec<Figure> {
-    vec![
-        ("4.8", "inverse_k", Some(inverse_k), None),
-        ("4.8", "k", Some(k), Some(Requirement::WithinShare(0.01))),
-        ("4.8", "beta_0", Some(beta_0), Some(Requirement::WithinShare(0.03))),
-    ]
-}
-
-/// The accuracy classes of both ranges of the torque sensor together: 0.1 % of 20 Nm and 0.05 % of 200 Nm.
-const RANGES_AGREE_NM: f64 = 0.12;
-
-/// The campaign of a joint, in its order.
-fn joint(bearing_nm_rad: f64, figures: [Vec<Figure>; 3]) -> Vec<Part> {
-    let [friction, stiffness, compensation] = figures;
-    vec![
-        ("brake_speed_independence", json!({}), vec![("3.4", "change_max", None, Some(Requirement::AtMost(0.02)))]),
-        ("brake_hysteresis", json!({}), Vec::new()),
-        ("brake_torque", json!({}), vec![("beyond", "error_max", None, Some(Requirement::AtMost(0.01)))]),
-        ("demagnetise", json!({}), Vec::new()),
-        (
-            "torque_sensor_zero",
-            json!({}),
-            vec![("data sheet", "disagreement", None, Some(Requirement::AtMost(RANGES_AGREE_NM)))],
-        ),
-        ("friction", json!({"load_levels": 1, "repeats": 5}), friction),
-        ("breakaway", json!({}), Vec::new()),
-        ("presliding", json!({}), Vec::new()),
-        ("friction_load", json!({}), Vec::new()),
-        ("stiffness", json!({"bearing_stiffness_nm_rad": bearing_nm_rad}), stiffness),
-        ("compensation", json!({}), compensation),
-    ]
-}
-
-/// The purpose of the gear and brake B: high loads, and a torque that depends on speed.
-fn gear_and_brake_b() -> Vec<Part> {
-    // Ten times the torque at the same current: the joint's own limits end it at a third.
-    let share = 0.35;
-    let (slow, stiff) =
-        (json!({"top_current": share}), json!({"top_load": share, "bearing_stiffness_nm_rad": 155.0e3}));
-    vec![
-        ("brake_speed_independence", slow, vec![("3.5", "change_max", None, Some(Requirement::AtLeast(0.02)))]),
-        ("stiffness", stiff, stiffness([0.1812e-3, 5722.5, 0.5871e-3])),
-    ]
-}
-
-/// The smallest steps of the stage in an edge search, a shift and a rotation.
-const SHIFT_STEP: Requirement = Requirement::Within(4e-6);
-const ROTATION_STEP: Requirement = Requirement::Within(2e-4);
-
-fn encoder() -> Vec<Part> {
-    let point_rad = TAU / f64::from(1 << 18);
-    let degree = TAU / 360.0;
-    let edge = |name, at, step| ("4.4", name, Some(at), Some(step));
-    vec![
-        (
-            "encoder_offset",
-            json!({}),
-            vec![("eq. 4.3", "offset", Some(1437.0 * point_rad), Some(Requirement::Within(point_rad)))],
-        ),
-        ("encoder_startup", json!({}), vec![("section 4.1", "startup_spread", None, None)]),
-        ("encoder_delay", json!({}), vec![("4.2", "delay", Some(64.34e-6), Some(Requirement::Within(1e-6)))]),
-        (
-            "encoder_linearity",
-            json!({}),
-            vec![
-                ("figs 4.4–4.11", "bits_before", Some(10.0), None),
-                ("figs 4.4–4.11", "bits_velocity", Some(14.0), None),
-                ("beyond", "bits_direction", None, Some(Requirement::AtLeast(15.0))),
-            ],
-        ),
-        (
-            "encoder_alignment",
-            json!({}),
-            vec![
-                edge("radial_negative", -0.25e-3, SHIFT_STEP),
-                edge("radial_positive", 0.3e-3, SHIFT_STEP),
-                edge("axial_positive", 0.65e-3, SHIFT_STEP),
-                edge("rotation_negative", -degree, ROTATION_STEP),
-                edge("rotation_positive", degree, ROTATION_STEP),
-                edge("tilt_negative", -1.5 * degree, ROTATION_STEP),
-                edge("tilt_positive", 1.5 * degree, ROTATION_STEP),
-            ],
-        ),
-    ]
-}
-
-/// Figure 3.2 of the chapter on the Puma, joint 2: volts, and volts over degrees in a second at the link.
-fn puma() -> Vec<Part> {
-    let line = |name, figure, share: Option<f64>| ("3.2", name, Some(figure), share.map(Requirement::WithinShare));
-    let figures = vec![
-        line("b_positive", 0.007581, Some(0.03)),
-        line("f_positive", 0.545064, Some(0.02)),
-        line("r2_positive", 0.979807, None),
-        line("b_negative", 0.005757, Some(0.03)),
-        line("f_negative", -0.307835, Some(0.02)),
-        line("r2_negative", 0.975420, None),
-    ];
-    vec![("puma_friction", json!({}), figures)]
-}
-
-impl Subject {
-    /// The procedures of its campaign, in their order.
-    pub fn procedures(self) -> Vec<&'static dyn Procedure> {
-        self.campaign().into_iter().filter_map(|(id, ..)| procedure(id)).collect()
-    }
-
-    fn campaign(self) -> Vec<Part> {
-        match self {
-            Subject::JointA => joint(
-                155.0e3,
-                [
-                    friction([0.030, 1.512e-4, 0.039, 0.06, 0.8]),
-                    stiffness([0.1812e-3, 5722.5, 0.5871e-3]),
-                    compensation([0.87, 0.86, 0.87, 0.87, 7.640e-3, 7.519e-3, 6.557e-3, 6.606e-3, 6.480e-3]),
-                ],
-            ),
-            Subject::JointB => joint(
-                75.0e3,
-                [
-                    friction([0.031, 7.835e-5, 0.057, 0.08, 1.9]),
-                    stiffness([1.4746e-3, 684.3, 0.9588e-3]),
-                    compensation([0.79, 0.82, 0.79, 0.85, 7.245e-3, 7.844e-3, 7.653e-3, 7.688e-3, 6.400e-3]),
-                ],
-            ),
-            Subject::GearAndBrakeB => gear_and_brake_b(),
-            Subject::Encoder => encoder(),
-            Subject::FilteredEncoder { delay_without_s } => vec![(
-                "encoder_delay",
-                json!({"delay_without_filter_s": delay_without_s}),
-                vec![("4.3", "filter_delay", Some(10.99e-6), Some(Requirement::Within(1e-6)))],
-            )],
-            Subject::Puma => puma(),
-        }
-    }
+/// The procedures of a campaign that are run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// All of them.
+    Complete,
+    /// Those with a figure of a document.
+    Documented,
 }
 
 /// Runs the campaign in its order and reports the result of each procedure when it is done. `given` contains the true values of the
@@ -286,13 +115,15 @@ impl Subject {
 pub fn reproduce(
     bench: &mut Bench,
     subject: Subject,
+    extent: Extent,
     given: &dyn Fn(&str) -> Option<f64>,
     done: &mut dyn FnMut(&ProcedureResult),
 ) -> Result<Vec<ProcedureResult>, InMemoryRunFault> {
     let mut results: Vec<ProcedureResult> = Vec::new();
     let mut facts = BenchFacts::of(bench);
     for (id, parameters, figures) in subject.campaign() {
-        let Some(procedure) = procedure(id) else { continue };
+        let is_documented = figures.iter().any(|(_, _, document, _)| document.is_some());
+        let Some(procedure) = procedure(id).filter(|_| is_documented || extent == Extent::Complete) else { continue };
         let mut parameters = parameters.as_object().cloned().unwrap_or_default();
         if id == "compensation" {
             let friction = results.iter().find(|result| result.procedure == "friction");
@@ -325,6 +156,7 @@ fn compare(found: &Identification, figures: &[Figure], given: &dyn Fn(&str) -> O
 
 #[cfg(test)]
 mod tests {
+    use super::campaign::friction;
     use super::*;
     use crate::findings::quantity;
     use crate::identification::Verdict;
@@ -343,6 +175,10 @@ mod tests {
         let given = |name: &str| (name == "tau_c").then_some(0.0302);
         let comparisons = compare(&found, &friction([0.030, 1.512e-4, 0.039, 0.06, 0.8]), &given);
         assert_eq!(comparisons.iter().map(|c| c.document).collect::<Vec<_>>(), [Some(0.030), Some(1.512e-4)]);
+        assert_eq!(
+            comparisons.iter().map(Comparison::contains_document).collect::<Vec<_>>(),
+            [Some(true), Some(false)]
+        );
         assert_eq!((comparisons[0].is_inside(), comparisons[0].meets_requirement()), (Some(true), Some(true)));
         assert_eq!((comparisons[1].is_inside(), comparisons[1].meets_requirement()), (None, Some(true)));
     }

@@ -1,5 +1,7 @@
 //! `jointbench reproduce`: repeats the measurements of the source documents on the mock bench and compares the tables.
 
+mod documents;
+
 use super::arguments::Reproduce;
 use super::exit::{Done, Exit};
 use crate::report::{svg, with_interval};
@@ -8,7 +10,7 @@ use jointbench_devices::sim::{Load, Truth};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::identification::Quantity;
 use jointbench_procedure::reproduce::{
-    Comparison, ProcedureResult, Requirement, Subject, reproduce as campaign, simultaneous_factor,
+    Comparison, Extent, ProcedureResult, Requirement, Subject, reproduce as campaign, simultaneous_factor,
 };
 use std::fmt::Write;
 use std::fs;
@@ -17,16 +19,19 @@ use std::path::Path;
 
 const SUBJECTS: [(&str, Joint, Subject); 6] = [
     ("Joint A", Joint::JointA, Subject::JointA),
-    ("Joint A behind the gear and brake B", Joint::JointA, Subject::GearAndBrakeB),
+    ("Joint A behind the gear and brake B", Joint::JointA, Subject::GearAndBrakeB { share: 0.35 }),
     ("Joint B", Joint::JointB, Subject::JointB),
     ("Encoder bench", Joint::EncoderShaft, Subject::Encoder),
     ("Encoder bench, filter on", Joint::EncoderShaft, Subject::FilteredEncoder { delay_without_s: 0.0 }),
-    ("Puma", Joint::Puma, Subject::Puma),
+    ("Puma", Joint::Puma, Subject::Puma { axis: 2 }),
 ];
 const COLUMNS: &str =
     "| table | quantity | document | measured | 95 % interval | true value | inside | required | met |";
 
 pub fn reproduce(arguments: &Reproduce) -> Done {
+    if arguments.documents {
+        return documents::reproduce(arguments);
+    }
     // Check the path now: the measurements take minutes.
     if let Some(page) = &arguments.out {
         create_folder(page)?;
@@ -36,11 +41,8 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
     for (title, joint, mut subject) in SUBJECTS {
         println!("{title}");
         page += &format!("\n## {title}\n");
-        if let Subject::FilteredEncoder { delay_without_s } = &mut subject {
-            let delay = chapters.iter().find_map(|(_, chapter)| chapter.identification.quantity("delay"));
-            *delay_without_s = delay.map_or(0.0, |delay| delay.value);
-        }
-        for chapter in measure(joint, subject, arguments.seed)? {
+        subject.follow(chapters.iter().map(|(_, chapter)| chapter));
+        for chapter in measure(&drawn(joint, subject, arguments.seed), subject, Extent::Complete)? {
             page += &chapter_text(&chapter, title, arguments.out.as_deref())?;
             chapters.push((title, chapter));
         }
@@ -132,18 +134,30 @@ fn preamble(seed: u64) -> String {
     )
 }
 
-fn measure(joint: Joint, subject: Subject, seed: u64) -> Result<Vec<ProcedureResult>, Exit> {
+/// A bench similar to that of the document.
+fn drawn(joint: Joint, subject: Subject, seed: u64) -> MockSettings {
     // The joints of the documents have no hidden effects except a Stribeck effect.
     let hidden: &[&str] = if joint == Joint::EncoderShaft { &[] } else { &["stribeck"] };
-    let mut settings = MockSettings::new(joint, seed).hiding(hidden);
-    if subject == Subject::GearAndBrakeB {
-        settings.load = Load::GearAndBrakeB;
+    bench_of(joint, subject, seed).hiding(hidden)
+}
+
+/// The simulated bench of a subject.
+fn bench_of(joint: Joint, subject: Subject, seed: u64) -> MockSettings {
+    let mut settings = MockSettings::new(joint, seed);
+    match subject {
+        Subject::GearAndBrakeB { .. } => settings.load = Load::GearAndBrakeB,
+        Subject::FilteredEncoder { .. } => settings.filter = true,
+        Subject::Puma { axis } => settings.axis = axis as u8,
+        _ => {}
     }
-    settings.filter = matches!(subject, Subject::FilteredEncoder { .. });
-    let mock = MockBench::start(settings).map_err(|fault| Exit::failed(fault.to_string()))?;
+    settings
+}
+
+fn measure(settings: &MockSettings, subject: Subject, extent: Extent) -> Result<Vec<ProcedureResult>, Exit> {
+    let mock = MockBench::start(settings.clone()).map_err(|fault| Exit::failed(fault.to_string()))?;
     let mut bench = mock.open_bench("mock").map_err(|fault| Exit::failed(fault.to_string()))?;
     let truth = mock.truth();
-    campaign(&mut bench, subject, &|name| given(truth, name), &mut |chapter| {
+    campaign(&mut bench, subject, extent, &|name| given(truth, name), &mut |chapter| {
         println!("  {} ({:.0} s of bench time): {}", chapter.title, chapter.duration_s, chapter.identification.summary);
         for one in &chapter.comparisons {
             let (value, interval) = with_interval(one.found.value, one.found.ci95, &one.found.unit);
@@ -297,8 +311,10 @@ mod tests {
     #[test]
     fn the_kept_figures_are_those_of_this_program() {
         let page = fs::read_to_string(PAGE).unwrap();
-        for (title, joint, subject) in SUBJECTS.into_iter().filter(|(.., subject)| *subject == Subject::Puma) {
-            for chapter in measure(joint, subject, 1).unwrap() {
+        for (title, joint, subject) in
+            SUBJECTS.into_iter().filter(|(.., subject)| matches!(subject, Subject::Puma { .. }))
+        {
+            for chapter in measure(&drawn(joint, subject, 1), subject, Extent::Complete).unwrap() {
                 let text = chapter_text(&chapter, title, None).unwrap();
                 assert!(page.contains(&text), "docs/reproduction.md has other figures than this program:\n{text}");
             }

@@ -130,7 +130,7 @@ impl Procedure for PumaFriction {
             ("V", "f_positive f_negative f_difference weight stiction_positive stiction_negative"),
             ("V/(°/s)", "b_positive b_negative b_difference"),
             ("", "r2_positive r2_negative"),
-            ("Nm", "tau_c_positive tau_c_negative"),
+            ("Nm", "tau_c_positive tau_c_negative tau_s_positive tau_s_negative"),
             ("Nm·s/rad", "c_v_positive c_v_negative"),
         ])
     }

@@ -135,6 +135,12 @@ pub struct Reproduce {
     /// Random seed of the simulated joints
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// Use a bench with exactly the values of the documents, and count the intervals that contain them
+    #[arg(long)]
+    pub documents: bool,
+    /// Number of seeds, from --seed on
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "documents", value_parser = clap::value_parser!(u64).range(1..))]
+    pub seeds: u64,
     /// Write tables and figures to a page, such as docs/reproduction.md, and to a folder with the same name
     #[arg(short, long, visible_alias = "output", value_name = "PAGE.MD")]
     pub out: Option<PathBuf>,

@@ -56,6 +56,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
     let mut quantities = lines.quantities();
     quantities.extend(stiction.quantities());
     quantities.extend(lines.at_motor(nm_per_v, nm_per_v * gear.recip().to_degrees()));
+    quantities.extend(stiction.at_motor(nm_per_v));
     let over_volts = over_speed(&points, &lines.forward, &lines.backward);
     let complete = stiction.is_complete();
     Ok(Identification {
@@ -125,18 +126,14 @@ impl Lines {
 
     /// The same in newton metres at the motor, as magnitudes.
     fn at_motor(&self, nm_per_v: f64, nm_s_per_slope: f64) -> Vec<Quantity> {
-        let sized = |value: f64, ci95: [f64; 2], scale: f64| {
-            let ends = ci95.map(|end| end * scale * value.signum());
-            ((value * scale).abs(), [ends[0].min(ends[1]), ends[0].max(ends[1])])
-        };
         let mut all = Vec::new();
         for (suffix, sign, line) in [("positive", "⁺", &self.forward), ("negative", "⁻", &self.backward)] {
             let [coulomb, viscous] =
                 ["Coulomb", "Viscous"].map(|kind| format!("{kind} friction (motor), {suffix} direction"));
             let coulomb = [&format!("tau_c_{suffix}"), &format!("τ_c{sign}"), &coulomb, "Nm"];
-            all.push(named(coulomb, sized(line.offset, line.offset_ci95, nm_per_v)));
+            all.push(named(coulomb, magnitude(line.offset, line.offset_ci95, nm_per_v)));
             let viscous = [&format!("c_v_{suffix}"), &format!("c_v{sign}"), &viscous, "Nm·s/rad"];
-            all.push(named(viscous, sized(line.slope, line.slope_ci95, nm_s_per_slope)));
+            all.push(named(viscous, magnitude(line.slope, line.slope_ci95, nm_s_per_slope)));
         }
         all
     }
@@ -181,13 +178,23 @@ impl Stiction {
     }
 
     fn quantities(&self) -> Vec<Quantity> {
+        self.sides("stiction", |mean| (mean.value, mean.ci95), "Breakaway (static) friction", "V")
+    }
+
+    /// The same in newton metres at the motor, as magnitudes.
+    fn at_motor(&self, nm_per_v: f64) -> Vec<Quantity> {
+        let [title, unit] = ["Breakaway (static) friction (motor)", "Nm"];
+        self.sides("tau_s", |mean| magnitude(mean.value, mean.ci95, nm_per_v), title, unit)
+    }
+
+    fn sides(&self, name: &str, value: impl Fn(&Mean) -> (f64, [f64; 2]), title: &str, unit: &str) -> Vec<Quantity> {
         let sides = [
-            ("stiction_positive", "τ_s⁺", "positive direction", &self.positive),
-            ("stiction_negative", "τ_s⁻", "negative direction", &self.negative),
+            ("positive", "τ_s⁺", "positive direction", &self.positive),
+            ("negative", "τ_s⁻", "negative direction", &self.negative),
         ];
-        let of_side = |(name, symbol, way, mean): (&str, &str, &str, &Option<Mean>)| {
-            let words = [name, symbol, "Breakaway (static) friction", "V"];
-            mean.as_ref().map(|mean| named(words, (mean.value, mean.ci95)).in_configuration(way))
+        let of_side = |(suffix, symbol, way, mean): (&str, &str, &str, &Option<Mean>)| {
+            let words = [&format!("{name}_{suffix}"), symbol, title, unit];
+            mean.as_ref().map(|mean| named(words, value(mean)).in_configuration(way))
         };
         sides.into_iter().filter_map(of_side).collect()
     }
@@ -279,6 +286,12 @@ impl Figures<'_> {
             series: vec![side("positive", 1.0), side("negative", -1.0)],
         }
     }
+}
+
+/// The magnitude of a scaled value and its interval.
+fn magnitude(value: f64, ci95: [f64; 2], scale: f64) -> (f64, [f64; 2]) {
+    let ends = ci95.map(|end| end * scale * value.signum());
+    ((value * scale).abs(), [ends[0].min(ends[1]), ends[0].max(ends[1])])
 }
 
 fn named(words: [&str; 4], (value, ci95): (f64, [f64; 2])) -> Quantity {

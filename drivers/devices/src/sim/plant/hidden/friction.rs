@@ -65,6 +65,8 @@ impl HiddenFriction {
         // A fraction of Coulomb friction.
         let mut of_coulomb = |from: f64, to: f64| sheet.coulomb_nm * draw.random_range(from..to);
         match name {
+            // An exact sheet has it.
+            "stribeck" if sheet.is_exact => {}
             "stribeck" => {
                 let rise_nm = (sheet.breakaway_nm - sheet.coulomb_nm).max(of_coulomb(0.25, 0.45));
                 self.stribeck = Some(Stribeck {
