@@ -20,7 +20,13 @@ const AXES: [(&str, usize); 5] =
 const COLUMNS: &str =
     "| bench | table | quantity | document | measured, mean | half width of the interval, mean | inside |";
 
-const DEVIATIONS: &str = "## Known deviations
+const DEVIATIONS: &str = "## Sources
+
+The figures are those of the two source documents. Table 3.1 is not in the text of document 000 that this project has: its Coulomb and mean viscous
+friction agree with the parameters of the Puma 560 in Corke's Robotics Toolbox (1995); its breakaway and its viscous friction of each direction are
+quoted from Corke 1996, table 2.12, and not compared with the print. The inertia of the wrist, the stiffness of each axis and a tool are assumed.
+
+## Known deviations
 
 * Usable bits: the thesis gives whole bits. Here they are the full range of the error, 9.4 bits with a shape error of about 250 points. The
   readings of this bench scatter less than those of the thesis, so that table and velocity term reach more than 14 bits.
