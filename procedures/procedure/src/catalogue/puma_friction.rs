@@ -1,7 +1,7 @@
 //! Friction of an arm's axis by the method of document 000 (section 3.1). A work-out comes first. Then the mean motor
 //! current is measured at constant speeds over a short arc around the pose without gravity torque. The results are a
-//! line for each direction, a test for a difference of the directions, and stiction. For stiction the current rises
-//! until the encoder increases five times in a row.
+//! line for each direction, their mean viscous friction, a test for a difference of the directions, and stiction. For
+//! stiction the current rises until the encoder increases five times in a row.
 //!
 //! The run begins at the encoder position 0, with the link upright. Every speed is held over the same arc in both
 //! directions, from end to end. The remaining gravity torque is then the same in both, with a zero mean.
@@ -128,10 +128,10 @@ impl Procedure for PumaFriction {
     fn finds(&self) -> Vec<Findable> {
         findable(&[
             ("V", "f_positive f_negative f_difference weight stiction_positive stiction_negative"),
-            ("V/(°/s)", "b_positive b_negative b_difference"),
+            ("V/(°/s)", "b_positive b_negative b_mean b_difference"),
             ("", "r2_positive r2_negative"),
             ("Nm", "tau_c_positive tau_c_negative tau_s_positive tau_s_negative"),
-            ("Nm·s/rad", "c_v_positive c_v_negative"),
+            ("Nm·s/rad", "c_v_positive c_v_negative c_v_mean"),
         ])
     }
 

@@ -261,6 +261,8 @@ fn an_arm_gives_a_line_for_each_direction_and_its_stiction() {
         ("f_negative", -volts(truth.coulomb_nm - offset_nm), 0.02),
         ("b_positive", volts(truth.viscous_nm_s * (1.0 + share)) / deg_s, 0.08),
         ("b_negative", volts(truth.viscous_nm_s * (1.0 - share)) / deg_s, 0.08),
+        ("b_mean", volts(truth.viscous_nm_s) / deg_s, 0.06),
+        ("c_v_mean", truth.viscous_nm_s, 0.06),
         ("weight", volts(hidden("gravity", "link_nm") / truth.gear_ratio), 0.1),
     ] {
         let quantity = found.quantity(name).unwrap();

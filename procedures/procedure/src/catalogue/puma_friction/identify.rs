@@ -105,9 +105,16 @@ impl Lines {
         combined(slope(&self.forward), slope(&self.backward), -1.0)
     }
 
+    /// The viscous friction of a linear model (document 000, section 3.1).
+    fn b_mean(&self) -> (f64, [f64; 2]) {
+        let half = |line: &Line| (0.5 * line.slope, line.slope_ci95.map(|end| 0.5 * end));
+        combined(half(&self.forward), half(&self.backward), 1.0)
+    }
+
     fn quantities(&self) -> Vec<Quantity> {
         let mut quantities = sides(&self.forward, &self.backward);
         quantities.extend([
+            named(["b_mean", "B", "Viscous friction, mean of both directions", "V/(°/s)"], self.b_mean()),
             named(
                 ["f_difference", "|f⁺| − |f⁻|", "Coulomb friction, difference between directions", "V"],
                 self.f_difference(),
@@ -135,6 +142,9 @@ impl Lines {
             let viscous = [&format!("c_v_{suffix}"), &format!("c_v{sign}"), &viscous, "Nm·s/rad"];
             all.push(named(viscous, magnitude(line.slope, line.slope_ci95, nm_s_per_slope)));
         }
+        let (mean, ci95) = self.b_mean();
+        let viscous = ["c_v_mean", "c_v", "Viscous friction (motor), mean of both directions", "Nm·s/rad"];
+        all.push(named(viscous, magnitude(mean, ci95, nm_s_per_slope)));
         all
     }
 
