@@ -2,6 +2,7 @@
 
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::procedure;
+use crate::parameter::{Parameter, ParameterKind};
 use crate::plan::{Drive, Plan};
 use jointbench_instrument::limits::Limited;
 use serde::Serialize;
@@ -64,10 +65,14 @@ pub struct Setpoints {
 }
 
 impl Extreme {
-    /// Within its limit, with what friction takes.
+    /// Within its limit, with what friction and overshoot take.
     fn leaves_room(&self) -> bool {
-        let friction = if self.quantity == BEFORE_FRICTION { FOR_FRICTION } else { 0.0 };
-        self.ok && self.limit.is_none_or(|limit| self.value.abs() <= (1.0 - friction) * limit)
+        let taken = match self.quantity {
+            BEFORE_FRICTION => FOR_FRICTION,
+            TRAVEL => FOR_OVERSHOOT,
+            _ => 0.0,
+        };
+        self.ok && self.limit.is_none_or(|limit| self.value.abs() <= (1.0 - taken) * limit)
     }
 
     /// To a thousandth: `motor velocity 900 rad/s exceeds the limit of 350 rad/s`.
@@ -101,11 +106,18 @@ impl Check {
     }
 }
 
-/// Parameters that set the largest load, as a share of the brake's rated current.
+/// Parameters that set the largest load, as a share of the brake's rated current. They are reduced before any other.
 const LOADS: [&str; 2] = ["top_load", "top_current"];
-/// Share of the motor current that a proposed load leaves to friction, which a plan does not know. Decides nothing else.
+/// Share of the motor current that a proposed value leaves to friction, which a plan does not know, and share of the
+/// range that it leaves to overshoot. Decides nothing else.
 const FOR_FRICTION: f64 = 0.1;
+const FOR_OVERSHOOT: f64 = 0.01;
 const BEFORE_FRICTION: &str = "motor current, friction not included";
+const TRAVEL: &str = "link travel";
+/// A proposed value has this number of digits.
+const DIGITS: i32 = 3;
+/// Halvings of the range of a parameter: more than the digits need.
+const HALVINGS: u32 = 24;
 
 impl Plan {
     /// Judges the plan against limits and instruments of a bench. Nothing moves.
@@ -160,7 +172,7 @@ impl Plan {
             extremes.push(limited(Limited::MotorCurrent, self.top_motor_current_a()));
         }
         extremes.push(Extreme {
-            quantity: "link travel",
+            quantity: TRAVEL,
             unit: "rad",
             value: travel_rad,
             limit: constants.link_range_rad,
@@ -221,31 +233,42 @@ impl Plan {
         checks
     }
 
-    /// What brings the plan within the limits: the largest load that leaves some current to friction, in hundredths, where a
-    /// smaller one is enough.
+    /// What brings the plan within the limits: the parameter of which a smaller value is enough, with its largest value.
     fn within_limits(&self, facts: &BenchFacts) -> String {
-        let loads = LOADS.into_iter().filter_map(|name| Some((name, self.largest_share(name, facts)?)));
-        let shares: Vec<String> = loads.map(|(name, share)| format!("{name} = {share}")).collect();
-        match shares.first() {
-            Some(share) => format!("set {share} or less, or select another bench"),
+        let mut parameters: Vec<&Parameter> =
+            procedure(&self.procedure).map_or_else(Vec::new, |procedure| procedure.schema().iter().collect());
+        parameters.retain(|parameter| parameter.kind == ParameterKind::Number);
+        parameters.sort_by_key(|parameter| !LOADS.contains(&parameter.name));
+        let passing = |parameter: &Parameter| Some((parameter.name, self.largest_value(parameter, facts)?));
+        match parameters.into_iter().find_map(passing) {
+            Some((name, value)) => format!("set {name} = {value} or less, or select another bench"),
             None => "reduce speed or load, or select another bench".into(),
         }
     }
 
-    fn largest_share(&self, name: &str, facts: &BenchFacts) -> Option<f64> {
+    /// The largest value of a parameter with which the plan is within the limits and leaves room, rounded.
+    fn largest_value(&self, parameter: &Parameter, facts: &BenchFacts) -> Option<f64> {
         let procedure = procedure(&self.procedure)?;
-        let given = self.parameters.get(name)?.as_f64()?;
-        let least = procedure.schema().iter().find(|parameter| parameter.name == name)?.min;
-        let hundredths = |share: f64| (100.0 * share).ceil() as u32;
-        let passes = |share: &u32| {
+        let passes = |value: f64| {
             let mut choices = self.parameters.clone();
-            choices.insert(name.to_owned(), (f64::from(*share) / 100.0).into());
+            choices.insert(parameter.name.to_owned(), value.into());
             let plan = procedure.plan(&choices, facts);
             plan.is_ok_and(|plan| plan.extremes(facts).iter().all(Extreme::leaves_room))
         };
-        let shares: Vec<u32> = (hundredths(least)..hundredths(given)).collect();
-        let passing = shares.partition_point(passes);
-        Some(f64::from(*shares.get(passing.checked_sub(1)?)?) / 100.0)
+        let (mut passing, mut failing) = (parameter.min, self.parameters.get(parameter.name)?.as_f64()?);
+        if !passes(passing) {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (passing + failing);
+            *(if passes(middle) { &mut passing } else { &mut failing }) = middle;
+        }
+        if passing <= 0.0 {
+            return Some(passing);
+        }
+        let scale = 10f64.powi(DIGITS - 1 - passing.log10().floor() as i32);
+        let rounded = [(scale * passing).round() / scale, (scale * passing).floor() / scale];
+        rounded.into_iter().find(|value| *value >= parameter.min && passes(*value))
     }
 
     fn setpoints(&self) -> Setpoints {

@@ -1,6 +1,7 @@
-//! The second brake loads a joint beyond its limits: a refused plan names the load that does not.
+//! A plan beyond a limit is refused with the largest value that keeps it: of the load behind the second brake, and of
+//! speed and arc on an arm.
 
-use jointbench_devices::sim::Load;
+use jointbench_devices::sim::{Load, MockInstrument};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::Bench;
 use jointbench_procedure::in_memory_run::run_in_memory;
@@ -57,6 +58,33 @@ fn a_run_with_the_named_load_keeps_the_limits() {
     let choices = json!({ "top_current": share });
     let run = run_in_memory(&mut bench, procedure("brake_speed_independence").unwrap(), choices.as_object().unwrap());
     assert!(run.is_ok(), "{:?}", run.err());
+}
+
+#[test]
+fn an_arm_is_measured_with_the_values_that_its_refusals_name() {
+    let others = vec![MockInstrument::Thermometer];
+    let settings = MockSettings { others, ..MockSettings::new(Joint::Puma, 1) }.hiding(&["stribeck"]);
+    let mock = MockBench::start(settings).expect("a mock bench");
+    let mut bench = mock.open_bench("mock").expect("its instruments answer");
+    let facts = BenchFacts::of(&bench);
+    for (id, name, more) in [
+        ("warm_up", "top_speed_rad_s", json!({"longest_s": 60.0})),
+        ("friction_temperature", "top_speed_rad_s", json!({"heat_s": 60.0, "cool_s": 60.0})),
+        ("breakaway", "arc_rad", json!({"positions": 2})),
+    ] {
+        let most = named(id, name, &facts);
+        let planned = |value: f64| {
+            let mut choices = more.as_object().unwrap().clone();
+            choices.insert(name.to_owned(), value.into());
+            let plan = procedure(id).unwrap().plan(&choices, &facts).expect("a plan");
+            (refusal(&plan, &facts), choices)
+        };
+        let (refused, choices) = planned(most);
+        assert_eq!(refused, None, "{id} at {most}");
+        assert!(planned(1.02 * most).0.is_some(), "{id}: {most}");
+        let run = run_in_memory(&mut bench, procedure(id).unwrap(), &choices);
+        assert!(run.is_ok(), "{id} at {most}: {:?}", run.err());
+    }
 }
 
 #[test]

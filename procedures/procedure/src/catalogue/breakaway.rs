@@ -4,11 +4,14 @@
 //! that includes the approach: the joint always arrives in the direction in which it will break away. A joint whose
 //! friction falls with speed creeps before it breaks away. A faster torque ramp then gives a lower breakaway torque
 //! (Canudas de Wit, Olsson, Åström, Lischinsky 1995). Only a slow ramp approximates the friction at rest.
+//!
+//! Gravity loads a joint without a torque sensor. It is estimated from the angles of the breakaways. A constant part of
+//! it looks like a difference of the directions, so that only the mean of both directions is free of it on a short arc.
 
 use super::legs::{ACCELERATION, Legs, sample_rate, stroke};
 use super::{Findable, Procedure, findable};
 use crate::bench_facts::BenchFacts;
-use crate::findings::{Mean, Unusable, combined, directions, quantity, scatter, verdict};
+use crate::findings::{Mean, Unusable, combined, directions, quantity, scatter, solve, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Drive, EndCondition, Plan, PlanFault};
@@ -20,7 +23,8 @@ use std::f64::consts::TAU;
 pub(super) struct Breakaway;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::count("positions", "Positions per link turn", 12, [2, 200]),
+    Parameter::count("positions", "Number of positions in each direction", 12, [2, 200]),
+    Parameter::number("arc_rad", "Arc of the positions (link)", "rad", TAU, [0.02, TAU]),
     Parameter::number("top_torque_nm", "Maximum torque of the ramp (motor)", "Nm", 0.08, [1e-3, 100.0]),
     Parameter::number("ramp_nm_s", "Torque ramp rate (motor)", "Nm/s", 0.005, [1e-4, 10.0]),
     Parameter::count("increases", "Consecutive encoder increments", 5, [2, 50]),
@@ -61,8 +65,14 @@ impl Procedure for Breakaway {
         let top_a = values.number("top_torque_nm") / bench.constants.torque_constant_nm_per_a;
         let ramp_s = values.number("top_torque_nm") / values.number("ramp_nm_s");
         let positions = values.count("positions");
-        let stretch_rad = TAU * bench.constants.gear_ratio / f64::from(positions);
+        let arc_rad = values.number("arc_rad") * bench.constants.gear_ratio;
+        let stretch_rad = arc_rad / f64::from(positions);
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        if bench.constants.link_range_rad.is_some_and(|range_rad| range_rad < TAU) {
+            // A whole turn does not fit in the range: the arc is centred on the initial pose.
+            let velocity = stroke(-0.5 * arc_rad, values.number("speed_rad_s"), legs.acceleration_rad_s2);
+            legs.push("to the start of the arc".into(), velocity, Profile::constant(0.0));
+        }
         for (repeat, sign) in [(0, 1.0), (1, -1.0)] {
             legs.repeat = repeat;
             for position in 1..=positions {
@@ -96,14 +106,48 @@ struct BreakawayPoint {
     sign: f64,
 }
 
-impl BreakawayPoint {
-    /// `km` [Nm/A]: torque constant of the motor.
-    fn of(onset: &Onset, km: f64, link_position_rad: Option<&[f64]>) -> Self {
-        Self {
-            link_rad: link_position_rad.map_or(0.0, |link| link[onset.end - 1].rem_euclid(TAU)),
-            torque_nm: km * onset.current_a.abs(),
-            sign: onset.current_a.signum(),
+/// Statistics of the breakaway torque.
+struct Torques {
+    mean: Mean,
+    forward: Mean,
+    backward: Mean,
+    difference: (f64, [f64; 2]),
+}
+
+impl Torques {
+    fn of(points: &[BreakawayPoint], step_nm: f64) -> Option<Self> {
+        let of = |sign: f64| -> Vec<f64> { points.iter().filter(|b| b.sign == sign).map(|b| b.torque_nm).collect() };
+        let all: Vec<f64> = points.iter().map(|b| b.torque_nm).collect();
+        let [mean, forward, backward] =
+            [Mean::of(&all)?, Mean::of(&of(1.0))?, Mean::of(&of(-1.0))?].map(|mean| with_resolution(mean, step_nm));
+        let difference = combined((forward.value, forward.ci95), (backward.value, backward.ci95), -1.0);
+        Some(Self { mean, forward, backward, difference })
+    }
+
+    /// By least squares with gravity as a wave of the link angle. Its change with the angle is removed from `points`.
+    fn without_gravity(points: &mut [BreakawayPoint], step_nm: f64) -> Option<Self> {
+        let response: Vec<f64> = points.iter().map(|b| b.sign * b.torque_nm).collect();
+        let solved = |columns: fn(f64) -> [f64; 2]| {
+            let row = |b: &BreakawayPoint| {
+                let ([first, second], (sine, cosine)) = (columns(b.sign), b.link_rad.sin_cos());
+                [first, second, sine, cosine]
+            };
+            solve(&points.iter().map(row).collect::<Vec<_>>(), &response)
+        };
+        let both = solved(|sign| [sign, 1.0])?;
+        let each = solved(|sign| [sign.max(0.0), sign.min(0.0)])?;
+        let cosine = points.iter().map(|b| b.link_rad.cos()).sum::<f64>() / points.len() as f64;
+        for b in points {
+            let (sine, cosine) = (b.link_rad.sin(), b.link_rad.cos() - cosine);
+            b.torque_nm -= b.sign * (both.values[2] * sine + both.values[3] * cosine);
         }
+        let mean = |value: f64, ci95: [f64; 2]| with_resolution(Mean { value, ci95 }, step_nm);
+        Some(Self {
+            mean: mean(both.values[0], both.ci95(0)),
+            forward: mean(each.values[0], each.ci95(0)),
+            backward: mean(each.values[1], each.ci95(1)),
+            difference: (2.0 * both.values[1], both.ci95(1).map(|end| 2.0 * end)),
+        })
     }
 }
 
@@ -158,19 +202,30 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         ));
     };
     let km = run.meta().torque_constant_nm_per_a.unwrap_or(1.0);
-    let link = run.column("link_position_rad");
+    let gear = run.meta().gear_ratio.unwrap_or(1.0);
+    let position = run.column("motor_position_rad").unwrap_or_default();
+    let link = |row: usize| run.column("link_position_rad").map_or(position[row] / gear, |link| link[row]);
     let increases = values.count("increases") as usize;
     let top_a = values.number("top_torque_nm") / km;
     let (onsets, held) = onsets(run, setpoint, increases, top_a);
-    let points: Vec<BreakawayPoint> = onsets.into_iter().map(|onset| BreakawayPoint::of(&onset, km, link)).collect();
-    let of = |sign: f64| -> Vec<f64> { points.iter().filter(|b| b.sign == sign).map(|b| b.torque_nm).collect() };
-    let all: Vec<f64> = points.iter().map(|b| b.torque_nm).collect();
-    let (Some(mean), Some(forward), Some(backward)) = (Mean::of(&all), Mean::of(&of(1.0)), Mean::of(&of(-1.0))) else {
-        return Err(Unusable::InsufficientData("Too few breakaway events.", "Increase top_torque_nm."));
+    let point = |onset: Onset| BreakawayPoint {
+        link_rad: link(onset.end - 1).rem_euclid(TAU),
+        torque_nm: km * onset.current_a.abs(),
+        sign: onset.current_a.signum(),
     };
-    let [mean, forward, backward] = [mean, forward, backward].map(|mean| with_resolution(mean, ramp_step_nm(values)));
+    let mut points: Vec<BreakawayPoint> = onsets.into_iter().map(point).collect();
+    let step_nm = ramp_step_nm(values);
+    let torques = match run.column("link_torque_nm") {
+        Some(_) => Torques::of(&points, step_nm),
+        None => Torques::without_gravity(&mut points, step_nm),
+    };
+    let Some(Torques { mean, forward, backward, difference }) = torques else {
+        let advice =
+            "Increase top_torque_nm. An arm moves by its weight where gravity exceeds friction: reduce arc_rad.";
+        return Err(Unusable::InsufficientData("Too few breakaway events.", advice));
+    };
+    let all: Vec<f64> = points.iter().map(|b| b.torque_nm).collect();
     let deviation = (all.iter().map(|t| (t - mean.value).powi(2)).sum::<f64>() / (all.len() - 1) as f64).sqrt();
-    let difference = combined((forward.value, forward.ci95), (backward.value, backward.ci95), -1.0);
     let named = |name, symbol, title, mean: &Mean| quantity([name, symbol, title, "Nm"], mean.value, Some(mean.ci95));
     Ok(Identification {
         verdict: if held == 0 { Verdict::Identified } else { Verdict::Inconclusive },

@@ -161,6 +161,40 @@ fn a_joint_breaks_away_where_its_friction_at_rest_lies() {
     assert!((quantity.value / mock.truth().coulomb_nm - 1.0).abs() < 0.02, "{}", found.summary);
 }
 
+/// Gravity loads the arm on both sides of its upright pose.
+#[test]
+fn an_arm_breaks_away_on_a_short_arc_without_its_weight() {
+    let given = json!({"arc_rad": 0.3, "top_torque_nm": 0.3, "positions": 6, "ramp_nm_s": 0.01});
+    let (mock, found) = found(MockSettings::new(Joint::Puma, 1).hiding(&["stribeck"]), "breakaway", given);
+    assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
+    let truth = mock.truth();
+    let hidden = |effect: &str, figure: &str| {
+        truth.hidden.iter().find(|h| h.effect == effect).expect("the arm has it").parameters[figure]
+    };
+    let (rest_nm, offset_nm) =
+        (truth.coulomb_nm + hidden("stribeck", "rise_nm"), hidden("direction_offset", "offset_nm"));
+    assert!((found.quantity("tau_b").unwrap().value / rest_nm - 1.0).abs() < 0.02, "{}", found.summary);
+    for (name, truth) in [
+        ("tau_b_positive", rest_nm + offset_nm),
+        ("tau_b_negative", rest_nm - offset_nm),
+        ("tau_b_difference", 2.0 * offset_nm),
+    ] {
+        let [low, high] = found.quantity(name).unwrap().ci95.unwrap();
+        assert!((low..=high).contains(&truth), "{name}: {low} … {high} for {truth}");
+    }
+}
+
+#[test]
+fn presliding_of_an_arm_shows_just_below_breakaway() {
+    let presliding = |given| found(MockSettings::new(Joint::Puma, 1).hiding(&["stribeck"]), "presliding", given);
+    let (_, still) = presliding(json!({"repeats": 2}));
+    assert!(still.advice.is_some_and(|advice| advice.contains("95 % of the lower breakaway torque")));
+    let (mock, found) = presliding(json!({"top_torque_nm": 0.105}));
+    assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
+    let [low, high] = found.quantity("sigma_0").unwrap().ci95.unwrap();
+    assert!((low..=high).contains(&mock.truth().bristle_nm_rad), "{low} … {high}");
+}
+
 #[test]
 fn presliding_finds_the_stiffness_of_the_contacts_from_a_few_counts() {
     let (mock, found) = found(MockSettings::new(Joint::JointA, 1), "presliding", json!({}));

@@ -56,8 +56,8 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
     let Some(dahl) = fit(&held) else {
         return Err(match broke_away {
             0 => Unusable::InsufficientData(
-                "The motor encoder hardly moved.",
-                "Increase repeats, or increase top_torque_nm towards breakaway.",
+                "The motor moved by less than one encoder count in each step.",
+                "Set top_torque_nm to 95 % of the lower breakaway torque of both directions (breakaway, puma_friction).",
             ),
             _ => Unusable::InsufficientData("The joint broke away during the cycles.", "Reduce top_torque_nm."),
         });
