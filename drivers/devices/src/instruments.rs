@@ -4,10 +4,12 @@ use crate::driver::{
     AdamSettings, AdamThermometer, DmmSettings, DmmTorqueSensor, GcsSettings, GcsStage, LorenzSensor, LorenzSettings,
     OdriveJoint, OdriveSettings, PumaAxis, PumaSettings, QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
 };
+use crate::protocol::puma::interval;
 use crate::transport::PortSettings;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{
-    AlignmentStage, CurrentSource, Identity, Instrument, JointController, PositionCounter, Thermometer, TorqueSensor,
+    AlignmentStage, CurrentSource, Identity, Instrument, JointController, PositionCounter, SetpointInterval,
+    Thermometer, TorqueSensor,
 };
 use jointbench_instrument::{Bench, Clock, Fault, Limits};
 use serde::{Deserialize, Serialize};
@@ -55,6 +57,14 @@ impl JointSettings {
         match self {
             JointSettings::Odrive(_) => None,
             JointSettings::Puma(settings) => Some(settings.amperes_per_volt),
+        }
+    }
+
+    /// Interpolation of position set-points, if the drive accepts positions.
+    pub fn setpoint_interval(&self) -> Option<SetpointInterval> {
+        match self {
+            JointSettings::Odrive(_) => None,
+            JointSettings::Puma(settings) => interval(settings.ninter),
         }
     }
 

@@ -186,7 +186,7 @@ fn positions_from_before_a_power_cycle_are_never_mixed_with_those_after() {
 #[test]
 fn the_memory_is_read_and_gains_are_in_it_from_arming_on() {
     let gains = PumaGains { velgan: Some(8), postol: Some(300), ..PumaGains::default() };
-    let mock = MockBench::start(MockSettings { gains, ..MockSettings::new(Joint::Puma, 3) }).unwrap();
+    let mock = MockBench::start(MockSettings { gains, ninter: 16, ..MockSettings::new(Joint::Puma, 3) }).unwrap();
     let mut bench = mock.open_bench("puma").unwrap();
     let read = |bench: &mut Bench, addresses: &[u8]| -> Vec<u8> {
         let memory = bench.joint.servo_memory().expect("a Puma's servo");
@@ -196,6 +196,7 @@ fn the_memory_is_read_and_gains_are_in_it_from_arming_on() {
     assert_eq!(read(&mut bench, &addresses), [1, 0, 0, 0, 0], "as at power-up");
     bench.joint.arm(RadPerSec(120.0), Amperes(5.0)).unwrap();
     assert_eq!(read(&mut bench, &addresses), [1, 8, 0, 300_u16 as u8, 1]);
+    assert_eq!(read(&mut bench, &[0x06, 0x07]), [16, 4], "14 ms, and the scale factor of 16 ticks");
     let fault = bench.joint.servo_memory().unwrap().read_byte(0x80).unwrap_err();
     assert!(fault.to_string().contains("out of range"), "{fault}");
 }

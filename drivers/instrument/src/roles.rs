@@ -101,6 +101,10 @@ pub trait JointController: Instrument {
     fn amperes_per_volt(&self) -> Option<f64> {
         None
     }
+    /// Interpolation of position set-points, if the drive accepts positions.
+    fn setpoint_interval(&self) -> Option<SetpointInterval> {
+        None
+    }
     /// The memory of the drive's processor, if it is readable.
     fn servo_memory(&mut self) -> Option<&mut dyn ServoMemory> {
         None
@@ -111,6 +115,37 @@ pub trait JointController: Instrument {
 pub trait ServoMemory: Instrument {
     /// One byte at an address of the processor's memory.
     fn read_byte(&mut self, address: u8) -> Result<u8, Fault>;
+}
+
+/// Interpolation of a drive that accepts positions: it reaches each set-point after a number of its clock ticks.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SetpointInterval {
+    /// One tick of the drive's clock (s).
+    pub tick_s: f64,
+    /// Ticks until a set-point is reached.
+    pub ticks: u8,
+}
+
+impl SetpointInterval {
+    /// Fewer ticks between two commands have to be a whole number of them. Otherwise the number of ticks changes from
+    /// command to command, and the speed with it. The mean of the current at the commands is then not the mean current:
+    /// on the mock bench by 4 to 15 % of the viscous friction at 5.7 ticks, and by 1 % at 11.4 ticks.
+    const FREE_TICKS: f64 = 10.0;
+
+    /// Time until a set-point is reached (s).
+    pub fn duration_s(&self) -> f64 {
+        f64::from(self.ticks) * self.tick_s
+    }
+
+    /// The command rate closest to a wanted one that suits the ticks (Hz).
+    pub fn suitable_rate_hz(&self, wanted_hz: f64) -> f64 {
+        let ticks = 1.0 / (wanted_hz * self.tick_s);
+        if ticks >= Self::FREE_TICKS {
+            wanted_hz
+        } else {
+            1.0 / (ticks.round().clamp(1.0, self.ticks.into()) * self.tick_s)
+        }
+    }
 }
 
 /// The resolution of the readings of a joint controller.

@@ -115,6 +115,7 @@ fn facts() -> BenchFacts {
         encoder_counts: None,
         has_stage: false,
         amperes_per_volt: None,
+        setpoint_interval: None,
         brake_model: None,
         feeds_forward: true,
     }

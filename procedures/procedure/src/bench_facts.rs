@@ -2,7 +2,7 @@
 
 use crate::brake_model::BrakeModel;
 use jointbench_instrument::bench::JointConstants;
-use jointbench_instrument::roles::PositionCounter;
+use jointbench_instrument::roles::{PositionCounter, SetpointInterval};
 use jointbench_instrument::{Bench, Limits};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -30,6 +30,8 @@ pub struct BenchFacts {
     pub has_stage: bool,
     /// Motor current for each volt, if the joint's servo measures it as the voltage at a shunt.
     pub amperes_per_volt: Option<f64>,
+    /// Interpolation of position set-points, if the joint's drive accepts positions.
+    pub setpoint_interval: Option<SetpointInterval>,
     /// The brake model of an earlier run, if a procedure needs it ([`crate::Procedure::brake_model`]).
     #[serde(skip)]
     pub brake_model: Option<BrakeModel>,
@@ -53,6 +55,7 @@ impl BenchFacts {
                 .map(|(reference, test)| [reference, test]),
             has_stage: bench.stage.is_some(),
             amperes_per_volt: bench.joint.amperes_per_volt(),
+            setpoint_interval: bench.joint.setpoint_interval(),
             brake_model: None,
             feeds_forward: bench.joint.feeds_forward(),
         }

@@ -230,7 +230,27 @@ impl Plan {
             },
         ];
         checks.retain(|check| check.name != "brake" || facts.has_brake || needs_brake);
+        checks.extend(facts.setpoint_interval.map(|interval| self.setpoint_check(interval.duration_s())));
         checks
+    }
+
+    /// A position servo stops where it has reached its set-point before the next command.
+    fn setpoint_check(&self, interval_s: f64) -> Check {
+        let ok = 1.0 / self.rate_hz <= interval_s * (1.0 + 1e-9);
+        let cure = || {
+            let rate_hz = (1.0 / interval_s).ceil();
+            format!("set sample_rate_hz = {rate_hz} or more, or a larger ninter in the bench description")
+        };
+        Check {
+            name: "set-point interval",
+            ok,
+            detail: format!(
+                "a command every {:.3} ms, and set-points that are reached in {:.3} ms",
+                1e3 / self.rate_hz,
+                1e3 * interval_s
+            ),
+            cure: (!ok).then(cure),
+        }
     }
 
     /// What brings the plan within the limits: the parameter of which a smaller value is enough, with its largest value.

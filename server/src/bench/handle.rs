@@ -215,6 +215,7 @@ pub fn facts(description: &BenchDescription) -> BenchFacts {
         encoder_counts: has.encoder_counts,
         has_stage: has.stage,
         amperes_per_volt: has.amperes_per_volt,
+        setpoint_interval: has.setpoint_interval,
         brake_model: None,
         feeds_forward: has.feeds_forward,
     }

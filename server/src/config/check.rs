@@ -2,7 +2,7 @@
 
 use super::error::{Collector, ConfigErrors};
 use super::figures::{Sheet, check_reach};
-use super::instruments::{calibrations, instruments};
+use super::instruments::{calibrations, instruments, ninter};
 use super::raw::{RawBench, RawFile, RawMock};
 use super::values::{choice, positive, within};
 use super::{BenchDescription, Source};
@@ -138,14 +138,18 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     if let (Some(given), Some(Joint::EncoderShaft | Joint::Puma)) = (&raw.load, joint) {
         wrong.add(given.span(), "this joint has no load: remove load");
     }
-    if let Some(Joint::JointA | Joint::JointB | Joint::EncoderShaft) = joint {
-        if let Some(given) = &raw.servo {
-            wrong.add(given.span(), "this joint has no Puma-type servo: remove servo");
-        }
-        if let Some(given) = &raw.axis {
-            wrong.add(given.span(), "only joint \"puma\" has axes: remove axis");
+    if joint.is_some_and(|joint| joint != Joint::Puma) {
+        let given = [
+            ("servo", raw.servo.as_ref().map(Spanned::span)),
+            ("ninter", raw.ninter.as_ref().map(Spanned::span)),
+            ("axis", raw.axis.as_ref().map(Spanned::span)),
+        ];
+        for (name, place) in given {
+            let place = place.into_iter();
+            place.for_each(|place| wrong.add(place, format!("this joint is not a Puma-type arm: remove {name}")));
         }
     }
+    let ninter = ninter(raw.ninter.as_ref(), wrong);
     let gains = raw.servo.as_ref().map(|given| *given.get_ref()).unwrap_or_default();
     let supplies = [("dp821a", Supply::Dp821a), ("hmp4040", Supply::Hmp4040)];
     let supply =
@@ -159,8 +163,8 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
         settings.others.push(MockInstrument::Thermometer);
     }
     let load = load.unwrap_or(Some(settings.load))?;
-    let (filter, supply, troubles) = (raw.filter, supply?, troubles(&raw.troubles, &settings, wrong));
+    let (filter, supply, ninter, troubles) = (raw.filter, supply?, ninter?, troubles(&raw.troubles, &settings, wrong));
     // Other programs can connect to a bench with a pace; a bench without one is too fast for them.
     let transport = if pace.is_some() { Transport::Terminal } else { settings.transport };
-    Some(MockSettings { load, effects, pace, filter, supply, troubles, transport, gains, ..settings })
+    Some(MockSettings { load, effects, pace, filter, supply, troubles, transport, ninter, gains, ..settings })
 }

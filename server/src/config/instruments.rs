@@ -8,13 +8,12 @@ use jointbench_devices::driver::{
     AdamSettings, DmmSettings, GcsSettings, LorenzSettings, OdriveSettings, PumaSettings, QsbSettings,
     Range as TorqueRange, ScpiSettings, Thermistor,
 };
+use jointbench_devices::protocol::puma::{VAL_INTERVAL, interval, intervals};
 use jointbench_devices::{InstrumentSettings, JointSettings, PortSettings, TorqueSensorSettings};
 use std::ops::Range;
 use toml::Spanned;
 use toml::value::Datetime;
 
-/// Default number of servo ticks between two set points of a Puma: 28 ms, as in VAL.
-const NINTER: u8 = 32;
 /// Maximum counts per turn after quadrature: the 32-bit counter still has room for several turns.
 const MOST_COUNTS: u32 = 1 << 24;
 
@@ -121,7 +120,7 @@ fn check_puma(
     let counts =
         raw.counts_per_turn.as_ref().and_then(|given| within(given, "counts_per_turn", 4..=MOST_COUNTS, wrong));
     let scale = raw.amperes_per_volt.as_ref().and_then(|given| positive(given, "amperes_per_volt", wrong));
-    let ninter = raw.ninter.as_ref().map_or(Some(NINTER), |given| within(given, "ninter", 1..=255, wrong));
+    let ninter = ninter(raw.ninter.as_ref(), wrong);
     Some(JointSettings::Puma(PumaSettings {
         name: "joint".into(),
         port: port?,
@@ -131,6 +130,17 @@ fn check_puma(
         ninter: ninter?,
         gains: raw.servo.as_ref().map(|given| *given.get_ref()).unwrap_or_default(),
     }))
+}
+
+/// Clock ticks between two set-points of a Puma-type servo.
+pub fn ninter(given: Option<&Spanned<u8>>, wrong: &mut Collector) -> Option<u8> {
+    let Some(given) = given else { return Some(VAL_INTERVAL) };
+    let ninter = *given.get_ref();
+    if interval(ninter).is_none() {
+        wrong.add(given.span(), format!("ninter {ninter}: choose {}", intervals()));
+        return None;
+    }
+    Some(ninter)
 }
 
 fn misplaced(what: &str, driver: &str, place: Option<Range<usize>>, wrong: &mut Collector) {

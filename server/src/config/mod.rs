@@ -16,6 +16,7 @@ use jointbench_devices::sim::{ENCODER_COUNTS, MockInstrument};
 use jointbench_devices::{InstrumentSettings, MockSettings, TorqueSensorSettings};
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
+use jointbench_instrument::roles::SetpointInterval;
 use jointbench_instrument::spelling::nearest;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -66,6 +67,8 @@ pub struct Has {
     pub stage: bool,
     /// Motor current per volt, if it is measured as the voltage at a shunt.
     pub amperes_per_volt: Option<f64>,
+    /// Interpolation of position set-points, if the joint's drive accepts positions.
+    pub setpoint_interval: Option<SetpointInterval>,
     /// The joint's drive accepts a motor current in addition to a velocity.
     pub feeds_forward: bool,
 }
@@ -114,6 +117,7 @@ impl BenchDescription {
                     .then_some(ENCODER_COUNTS.map(f64::from)),
                 stage: settings.has(MockInstrument::Stage),
                 amperes_per_volt: settings.amperes_per_volt(),
+                setpoint_interval: settings.setpoint_interval(),
                 feeds_forward: settings.feeds_forward(),
             },
             Source::Hardware(settings) => Has {
@@ -127,6 +131,7 @@ impl BenchDescription {
                     .map(|(reference, test)| [reference, test].map(|counter| f64::from(counter.counts_per_turn))),
                 stage: settings.stage.is_some(),
                 amperes_per_volt: settings.joint.amperes_per_volt(),
+                setpoint_interval: settings.joint.setpoint_interval(),
                 feeds_forward: settings.joint.feeds_forward(),
             },
         }

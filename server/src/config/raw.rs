@@ -65,6 +65,8 @@ pub struct RawMock {
     pub thermometer: bool,
     #[serde(default)]
     pub troubles: Vec<Spanned<PlannedTrouble>>,
+    /// For a Puma-type servo.
+    pub ninter: Option<Spanned<u8>>,
     /// Gains and tolerance bands of a Puma-type servo.
     pub servo: Option<Spanned<PumaGains>>,
 }

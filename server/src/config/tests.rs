@@ -34,7 +34,7 @@ fn a_mock_of_the_documents_takes_their_brakes_and_axes() {
     assert_eq!(mock("joint = \"puma\"\naxis = 4").unwrap()[0].constants.gear_ratio, 76.0364);
     for (line, expected) in [
         ("joint = \"puma\"\naxis = 7", "line 5: axis 7: choose 1 to 6"),
-        ("joint = \"a\"\naxis = 2", "line 5: only joint \"puma\" has axes: remove axis"),
+        ("joint = \"a\"\naxis = 2", "line 5: this joint is not a Puma-type arm: remove axis"),
     ] {
         let message = mock(line).unwrap_err().to_string();
         assert!(message.contains(expected), "{expected} in\n{message}");
@@ -173,7 +173,7 @@ ninter = 0
     for expected in [
         "line 4: a puma requires counts_per_turn of its encoder and amperes_per_volt",
         "line 6: link_encoder does not apply to driver \"puma\": remove it",
-        "line 8: ninter 0: choose 1 to 255",
+        "line 8: ninter 0: choose 1 (0.875 ms), 2 (1.75 ms), 4 (3.5 ms), 8 (7 ms), 16 (14 ms), 32 (28 ms)",
     ] {
         assert!(message.contains(expected), "{expected:?} in\n{message}");
     }
@@ -184,12 +184,13 @@ ninter = 0
     let message = parse("bench.toml", mock).unwrap_err().to_string();
     assert!(message.contains("line 5: this joint has no load"), "{message}");
     let geared = |joint: &str| {
-        let servo = "servo = { velgan = 8, inttol = 300 }";
+        let servo = "servo = { velgan = 8, inttol = 300 }\nninter = 16";
         parse("bench.toml", &format!("[[bench]]\nname = \"arm\"\n[bench.mock]\njoint = \"{joint}\"\n{servo}\n"))
     };
     assert!(geared("puma").is_ok());
     let message = geared("a").unwrap_err().to_string();
-    assert!(message.contains("line 5: this joint has no Puma-type servo: remove servo"), "{message}");
+    assert!(message.contains("line 5: this joint is not a Puma-type arm: remove servo"), "{message}");
+    assert!(message.contains("line 6: this joint is not a Puma-type arm: remove ninter"), "{message}");
 }
 
 #[test]

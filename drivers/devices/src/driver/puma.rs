@@ -7,12 +7,13 @@
 use super::{Recovers, same};
 use crate::protocol::puma::{
     ArmPower, Clear, CurrentMode, DiagRead, DiagWrite, Fact, Identify, Limit, MOST_COUNTS, Numbered, Order,
-    PositionMode, ReadCurrent, ReadPosition, ReadStatus, Reply, SetInterval, Stop, VOLTS_PER_COUNT, memory,
+    PositionMode, ReadCurrent, ReadPosition, ReadStatus, Reply, SetInterval, Stop, VOLTS_PER_COUNT, interval,
+    intervals, memory,
 };
 use crate::transport::{Command, Link, PortSettings};
 use jointbench_instrument::clock::between;
 use jointbench_instrument::roles::{
-    DriveHealth, Identity, Instrument, JointController, JointReading, JointResolution, ServoMemory,
+    DriveHealth, Identity, Instrument, JointController, JointReading, JointResolution, ServoMemory, SetpointInterval,
 };
 use jointbench_instrument::units::{Amperes, RadPerSec, Radians};
 use jointbench_instrument::{Clock, Fault, FaultKind};
@@ -43,7 +44,7 @@ pub struct PumaSettings {
     pub counts_per_turn: u32,
     /// Motor current per volt at the A/D converter.
     pub amperes_per_volt: f64,
-    /// Clock ticks of 0.875 ms between set-points: more than the time between two commands of the bench.
+    /// Clock ticks of 0.875 ms between set-points, a power of two: at least the time between two commands of the bench.
     pub ninter: u8,
     /// Gains that the driver writes when it arms the servo.
     #[serde(default)]
@@ -120,9 +121,13 @@ impl PumaAxis {
     /// Opens the port and identifies the servo. Sends no command.
     pub fn open(settings: PumaSettings, clock: Arc<dyn Clock>) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
-        let usable = settings.counts_per_turn > 0 && settings.ninter > 0 && settings.amperes_per_volt > 0.0;
+        let usable = settings.counts_per_turn > 0 && settings.amperes_per_volt > 0.0;
         if !usable {
-            let what = "counts_per_turn, amperes_per_volt and ninter: expected numbers above 0".into();
+            let what = "counts_per_turn and amperes_per_volt: expected numbers above 0".into();
+            return Err(link.fault(FaultKind::Refused { what }));
+        }
+        if interval(settings.ninter).is_none() {
+            let what = format!("ninter {}: expected {}", settings.ninter, intervals());
             return Err(link.fault(FaultKind::Refused { what }));
         }
         let (identity, last_command, last_position) = (None, LastCommand::Nothing, None);
@@ -375,6 +380,10 @@ impl JointController for PumaAxis {
 
     fn amperes_per_volt(&self) -> Option<f64> {
         Some(self.settings.amperes_per_volt)
+    }
+
+    fn setpoint_interval(&self) -> Option<SetpointInterval> {
+        interval(self.settings.ninter)
     }
 
     fn servo_memory(&mut self) -> Option<&mut dyn ServoMemory> {

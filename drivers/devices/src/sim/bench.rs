@@ -14,9 +14,10 @@ use crate::driver::{
     ScpiSettings, Thermistor,
 };
 use crate::instruments::{InstrumentSettings, JointSettings, TorqueSensorSettings};
+use crate::protocol::puma::{VAL_INTERVAL, interval};
 use crate::transport::{Address, PortSettings};
 use jointbench_instrument::bench::JointConstants;
-use jointbench_instrument::roles::PowerSwitch;
+use jointbench_instrument::roles::{PowerSwitch, SetpointInterval};
 use jointbench_instrument::{Bench, Clock, Fault, FaultKind, Limits};
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -25,8 +26,6 @@ use std::thread::JoinHandle;
 
 /// Counts per turn of encoders S1 and S2, as known to their owner.
 pub const ENCODER_COUNTS: [u32; 2] = [1 << 14, 1 << 18];
-/// Ticks between the set-points of the Puma: 28 ms, as in VAL.
-const NINTER: u8 = 32;
 /// Long, because other programs share the machine with a simulated instrument.
 const DEADLINE_MS: u64 = 3000;
 
@@ -73,6 +72,8 @@ pub struct MockSettings {
     pub troubles: Vec<PlannedTrouble>,
     /// Instruments in addition to the joint, and to the torque sensor and brake of a bench with a load.
     pub others: Vec<MockInstrument>,
+    /// Clock ticks between the set-points of the Puma's servo.
+    pub ninter: u8,
     /// Gains of the Puma's servo.
     pub gains: PumaGains,
 }
@@ -101,6 +102,7 @@ impl MockSettings {
             deadline_ms: DEADLINE_MS,
             troubles: Vec::new(),
             others,
+            ninter: VAL_INTERVAL,
             gains: PumaGains::default(),
         }
     }
@@ -132,6 +134,11 @@ impl MockSettings {
     /// Motor current per volt, if the joint's servo measures it as the voltage at a shunt.
     pub fn amperes_per_volt(&self) -> Option<f64> {
         (self.joint == Joint::Puma).then_some(AMPERES_PER_VOLT)
+    }
+
+    /// Interpolation of position set-points, if the joint's servo accepts positions.
+    pub fn setpoint_interval(&self) -> Option<SetpointInterval> {
+        interval(self.ninter).filter(|_| self.joint == Joint::Puma)
     }
 
     /// Whether the joint's servo accepts a feed-forward motor current in addition to a velocity.
@@ -264,7 +271,7 @@ impl MockBench {
                 deadline_ms,
                 counts_per_turn: PUMA_COUNTS,
                 amperes_per_volt: AMPERES_PER_VOLT,
-                ninter: NINTER,
+                ninter: self.settings.ninter,
                 gains: self.settings.gains,
             }),
             _ => JointSettings::Odrive(OdriveSettings {

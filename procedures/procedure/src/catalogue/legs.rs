@@ -237,6 +237,7 @@ pub(super) mod testing {
             encoder_counts: None,
             has_stage: false,
             amperes_per_volt: None,
+            setpoint_interval: None,
             brake_model: None,
             feeds_forward: true,
         }

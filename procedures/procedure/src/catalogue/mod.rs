@@ -92,9 +92,15 @@ pub trait Procedure: Sync {
         Ok(())
     }
 
-    /// Checks the parameters against the schema, adds the defaults and plans. Nothing moves.
+    /// Checks the parameters against the schema, adds the defaults and plans, at a rate that suits the drive. Nothing
+    /// moves.
     fn plan(&self, parameters: &Map<String, Value>, bench: &BenchFacts) -> Result<Plan, PlanFault> {
-        self.build(&Values::parse(self.schema(), parameters)?, bench)
+        let mut plan = self.build(&Values::parse(self.schema(), parameters)?, bench)?;
+        if let Some(interval) = bench.setpoint_interval {
+            plan.rate_hz = interval.suitable_rate_hz(plan.rate_hz);
+            plan.meta.sample_rate_hz = Some(plan.rate_hz);
+        }
+        Ok(plan)
     }
 }
 

@@ -50,6 +50,7 @@ impl BenchFacts {
                 .then(|| [meta.reference_bits, meta.test_bits].map(|bits| f64::from(bits.unwrap_or(20)).exp2())),
             has_stage: false,
             amperes_per_volt: None,
+            setpoint_interval: None,
             brake_model: None,
             feeds_forward: true,
         }

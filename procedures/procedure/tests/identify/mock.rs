@@ -161,6 +161,23 @@ fn a_joint_breaks_away_where_its_friction_at_rest_lies() {
     assert!((quantity.value / mock.truth().coulomb_nm - 1.0).abs() < 0.02, "{}", found.summary);
 }
 
+/// Each interval with commands that are frequent enough.
+#[test]
+fn set_point_intervals_do_not_change_the_friction_of_an_arm() {
+    for (ninter, rate_hz, top_speed) in
+        [(8, 200.0, 0.698), (16, 100.0, 0.698), (32, 250.0, 0.698), (64, 100.0, 0.698), (128, 100.0, 0.5)]
+    {
+        let given = json!({"speeds": 4, "breakaways": 2, "warm_up_s": 5.0, "ramp_nm_s": 0.03, "sample_rate_hz": rate_hz,
+            "top_speed_rad_s": top_speed});
+        let settings = MockSettings { ninter, ..MockSettings::new(Joint::Puma, 2) }.hiding(&["stribeck"]);
+        let (mock, found) = found(settings, "puma_friction", given);
+        let truth = mock.truth();
+        let b = truth.viscous_nm_s * truth.gear_ratio / 1f64.to_degrees() / truth.torque_constant_nm_per_a;
+        let [low, high] = found.quantity("b_mean").unwrap().ci95.unwrap();
+        assert!((low..=high).contains(&b), "ninter {ninter}: {low} … {high} for {b}");
+    }
+}
+
 /// Gravity loads the arm on both sides of its upright pose.
 #[test]
 fn an_arm_breaks_away_on_a_short_arc_without_its_weight() {

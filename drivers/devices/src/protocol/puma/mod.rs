@@ -7,7 +7,7 @@
 //! - The status word has error bits. Bits 6 and 7 belong to the processor. The bits for RAM, envelope and encoder are
 //!   described, but never set.
 //! - The memory is readable (`DIAGREAD`) at the addresses of table 2.7, with `velgan` at 0x04 and not at 0x5C.
-//! - Set-points follow every 28 ms, which are the 32 ticks of the initial `ninter`.
+//! - Set-points follow every 28 ms, which are the 32 ticks of the initial `ninter`; other intervals: `interval`.
 //! - Motor current is measured as the voltage at a shunt by an A/D converter.
 //!
 //! Defined by this project, because the available pages do not describe it or the original is a parallel bus: the whole
@@ -26,11 +26,13 @@
 //! positions count from a power-up that is not acknowledged (`CLEAR`).
 
 mod frame;
+mod interval;
 pub mod memory;
 mod orders;
 mod status;
 
 pub use frame::{Numbered, Order, Reply};
+pub use interval::{VAL_INTERVAL, interval, intervals};
 pub use orders::{
     ArmPower, Clear, CurrentMode, DiagRead, DiagWrite, Fact, Identify, Limit, PositionMode, ReadCurrent, ReadPosition,
     ReadStatus, SetInterval, Stop,

@@ -86,12 +86,12 @@ impl Loop {
     }
 
     pub fn tick(&mut self, counts: i64, closed: bool) {
-        if self.count > 0 {
+        // The increment remains in the tick that reaches the target: periodic set-points join without a stop.
+        if self.count == 0 {
+            self.increment = 0.0;
+        } else {
             self.count -= 1;
-            self.interpolated += self.increment;
-            if self.count == 0 {
-                (self.interpolated, self.increment) = (self.target, 0.0);
-            }
+            self.interpolated = if self.count == 0 { self.target } else { self.interpolated + self.increment };
         }
         let error = self.interpolated - counts as f64;
         (self.derivative, self.error) = (error - self.error, error);

@@ -6,7 +6,6 @@
 use super::puma::{CURRENT, ENCODER_COUNTS, Puma};
 
 /// Initial values in table 2.7.
-const EINTSCL: u8 = 0x03;
 const DIVISOR: u8 = 0x6F;
 const JVEC1: u8 = 0x0D;
 const JVEC2: u8 = 0x0E;
@@ -50,7 +49,8 @@ pub fn read(servo: &Puma, address: u8) -> u8 {
         0x04 => axis.gains.velgan,
         0x05 => axis.gains.outscl,
         0x06 => servo.ninter,
-        0x07 => EINTSCL,
+        // The distance shifted by this is the increment with 8 fractional bits (assumed): 3 for 32 ticks.
+        0x07 => 8 - servo.ninter.trailing_zeros() as u8,
         0x08 => DIVISOR,
         // One byte for 800 counts: the lower byte.
         0x09 => ENCODER_COUNTS as u8,

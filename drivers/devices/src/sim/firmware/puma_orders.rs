@@ -8,6 +8,9 @@ use crate::sim::trouble::Trouble;
 
 const SHUNT_NOISE_V: f64 = 0.02;
 
+/// `eintscl` is then 1 (assumed).
+const LONGEST_NINTER: u16 = 128;
+
 const UNKNOWN: u16 = 1;
 const NO_ARM_POWER: u16 = 2;
 const OUT_OF_RANGE: u16 = 3;
@@ -73,7 +76,7 @@ fn execute(servo: &mut Puma, command: u8, word: u16, plant: &Plant) -> Result<u1
             servo.power = Power::ReleasingUntil(now_s + RELEASE_S);
         }
         0x06 => {}
-        0x07 if !(1..=255).contains(&word) => return Err(OUT_OF_RANGE),
+        0x07 if !word.is_power_of_two() || word > LONGEST_NINTER => return Err(OUT_OF_RANGE),
         0x07 => servo.ninter = word as u8,
         0x08 if !(1..=MOST_COUNTS).contains(&signed) => return Err(OUT_OF_RANGE),
         0x08 => servo.limit = signed,

@@ -2,14 +2,13 @@
 //! a second at the link. The same results are also given in newton metres at the motor.
 
 use super::super::breakaway::{Onset, onsets, ramp_step_nm, with_resolution};
+use super::settling_s;
 use crate::findings::{Hold, Line, Mean, Unusable, combined, curve, directions, holds, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::Values;
 use jointbench_instrument::RunTable;
 use jointbench_model::words;
 
-/// Settling time of the joint at a constant set-point.
-const SETTLE_S: f64 = 0.2;
 /// Sections of the arc over which the volts in a figure are averaged.
 const ANGLES: usize = 24;
 
@@ -22,6 +21,8 @@ struct Point {
 }
 
 struct Figures<'a> {
+    /// Settling time of the joint at a constant speed.
+    settle_s: f64,
     volts: Vec<f64>,
     link_rad: Vec<f64>,
     time_s: &'a [f64],
@@ -43,12 +44,14 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
     };
     let gear = meta.gear_ratio.unwrap_or(1.0);
     let km = meta.torque_constant_nm_per_a.unwrap_or(1.0);
+    let settle_s = settling_s(fact("setpoint_interval_s"));
     let figures = Figures {
+        settle_s,
         volts: current.iter().map(|a| a / scale).collect(),
         link_rad: position.iter().map(|rad| rad / gear).collect(),
         time_s: run.column("time_s").unwrap_or_default(),
     };
-    let holds = measured(run, warm_up as i64, count as i64, planned as i64);
+    let holds = measured(run, [warm_up, count, planned].map(|number| number as i64), settle_s);
     let (points, arc_rad) = figures.points(&holds)?;
     let lines = Lines::through(&points)?;
     let stiction = Stiction::of(values, run, setpoint, [km, scale], &lines, &figures);
@@ -213,11 +216,11 @@ impl Stiction {
 const FEW: Unusable = Unusable::InsufficientData("Too few speeds were measured.", "Repeat the run.");
 
 /// The uninterrupted holds of constant speed after the work-out.
-fn measured(run: &RunTable, first: i64, count: i64, planned: i64) -> Vec<Hold> {
+fn measured(run: &RunTable, [first, count, planned]: [i64; 3], settle_s: f64) -> Vec<Hold> {
     let segment = run.column("segment").unwrap_or_default();
     // A step that was repeated after a pause has a new number: it belongs to the rows before it.
     let mut belongs = false;
-    holds(run, 2.0 * SETTLE_S)
+    holds(run, 2.0 * settle_s)
         .into_iter()
         .filter(|hold| {
             if hold.segment < planned {
@@ -232,7 +235,7 @@ fn measured(run: &RunTable, first: i64, count: i64, planned: i64) -> Vec<Hold> {
 impl Figures<'_> {
     /// The rows of a hold after the settling time.
     fn settled(&self, hold: &Hold) -> std::ops::Range<usize> {
-        let from_s = self.time_s[hold.rows.start] + SETTLE_S;
+        let from_s = self.time_s[hold.rows.start] + self.settle_s;
         let start = hold.rows.clone().find(|row| self.time_s[*row] >= from_s).unwrap_or(hold.rows.end);
         start..hold.rows.end
     }

@@ -3,6 +3,7 @@
 use super::super::legs::testing::joint_a;
 use super::*;
 use jointbench_instrument::Limits;
+use jointbench_instrument::roles::SetpointInterval;
 use serde_json::{Map, json};
 
 fn puma() -> BenchFacts {
@@ -18,6 +19,7 @@ fn puma() -> BenchFacts {
         has_two_ranges: false,
         has_brake: false,
         amperes_per_volt: Some(1.0),
+        setpoint_interval: Some(SetpointInterval { tick_s: 0.875e-3, ticks: 32 }),
         feeds_forward: false,
         ..facts
     }
@@ -39,6 +41,36 @@ fn every_speed_passes_the_upright_pose_both_ways_and_the_run_ends_there() {
     let top = |sign: f64| lines.iter().filter(|s| s.velocity.integral().last().unwrap() * sign > 0.0).count();
     assert_eq!((top(1.0), top(-1.0)), (24, 24));
     assert_eq!(plan.steps.iter().filter(|step| matches!(step.drive, Drive::Current { .. })).count(), 8);
+}
+
+#[test]
+fn commands_are_at_least_as_frequent_as_set_points_are_reached() {
+    let planned = |ticks: u8, rate_hz: f64| {
+        let facts = BenchFacts { setpoint_interval: Some(SetpointInterval { tick_s: 0.875e-3, ticks }), ..puma() };
+        let plan = PumaFriction.plan(json!({"sample_rate_hz": rate_hz}).as_object().unwrap(), &facts).unwrap();
+        let refusal = plan.preview(&facts).checks.into_iter().find(|check| !check.ok).map(|check| check.refusal());
+        assert_eq!(plan.meta.sample_rate_hz, Some(plan.rate_hz));
+        (refusal, (1e3 * plan.rate_hz).round())
+    };
+    let refused = planned(8, 100.0).0.unwrap();
+    assert!(refused.contains("every 10.000 ms") && refused.contains("set sample_rate_hz = 143 or more"), "{refused}");
+    // Ten ticks or more are free, fewer are a whole number.
+    for (ticks, wanted_hz, rate_mhz) in
+        [(16, 100.0, 1e5), (32, 114.0, 1.14e5), (8, 143.0, 142_857.0), (8, 200.0, 190_476.0)]
+    {
+        assert_eq!(planned(ticks, wanted_hz), (None, rate_mhz));
+    }
+}
+
+#[test]
+fn a_long_set_point_interval_needs_a_longer_arc_or_a_lower_speed() {
+    let facts = BenchFacts { setpoint_interval: Some(SetpointInterval { tick_s: 0.875e-3, ticks: 128 }), ..puma() };
+    let plan = |top_speed: f64| PumaFriction.plan(json!({"top_speed_rad_s": top_speed}).as_object().unwrap(), &facts);
+    let refused = plan(0.698).unwrap_err().to_string();
+    let most: f64 =
+        refused.split("on this arc, ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap().parse().unwrap();
+    assert!(plan(most).is_ok() && plan(most + 2e-3).is_err(), "{refused}");
+    assert!(most > 0.4 && most < 0.6, "{refused}");
 }
 
 #[test]

@@ -75,7 +75,20 @@ fn the_memory_is_that_of_table_2_7() {
     }
     assert_eq!(bench.ask(0x0A, 0x02), (0x0A, 0x0202), "the pointer of DIAGREAD itself");
     assert_eq!(bench.ask(0x0A, 0x80), (0x8A, 3), "beyond the stack");
-    assert_eq!((bench.ask(0x07, 8), bench.ask(0x0A, 0x06)), ((0x07, 8), (0x0A, 0x0608)));
+}
+
+#[test]
+fn set_point_intervals_are_powers_of_two_with_their_scale_factor() {
+    let mut bench = Bench::new();
+    bench.ask(0x09, 0);
+    for (ninter, eintscl) in [(1, 8), (2, 7), (16, 4), (32, 3), (64, 2), (128, 1)] {
+        assert_eq!(bench.ask(0x07, ninter), (0x07, ninter));
+        assert_eq!((bench.ask(0x0A, 0x06).1, bench.ask(0x0A, 0x07).1), (0x0600 | ninter, 0x0700 | eintscl));
+    }
+    for ninter in [0, 3, 33, 255, 256] {
+        assert_eq!(bench.ask(0x07, ninter), (0x87, 3), "{ninter}");
+    }
+    assert_eq!(bench.ask(0x0A, 0x06), (0x0A, 0x0680), "unchanged");
 }
 
 #[test]

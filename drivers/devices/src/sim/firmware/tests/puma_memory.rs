@@ -80,6 +80,21 @@ fn the_variables_of_the_loop_follow_a_motion() {
 }
 
 #[test]
+fn set_points_at_exactly_their_interval_join_without_a_stop() {
+    let mut bench = Bench::armed();
+    bench.ask(0x07, 16);
+    for _ in 0..4 {
+        bench.step_to(160);
+        for tick in 1..=16 {
+            bench.wait(0.875e-3);
+            assert_eq!((bench.byte(0x50), bench.number(0x0A, 3)), (16 - tick, 10 * 256), "tick {tick}");
+        }
+    }
+    bench.wait(0.875e-3);
+    assert_eq!(bench.number(0x0A, 3), 0, "no further set-point");
+}
+
+#[test]
 fn the_command_buffer_holds_the_last_four_commands() {
     let mut bench = Bench::armed();
     bench.step_to(5);
@@ -122,7 +137,7 @@ fn gains_act_on_the_loop() {
     let left = |writes: &[(u8, u8)]| {
         let mut bench = Bench::armed();
         writes.iter().for_each(|(address, byte)| assert_eq!(bench.write(*address, *byte).0, WRITE));
-        bench.step_to(64);
+        bench.step_to(16);
         bench.wait(0.15);
         bench.number(0x12, 3).abs() >> 8
     };
@@ -136,7 +151,7 @@ fn integral_action_within_its_band_removes_what_friction_leaves() {
     let left = |inttol: u8| {
         let mut bench = Bench::armed();
         bench.write(0x54, inttol);
-        bench.step_to(64);
+        bench.step_to(16);
         bench.wait(3.0);
         (bench.number(0x12, 3).abs() >> 8, bench.number(0x10, 2))
     };
@@ -149,7 +164,7 @@ fn integral_action_within_its_band_removes_what_friction_leaves() {
 fn in_position_means_within_the_tolerance_band() {
     let mut bench = Bench::armed();
     let in_position = |bench: &mut Bench| bench.ask(0x00, 0).1 & 0x08 != 0;
-    bench.step_to(64);
+    bench.step_to(16);
     bench.wait(1.0);
     let left = bench.number(0x12, 3).abs() >> 8;
     assert!(left > 0 && !in_position(&mut bench), "{left} counts of error, a band of none");
