@@ -6,8 +6,8 @@ use super::exit::{Done, Exit};
 use super::outcome::{Found, title};
 use super::progress::RunProgress;
 use super::{files, identify};
-use crate::limits::{self, Case, CaseOutcome, Measured, Requirement, RequirementResult};
-use crate::view::{Bench, Identification, LimitOutcome, NewRun, Run, RunState, Unit};
+use crate::limits::{self, Case, CaseOutcome, Measured, Outcome, Requirement};
+use crate::view::{Bench, Identification, LimitOutcome, NewRun, Run, RunState, Unit, word};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
 use std::time::{Duration, Instant};
@@ -21,7 +21,7 @@ pub fn run(arguments: &Arguments) -> Done {
     let ended = limits.and_then(|limits| start(&client, arguments, limits));
     let found =
         ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
-    let required: Vec<(&Requirement, RequirementResult)> = match &found {
+    let required: Vec<(&Requirement, Outcome)> = match &found {
         Some(found) => arguments.require.iter().map(|limit| (limit, check(limit, found))).collect(),
         None => Vec::new(),
     };
@@ -76,7 +76,7 @@ fn report(
     arguments: &Arguments,
     ended: &Result<Run, Exit>,
     found: Option<&Found>,
-    required: &[(&Requirement, RequirementResult)],
+    required: &[(&Requirement, Outcome)],
 ) -> String {
     let found_case = found.map(|found| found.as_ref().map_err(|exit| exit.message.as_str()));
     let (suite, case) = match ended {
@@ -87,14 +87,10 @@ fn report(
         }
     };
     let mut cases = vec![case];
-    cases.extend(required.iter().map(|(limit, kept)| Case {
-        name: limit.text.clone(),
-        time_s: 0.0,
-        outcome: CaseOutcome::from(kept),
-    }));
+    cases.extend(required.iter().map(|(limit, outcome)| limits::limit_case(&limit.text, outcome)));
     let result = found.and_then(|found| found.as_ref().ok());
     if let Some(found) = result {
-        cases.extend(found.limits.iter().flat_map(|check| &check.limits).map(limits::limit_case));
+        cases.extend(found.limits.iter().flat_map(limits::cases_of));
     } else {
         let kept = ended.as_ref().ok().map(limits::of_run).unwrap_or_default();
         let unchecked = arguments.require.iter().filter(|_| required.is_empty()).chain(&kept);
@@ -107,26 +103,20 @@ fn shown(client: &Client, run: &Run) -> Found {
     client.get(&format!("/runs/{}/identification", run.summary.id))
 }
 
-fn check(limit: &Requirement, found: &Found) -> RequirementResult {
+fn check(limit: &Requirement, found: &Found) -> Outcome {
     match found {
         Ok(found) => limit.check(&found.result),
-        Err(exit) => RequirementResult::Unknown(exit.message.clone()),
+        Err(exit) => Err(exit.message.clone()),
     }
 }
 
 /// Prints the result of each requirement; those of a limits file are part of the result. Exit codes in order of priority:
 /// 2 for a requirement that cannot be checked, 1 for a failed result or an exceeded limit, 3 for no decision.
-fn judge(found: Option<&Found>, required: &[(&Requirement, RequirementResult)], quiet: bool) -> Done {
-    let results = required.iter().map(|(_, kept)| match kept {
-        RequirementResult::Pass(message) => ("pass", message, 0),
-        RequirementResult::Fail(message) => ("fail", message, 1),
-        RequirementResult::Marginal(message) => ("marginal", message, 3),
-        RequirementResult::Inconclusive(message) => ("inconclusive", message, 3),
-        RequirementResult::Unknown(message) => ("unknown", message, 2),
-    });
-    // A requirement that cannot be checked is reported with the exit code.
+fn judge(found: Option<&Found>, required: &[(&Requirement, Outcome)], quiet: bool) -> Done {
     if !quiet {
-        results.clone().filter(|(_, _, code)| *code != 2).for_each(|(word, message, _)| println!("{word}: {message}"));
+        // A requirement that cannot be checked is reported with the exit code.
+        let checked = required.iter().filter_map(|(_, outcome)| outcome.as_ref().ok());
+        checked.for_each(|(outcome, message)| println!("{}: {message}", word(*outcome)));
     }
     let result = match found {
         None => Ok(()),
@@ -136,9 +126,11 @@ fn judge(found: Option<&Found>, required: &[(&Requirement, RequirementResult)], 
         }
         Some(Err(exit)) => Err(exit.clone()),
     };
-    let of_required = results.map(|(_, message, code)| Exit {
-        code,
-        message: if quiet || code == 2 { message.clone() } else { String::new() },
+    let of_required = required.iter().map(|(_, outcome)| match outcome {
+        Ok((outcome, message)) => {
+            Exit { code: code(*outcome), message: if quiet { message.clone() } else { String::new() } }
+        }
+        Err(why) => Exit { code: BAD_INPUT, message: why.clone() },
     });
     let of_limits = found
         .and_then(|found| found.as_ref().ok())
@@ -151,14 +143,23 @@ fn judge(found: Option<&Found>, required: &[(&Requirement, RequirementResult)], 
     }
 }
 
+/// Exit code of a requirement that cannot be checked.
+const BAD_INPUT: u8 = 2;
+
+/// Exit code of a limit.
+fn code(outcome: LimitOutcome) -> u8 {
+    match outcome {
+        LimitOutcome::Pass => 0,
+        LimitOutcome::Fail => 1,
+        LimitOutcome::Marginal | LimitOutcome::Inconclusive => 3,
+    }
+}
+
 /// The exit of the worst limit of the file.
 fn of_limits(found: &Identification) -> Option<Exit> {
     let check = found.limits.as_ref().filter(|check| check.outcome != LimitOutcome::Pass)?;
     let message = check.limits.iter().find(|limit| limit.outcome == check.outcome)?.message.clone();
-    Some(match check.outcome {
-        LimitOutcome::Fail => Exit::failed(message),
-        _ => Exit::undecided(message),
-    })
+    Some(Exit { code: code(check.outcome), message })
 }
 
 /// The started run, or the ended run if the command waits.
@@ -357,21 +358,21 @@ mod tests {
     fn a_broken_limit_weighs_more_than_one_that_is_not_sure() {
         let limit: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
         let message = || "message".to_owned();
-        let code = |kept: &[RequirementResult]| {
+        let code = |kept: &[Outcome]| {
             let required: Vec<_> = kept.iter().map(|kept| (&limit, kept.clone())).collect();
             judge(None, &required, true).err().map_or(0, |exit| exit.code)
         };
-        assert_eq!(code(&[RequirementResult::Pass(message())]), 0);
-        assert_eq!(code(&[RequirementResult::Pass(message()), RequirementResult::Marginal(message())]), 3);
+        assert_eq!(code(&[Ok((LimitOutcome::Pass, message()))]), 0);
+        assert_eq!(code(&[Ok((LimitOutcome::Pass, message())), Ok((LimitOutcome::Marginal, message()))]), 3);
         assert_eq!(
             code(&[
-                RequirementResult::Marginal(message()),
-                RequirementResult::Fail(message()),
-                RequirementResult::Marginal(message())
+                Ok((LimitOutcome::Marginal, message())),
+                Ok((LimitOutcome::Fail, message())),
+                Ok((LimitOutcome::Marginal, message()))
             ]),
             1
         );
-        assert_eq!(code(&[RequirementResult::Fail(message()), RequirementResult::Unknown(message())]), 2);
+        assert_eq!(code(&[Ok((LimitOutcome::Fail, message())), Err(message())]), 2);
     }
 
     #[test]
@@ -382,10 +383,10 @@ mod tests {
             Ok(found)
         };
         let limit: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
-        let code = |found: Found, kept: RequirementResult| {
+        let code = |found: Found, kept: Outcome| {
             judge(Some(&found), &[(&limit, kept)], true).err().map_or(0, |exit| exit.code)
         };
-        let (yes, no) = (RequirementResult::Pass(String::new()), RequirementResult::Fail(String::new()));
+        let (yes, no) = (Ok((LimitOutcome::Pass, String::new())), Ok((LimitOutcome::Fail, String::new())));
         assert_eq!(code(shown(Identified::Identified), yes.clone()), 0);
         assert_eq!(code(shown(Identified::IdentifiedWithWarning), yes.clone()), 0);
         assert_eq!(code(shown(Identified::Inconclusive), yes.clone()), 3);

@@ -14,8 +14,6 @@ use std::collections::BTreeMap;
 
 /// Limit of the points.
 const MOST: usize = 500;
-/// Limit of results that one request computes.
-const AT_ONCE: usize = 8;
 /// Mean moving range of two normal values in standard deviations (d₂).
 const D2: f64 = 1.128;
 /// Half width of a 95 % interval in standard errors.
@@ -42,24 +40,7 @@ impl Lab {
     /// The chart of a quantity over the units that match a search. Without a name the first quantity with an interval.
     pub async fn control_chart(&self, search: &str, procedure: &str, quantity: Option<&str>) -> Answer<ControlChart> {
         let newest = newest_of_units(self.inner.store.unit_runs(search).await?, procedure);
-        let (mut found, mut pending, mut computed) = (Vec::new(), 0, 0);
-        for run in newest {
-            let known = self.quantities_known(run.run).await?;
-            if known.is_none() && computed == AT_ONCE {
-                pending += 1;
-                continue;
-            }
-            computed += usize::from(known.is_none());
-            let quantities = match known {
-                Some(quantities) => quantities,
-                None => match self.quantities(run.run).await {
-                    Ok(quantities) => quantities,
-                    Err(LabError::NotFound(_) | LabError::Invalid(_)) => continue,
-                    Err(fault) => return Err(fault),
-                },
-            };
-            found.push((run, quantities));
-        }
+        let (found, pending) = self.quantities_of_runs(newest, |run| run.run).await?;
         let chosen = chosen(&found, quantity, search, procedure)?;
         let limit = match found.iter().rev().find(|(run, _)| run.limits.is_some()) {
             Some((run, _)) => {
@@ -257,7 +238,7 @@ mod tests {
         Normal::new(mean, deviation).unwrap().sample_iter(ChaCha8Rng::seed_from_u64(seed)).take(n).collect()
     }
 
-    /// Montgomery 2013, example 6.5: viscosity of fifteen batches, mean 34.09 and moving range 0.48.
+    /// Montgomery 2013, example 6.5: viscosity of fifteen batches, mean 33.52, mean moving range 0.48, upper limit 34.80.
     #[test]
     fn the_control_limits_agree_with_a_published_example() {
         let values =

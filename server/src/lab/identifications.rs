@@ -17,6 +17,8 @@ use serde::de::DeserializeOwned;
 
 /// Limit of a small plot.
 const EARLIER: u32 = 12;
+/// Limit of results that one request computes: the client shows the known ones in the meantime.
+const AT_ONCE: usize = 8;
 /// Limit at a start: the daemon does not evaluate a whole store.
 const LEFT: u32 = 200;
 /// Cache keys of parts of an identification.
@@ -47,8 +49,36 @@ impl Lab {
         self.kept_of(run, QUANTITIES, |found| found.result.quantities).await
     }
 
-    /// The same if they are already in the cache.
-    pub(super) async fn quantities_known(&self, run: i64) -> Answer<Option<Vec<Quantity>>> {
+    /// The quantities of several complete runs, without those that have no result. Computes a few that are not known yet,
+    /// and counts the others for a later request.
+    pub(super) async fn quantities_of_runs<R>(
+        &self,
+        runs: Vec<R>,
+        id: impl Fn(&R) -> i64,
+    ) -> Answer<(Vec<(R, Vec<Quantity>)>, u64)> {
+        let (mut found, mut pending, mut computed) = (Vec::new(), 0, 0);
+        for run in runs {
+            let known = self.quantities_known(id(&run)).await?;
+            if known.is_none() && computed == AT_ONCE {
+                pending += 1;
+                continue;
+            }
+            computed += usize::from(known.is_none());
+            let quantities = match known {
+                Some(quantities) => quantities,
+                None => match self.quantities(id(&run)).await {
+                    Ok(quantities) => quantities,
+                    Err(LabError::NotFound(_) | LabError::Invalid(_)) => continue,
+                    Err(fault) => return Err(fault),
+                },
+            };
+            found.push((run, quantities));
+        }
+        Ok((found, pending))
+    }
+
+    /// The quantities if they are already in the cache.
+    async fn quantities_known(&self, run: i64) -> Answer<Option<Vec<Quantity>>> {
         let kept = self.inner.store.cached_result(Subject::Run(run), QUANTITIES).await?;
         kept.map(|kept| serde_json::from_slice(&kept))
             .transpose()
@@ -116,9 +146,7 @@ impl Lab {
         let of_run = found.as_ref().map(Ok).or(fault.as_deref().map(Err));
         let mut cases = vec![limits::run_case(&run, of_run)];
         match &found {
-            Some(found) => {
-                cases.extend(found.limits.iter().flat_map(|check| &check.limits).map(limits::limit_case));
-            }
+            Some(found) => cases.extend(found.limits.iter().flat_map(limits::cases_of)),
             None => cases.extend(limits::of_run(&run).iter().map(|limit| limits::skipped_case(&limit.text))),
         }
         let warnings = found.as_ref().map_or(&[][..], |found| &found.result.warnings);

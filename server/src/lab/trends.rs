@@ -1,14 +1,12 @@
 //! Results of complete runs over time.
 
-use super::{Answer, Lab, LabError};
+use super::{Answer, Lab};
 use crate::store::{RunFilter, RunRecord, Search};
 use crate::view::{TrendRun, Trends};
 use jointbench_procedure::RunState;
 
 /// Limit of a plot.
 const MOST: u32 = 500;
-/// Limit of results that one request computes: the client shows the known ones in the meantime.
-const AT_ONCE: usize = 8;
 /// Number of sections for the mean temperature of a run.
 const STRETCHES: usize = 200;
 
@@ -24,22 +22,10 @@ impl Lab {
             ..RunFilter::default()
         };
         let (total, records) = self.inner.store.runs(&filter).await?;
-        let (mut runs, mut pending, mut computed) = (Vec::new(), 0, 0);
-        for record in records.iter().rev().filter(|record| has_result(record)) {
-            let known = self.quantities_known(record.id).await?;
-            if known.is_none() && computed == AT_ONCE {
-                pending += 1;
-                continue;
-            }
-            computed += usize::from(known.is_none());
-            let quantities = match known {
-                Some(quantities) => quantities,
-                None => match self.quantities(record.id).await {
-                    Ok(quantities) => quantities,
-                    Err(LabError::NotFound(_) | LabError::Invalid(_)) => continue,
-                    Err(fault) => return Err(fault),
-                },
-            };
+        let records: Vec<&RunRecord> = records.iter().rev().filter(|record| has_result(record)).collect();
+        let (found, pending) = self.quantities_of_runs(records, |record| record.id).await?;
+        let mut runs = Vec::new();
+        for (record, quantities) in found {
             let temperature_c = self.temperature_of(record.id).await?;
             runs.push(TrendRun {
                 run: record.id,

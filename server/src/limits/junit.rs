@@ -1,7 +1,7 @@
 //! The JUnit report of a run: one test case for the run, and one for each limit.
 
-use super::RequirementResult;
-use crate::view::{Identification, LimitOutcome, LimitResult, Run, RunState};
+use super::Outcome;
+use crate::view::{Identification, LimitCheck, LimitOutcome, Run, RunState};
 
 /// Outcome of a test case, with its message.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,18 +19,6 @@ impl CaseOutcome {
             Self::Failure(message) => Some(("failure", message)),
             Self::Error(message) => Some(("error", message)),
             Self::Skipped(message) => Some(("skipped", message)),
-        }
-    }
-}
-
-impl From<&RequirementResult> for CaseOutcome {
-    fn from(result: &RequirementResult) -> Self {
-        match result {
-            RequirementResult::Pass(_) => Self::Passed,
-            RequirementResult::Fail(message)
-            | RequirementResult::Marginal(message)
-            | RequirementResult::Inconclusive(message) => Self::Failure(message.clone()),
-            RequirementResult::Unknown(message) => Self::Error(message.clone()),
         }
     }
 }
@@ -56,12 +44,19 @@ pub fn run_case(run: &Run, found: Option<Result<&Identification, &str>>) -> Case
     Case { name, time_s: summary.duration_s.unwrap_or(0.0), outcome }
 }
 
-pub fn limit_case(limit: &LimitResult) -> Case {
-    let outcome = match limit.outcome {
-        LimitOutcome::Pass => CaseOutcome::Passed,
-        _ => CaseOutcome::Failure(limit.message.clone()),
+/// The case of a limit: a failure unless it passes, an error if it cannot be checked.
+pub fn limit_case(limit: &str, outcome: &Outcome) -> Case {
+    let outcome = match outcome {
+        Ok((LimitOutcome::Pass, _)) => CaseOutcome::Passed,
+        Ok((_, message)) => CaseOutcome::Failure(message.clone()),
+        Err(why) => CaseOutcome::Error(why.clone()),
     };
-    Case { name: limit.text.clone(), time_s: 0.0, outcome }
+    Case { name: limit.to_owned(), time_s: 0.0, outcome }
+}
+
+/// The cases of the limits that are kept with a run.
+pub fn cases_of(check: &LimitCheck) -> impl Iterator<Item = Case> {
+    check.limits.iter().map(|limit| limit_case(&limit.text, &Ok((limit.outcome, limit.message.clone()))))
 }
 
 /// The case of a limit whose run has no result.
@@ -125,8 +120,8 @@ mod tests {
 
     #[test]
     fn an_exceeded_limit_is_a_failure_of_its_own() {
-        let exceeded = CaseOutcome::from(&RequirementResult::Fail("message".to_owned()));
-        let cases = [case("friction run 1", CaseOutcome::Passed), case("tau_c < 0.03 Nm", exceeded)];
+        let exceeded = Ok((LimitOutcome::Fail, "message".to_owned()));
+        let cases = [case("friction run 1", CaseOutcome::Passed), limit_case("tau_c < 0.03 Nm", &exceeded)];
         let report = junit("joint-a", &cases, &["the joint is not warmed up".to_owned()]);
         assert!(report.contains("tests=\"2\" failures=\"1\" errors=\"0\" skipped=\"0\""), "{report}");
         assert!(report.contains("name=\"tau_c &lt; 0.03 Nm\""), "{report}");

@@ -8,10 +8,10 @@ mod requirement;
 
 use file::applicable;
 pub use file::{Measured, checked};
-pub use junit::{Case, CaseOutcome, junit, limit_case, run_case, skipped_case};
+pub use junit::{Case, CaseOutcome, cases_of, junit, limit_case, run_case, skipped_case};
 #[cfg(test)]
 pub(crate) use requirement::tests::found;
-pub use requirement::{Requirement, RequirementResult};
+pub use requirement::{Outcome, Requirement};
 
 use crate::view::{LimitCheck, LimitResult, Run, Shown};
 use serde::{Deserialize, Serialize};

@@ -19,19 +19,9 @@ pub struct Requirement {
     pub needs_interval: bool,
 }
 
-/// Verdict of a requirement, with its figures in a sentence.
-#[derive(Debug, Clone, PartialEq)]
-pub enum RequirementResult {
-    Pass(String),
-    /// The value exceeds the limit.
-    Fail(String),
-    /// The value is within the limit, but its interval or the guard band is not.
-    Marginal(String),
-    /// The value has no interval.
-    Inconclusive(String),
-    /// The quantity is missing, or has another unit.
-    Unknown(String),
-}
+/// Outcome of a requirement with its figures in a sentence, or why it cannot be checked: the result lacks the quantity or
+/// has it in another unit.
+pub type Outcome = Result<(LimitOutcome, String), String>;
 
 impl FromStr for Requirement {
     type Err = String;
@@ -91,35 +81,25 @@ impl Requirement {
 
     /// Compares the result of a run with the limit.
     pub fn outcome(self, result: &Shown) -> LimitResult {
-        let (outcome, message) = match self.check(result) {
-            RequirementResult::Pass(message) => (LimitOutcome::Pass, message),
-            RequirementResult::Fail(message) => (LimitOutcome::Fail, message),
-            RequirementResult::Marginal(message) => (LimitOutcome::Marginal, message),
-            RequirementResult::Inconclusive(message) | RequirementResult::Unknown(message) => {
-                (LimitOutcome::Inconclusive, message)
-            }
-        };
+        let (outcome, message) = self.check(result).unwrap_or_else(|why| (LimitOutcome::Inconclusive, why));
         let Self { text, name, lower, upper, guard_band, unit, needs_interval: _ } = self;
         LimitResult { quantity: name, lower, upper, guard_band, unit, text, outcome, message }
     }
 
-    pub fn check(&self, result: &Shown) -> RequirementResult {
+    pub fn check(&self, result: &Shown) -> Outcome {
         let quantities = &result.quantities;
         let Some(quantity) = quantities.iter().find(|quantity| quantity.name == self.name) else {
             let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name.as_str()).collect();
             let there = if names.is_empty() { "it contains no quantities".to_owned() } else { self.instead(&names) };
-            return RequirementResult::Unknown(format!(
-                "'{}': the result does not contain {}; {there}",
-                self.text, self.name
-            ));
+            return Err(format!("'{}': the result does not contain {}; {there}", self.text, self.name));
         };
         match factor(&self.unit, &quantity.unit) {
-            Some(factor) => self.judge(quantity, factor),
-            None => RequirementResult::Unknown(self.in_unit(&quantity.unit)),
+            Some(factor) => Ok(self.judge(quantity, factor)),
+            None => Err(self.in_unit(&quantity.unit)),
         }
     }
 
-    fn judge(&self, quantity: &Quantity, factor: f64) -> RequirementResult {
+    fn judge(&self, quantity: &Quantity, factor: f64) -> (LimitOutcome, String) {
         // Distance to the nearer limit, negative beyond it.
         let margin = |value: f64| {
             let below = self.lower.map(|lower| value - lower * factor);
@@ -134,22 +114,23 @@ impl Requirement {
         let guard_band = self.guard_band * factor;
         let own = margin(quantity.value);
         if own < 0.0 {
-            return RequirementResult::Fail(message);
+            return (LimitOutcome::Fail, message);
         }
         if own < guard_band {
-            return RequirementResult::Marginal(format!("{message}: the value is in the guard band"));
+            return (LimitOutcome::Marginal, format!("{message}: the value is in the guard band"));
         }
         let Some(ends) = quantity.ci95 else {
             return match self.needs_interval {
-                true => RequirementResult::Inconclusive(format!(
-                    "{message}: without an interval it does not decide; measure more repeats"
-                )),
-                false => RequirementResult::Pass(message),
+                true => (
+                    LimitOutcome::Inconclusive,
+                    format!("{message}: without an interval it does not decide; measure more repeats"),
+                ),
+                false => (LimitOutcome::Pass, message),
             };
         };
         let least = ends.into_iter().map(margin).fold(f64::INFINITY, f64::min);
         if least >= guard_band {
-            return RequirementResult::Pass(message);
+            return (LimitOutcome::Pass, message);
         }
         // The width of an interval falls with the square root of the number of repeats.
         let times = ((own - least) / (own - guard_band)).powi(2).ceil();
@@ -158,7 +139,7 @@ impl Requirement {
             false => "the value is too near to the limit for any number of repeats".to_owned(),
         };
         let what = if guard_band > 0.0 { "guard band" } else { "limit" };
-        RequirementResult::Marginal(format!("{message}: the interval exceeds the {what}; {decides}"))
+        (LimitOutcome::Marginal, format!("{message}: the interval exceeds the {what}; {decides}"))
     }
 }
 
@@ -212,12 +193,12 @@ pub(crate) mod tests {
     #[test]
     fn the_whole_interval_must_keep_the_limit() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found().result);
-        assert!(matches!(check("tau_c < 0.035 Nm"), RequirementResult::Pass(_)));
-        assert!(matches!(check("tau_c<=35 mNm"), RequirementResult::Pass(_)));
-        assert!(matches!(check("tau_c > 0.02 Nm"), RequirementResult::Pass(_)));
-        assert!(matches!(check("tau_c < 0.030 Nm"), RequirementResult::Fail(_)));
+        assert!(matches!(check("tau_c < 0.035 Nm"), Ok((LimitOutcome::Pass, _))));
+        assert!(matches!(check("tau_c<=35 mNm"), Ok((LimitOutcome::Pass, _))));
+        assert!(matches!(check("tau_c > 0.02 Nm"), Ok((LimitOutcome::Pass, _))));
+        assert!(matches!(check("tau_c < 0.030 Nm"), Ok((LimitOutcome::Fail, _))));
         assert!(
-            matches!(check("tau_c < 0.0308 Nm"), RequirementResult::Marginal(message) if message.contains("30.60 mNm [30.20 … 31.00]"))
+            matches!(check("tau_c < 0.0308 Nm"), Ok((LimitOutcome::Marginal, message)) if message.contains("30.60 mNm [30.20 … 31.00]"))
         );
     }
 
@@ -232,31 +213,31 @@ pub(crate) mod tests {
             unit: "mNm".to_owned(),
             needs_interval: true,
         };
-        assert!(matches!(limit(32.0, 0.5).check(&found().result), RequirementResult::Pass(_)));
-        let RequirementResult::Marginal(why) = limit(30.8, 0.0).check(&found().result) else {
+        assert!(matches!(limit(32.0, 0.5).check(&found().result), Ok((LimitOutcome::Pass, _))));
+        let Ok((LimitOutcome::Marginal, why)) = limit(30.8, 0.0).check(&found().result) else {
             panic!("the interval ends at 31.0")
         };
         assert!(
             why.ends_with("the interval exceeds the limit; 4 times as many repeats would decide if the value stays"),
             "{why}"
         );
-        let RequirementResult::Marginal(why) = limit(31.0, 0.5).check(&found().result) else {
+        let Ok((LimitOutcome::Marginal, why)) = limit(31.0, 0.5).check(&found().result) else {
             panic!("30.6 is above 30.5")
         };
         assert!(why.ends_with("the value is in the guard band"), "{why}");
-        assert!(matches!(limit(30.5, 0.0).check(&found().result), RequirementResult::Fail(_)));
+        assert!(matches!(limit(30.5, 0.0).check(&found().result), Ok((LimitOutcome::Fail, _))));
         let mut bare = found();
         bare.result.quantities[0].ci95 = None;
-        assert!(matches!(limit(32.0, 0.0).check(&bare.result), RequirementResult::Inconclusive(_)));
+        assert!(matches!(limit(32.0, 0.0).check(&bare.result), Ok((LimitOutcome::Inconclusive, _))));
     }
 
     #[test]
     fn an_unknown_requirement_has_a_reason() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found().result);
         let why = "'tau_x < 1 Nm': the result does not contain tau_x; did you mean tau_c? available: tau_c";
-        assert_eq!(check("tau_x < 1 Nm"), RequirementResult::Unknown(why.to_owned()));
-        assert_eq!(check("tau_c < 1 A"), RequirementResult::Unknown("tau_c is in Nm: write the limit so".to_owned()));
-        assert_eq!(check("tau_c < 1"), RequirementResult::Unknown("tau_c is in Nm: write the limit so".to_owned()));
+        assert_eq!(check("tau_x < 1 Nm"), Err(why.to_owned()));
+        assert_eq!(check("tau_c < 1 A"), Err("tau_c is in Nm: write the limit so".to_owned()));
+        assert_eq!(check("tau_c < 1"), Err("tau_c is in Nm: write the limit so".to_owned()));
         for text in ["tau_c", "< 3 Nm", "tau_c < much", "tau_c < NaN Nm"] {
             assert!(text.parse::<Requirement>().unwrap_err().contains("NAME < VALUE UNIT"), "{text}");
         }
