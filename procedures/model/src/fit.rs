@@ -149,14 +149,14 @@ fn notes(assembly: &TwoStageModel, nuisance: Option<&Nuisance>, undetermined: Op
     notes
 }
 
-/// At steady state the acceleration is small, and mostly noise of the velocity. If the set-up states another inertia,
-/// the run does not determine it: the stated one is used, with an interval that contains all of the fitted one.
+/// A steady-state run accelerates only between its plateaus, in steps of the set-point. The torque of a step passes
+/// between two samples, so that the fitted inertia is too small by an unknown amount. If the set-up states the inertia,
+/// it is used. The interval reaches from zero to twice its value, and contains all of the fitted one.
 fn stated_inertia(terms: &mut [TermReport], parameters: &mut [Parameter], prepared: &Prepared) -> Option<String> {
     const INERTIA: &str = "inertia";
     let stated = prepared.main.view.constants.rotor_inertia.filter(|_| prepared.main.settled)?;
-    let is_other = |p: &&mut Parameter| p.effect == INERTIA && !(p.ci95[0]..=p.ci95[1]).contains(&stated);
-    let p = parameters.iter_mut().find(is_other)?;
-    let half = p.ci95.map(|end| (end - stated).abs()).into_iter().fold(0.0, f64::max);
+    let p = parameters.iter_mut().find(|p| p.effect == INERTIA)?;
+    let half = p.ci95.map(|end| (end - stated).abs()).into_iter().fold(stated, f64::max);
     *p = Parameter {
         value: stated,
         ci95: [(stated - half).max(0.0), stated + half],
@@ -166,8 +166,8 @@ fn stated_inertia(terms: &mut [TermReport], parameters: &mut [Parameter], prepar
     };
     terms.iter_mut().filter(|term| term.effect == INERTIA).for_each(|term| term.linear = vec![stated]);
     Some(format!(
-        "the run does not determine the inertia: constant speeds contain hardly any acceleration. The model uses \
-         the {} that the set-up states; record a trajectory",
+        "the run does not determine the inertia: it accelerates only between constant speeds. The model uses the {} \
+         that the set-up states; record a trajectory",
         figure(stated, &p.unit)
     ))
 }

@@ -114,6 +114,7 @@ fn an_inertia_that_settled_motion_hardly_shows_is_the_set_ups() {
     };
     let unstated = with(None).parameters.into_iter().find(|p| p.effect == "inertia").unwrap().value;
     assert!(unstated < 4e-5, "{unstated}");
-    let agreed = with(Some(unstated));
-    assert_eq!(agreed.notes.iter().find(|note| note.contains("the set-up states")), None);
+    // An agreement with the set-up may be chance.
+    let agreed = with(Some(unstated)).parameters.into_iter().find(|p| p.effect == "inertia").unwrap();
+    assert_eq!((agreed.state, agreed.value), (ParameterState::Unidentified, unstated));
 }
