@@ -20,3 +20,9 @@ pub mod program;
 pub mod report;
 pub mod store;
 pub mod view;
+
+/// Version, in a release build with the revision.
+pub const VERSION: &str = match option_env!("JOINTBENCH_VERSION") {
+    Some(version) => version,
+    None => env!("CARGO_PKG_VERSION"),
+};

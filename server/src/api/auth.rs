@@ -5,6 +5,7 @@
 //! of a daemon without token must be a loopback name. The `Origin` of the live stream and of every changing request must
 //! be the daemon or absent (programs send none). Browsers differ in the requests that they refuse themselves.
 
+use super::METRICS;
 use super::problem::Problem;
 use super::rights::reader_may;
 use super::throttle::{Throttle, Throttled};
@@ -75,7 +76,9 @@ fn check(
     }
     let caller = match secret(headers, uri).and_then(|secret| tokens.holder(&secret)) {
         Some(caller) => caller,
-        None if tokens.are_needed() && uri.path().starts_with("/api") => return Err(Problem::unauthorized()),
+        None if tokens.are_needed() && (uri.path().starts_with("/api") || uri.path() == METRICS) => {
+            return Err(Problem::unauthorized());
+        }
         None => Caller::local(),
     };
     match caller.access {

@@ -8,6 +8,8 @@ use crate::store::StoreHealth;
 use crate::view::Access;
 use axum::Extension;
 use axum::extract::{Request, State};
+use axum::http::header;
+use axum::response::IntoResponse;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -38,6 +40,12 @@ pub async fn health(State(lab): State<Lab>, Extension(caller): Extension<Caller>
         access: caller.access,
         store: lab.store_health(),
     }))
+}
+
+/// Metrics for Prometheus: benches, queues, runs and the store.
+pub async fn metrics(State(lab): State<Lab>) -> Result<impl IntoResponse, Problem> {
+    let kind = "application/openmetrics-text; version=1.0.0; charset=utf-8";
+    Ok(([(header::CONTENT_TYPE, kind)], lab.metrics().await?))
 }
 
 /// This description

@@ -19,6 +19,7 @@ mod notes;
 mod presence;
 mod problem;
 mod procedures;
+mod queue;
 mod refusals;
 mod response_budget;
 mod revisions;
@@ -68,6 +69,7 @@ use utoipa_axum::{router::OpenApiRouter, routes};
         (name = "bench", description = "Benches and instruments"),
         (name = "procedures", description = "Procedures that a bench can run"),
         (name = "runs", description = "Measurements, running and stored"),
+        (name = "queue", description = "Runs that wait for their bench"),
         (name = "samples", description = "Windows of samples"),
         (name = "effects", description = "The library of physical effects"),
         (name = "models", description = "Fitted model versions, a tree for each run"),
@@ -99,6 +101,9 @@ impl Modify for Token {
 const ANSWERS_AT_ONCE: usize = 8;
 /// Reading a table of many megabytes needs twenty times its size in memory.
 const TABLES_AT_ONCE: usize = 2;
+
+/// Where Prometheus looks by default.
+const METRICS: &str = "/metrics";
 
 /// Everything under `/api/v1`.
 fn operations() -> OpenApiRouter<Lab> {
@@ -147,6 +152,12 @@ fn measurements() -> OpenApiRouter<Lab> {
         .routes(routes!(procedures::preview))
         .routes(routes!(runs::list, runs::start))
         .routes(routes!(runs::get))
+        .routes(routes!(runs::renew_lease))
+        .routes(routes!(queue::list, queue::add_plan))
+        .routes(routes!(queue::get, queue::remove))
+        .routes(routes!(queue::prioritise))
+        .routes(routes!(queue::pause))
+        .routes(routes!(queue::resume))
         .routes(routes!(runs::pause))
         .routes(routes!(runs::resume))
         .routes(routes!(runs::stop))
@@ -167,6 +178,7 @@ fn measurements() -> OpenApiRouter<Lab> {
         .routes(routes!(identifications::report))
         .routes(routes!(units::list))
         .routes(routes!(units::chart))
+        .routes(routes!(units::changes))
         .routes(routes!(transfer::export))
         .routes(routes!(transfer::export_meta))
 }
@@ -231,7 +243,8 @@ pub fn specification() -> utoipa::openapi::OpenApi {
 pub fn router(lab: Lab, transport: Transport) -> Router {
     let (rest, _) = operations().split_for_parts();
     let auth = Auth::new(lab.clone(), transport);
-    rest.route("/api", get(health::no_such_route))
+    rest.route(METRICS, get(health::metrics))
+        .route("/api", get(health::no_such_route))
         .route("/api/{*rest}", any(health::no_such_route))
         .method_not_allowed_fallback(health::no_such_method)
         .fallback_service(

@@ -4,9 +4,11 @@ use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::Problem;
 use super::refusals::Refusals;
 use crate::lab::{Alignment, Caller, Lab, LabError, Order, RunFilter};
-use crate::view::{ChannelStatistics, Figure, NewRun, Preview, Run, RunEvent, RunList, Samples};
+use crate::view::{ChannelStatistics, Figure, Lease, NewRun, Preview, QueueEntry, Run, RunEvent, RunList, Samples};
 use axum::Extension;
 use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode};
+use axum::response::{IntoResponse, Response};
 use jointbench_procedure::Control;
 use serde::Deserialize;
 use utoipa::IntoParams;
@@ -43,15 +45,36 @@ pub async fn list(State(lab): State<Lab>, Query(query): Query<RunQuery>) -> Answ
     }))
 }
 
-/// Plans a procedure, checks it against the limits and starts it
+const IDEMPOTENCY_KEY: &str = "idempotency-key";
+
+/// Plans a procedure, checks it against the limits and starts it; with `queue` when the bench is free
 #[utoipa::path(post, path = "/runs", operation_id = "start_run", tag = "runs", request_body = NewRun,
-    responses((status = 201, description = "The run, queued", body = Run), Refusals))]
+    params(("Idempotency-Key" = Option<String>, Header, description = "With `queue`: a repeated request with the same key returns the first entry; at most 200 characters")),
+    responses((status = 201, description = "The run, queued", body = Run),
+        (status = 202, description = "With `queue`: the entry of the queue", body = QueueEntry), Refusals))]
 pub async fn start(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,
+    headers: HeaderMap,
     Json(new): Json<NewRun>,
-) -> Created<Run> {
-    created(lab.start_run(&new, &caller.name).await?)
+) -> Result<Response, Problem> {
+    let unreadable = |_| Problem::malformed("Idempotency-Key: write visible ASCII characters");
+    let key = headers.get(IDEMPOTENCY_KEY).map(|key| key.to_str()).transpose().map_err(unreadable)?;
+    if new.queue {
+        let entry = lab.enqueue(&new, key, &caller.name).await?;
+        return Ok((StatusCode::ACCEPTED, Json(entry)).into_response());
+    }
+    if key.is_some() {
+        return Err(Problem::malformed("Idempotency-Key needs \"queue\": true"));
+    }
+    Ok(created(lab.start_run(&new, &caller.name).await?)?.into_response())
+}
+
+/// Renews the lease of a run that was started with `lease_s`
+#[utoipa::path(post, path = "/runs/{id}/lease", operation_id = "renew_lease", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "The renewed lease", body = Lease), Refusals))]
+pub async fn renew_lease(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Lease> {
+    Ok(Json(lab.renew_lease(id).await?))
 }
 
 /// One run

@@ -1,9 +1,9 @@
 //! Units under test.
 
-use super::extract::{Answer, Json, Query};
+use super::extract::{Answer, Json, Path, Query};
 use super::refusals::Refusals;
 use crate::lab::Lab;
-use crate::view::{ControlChart, UnitList};
+use crate::view::{ControlChart, UnitChanges, UnitList};
 use axum::extract::State;
 use serde::Deserialize;
 use utoipa::IntoParams;
@@ -38,6 +38,13 @@ pub struct ControlChartQuery {
     pub procedure: String,
     /// Name of the quantity; the first one with an interval if omitted.
     pub quantity: Option<String>,
+}
+
+/// What changed since the previous run of the same unit, beside the scatter of its earlier runs; `null` for the first run
+#[utoipa::path(get, path = "/runs/{id}/changes", operation_id = "get_unit_changes", tag = "runs", params(("id" = i64, Path, description = "Complete run of a unit")),
+    responses((status = 200, description = "The changes", body = Option<UnitChanges>), Refusals))]
+pub async fn changes(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Option<UnitChanges>> {
+    Ok(Json(lab.unit_changes(id).await?))
 }
 
 /// Individuals chart of a quantity over units, with the rules that points violate, and the capability for the limits of the runs

@@ -13,6 +13,7 @@ use crate::live::Hub;
 use crate::store::{SafetyRecord, Store};
 use jointbench_model::export::OnlinePrediction;
 use jointbench_procedure::{BenchFacts, Demand, Plan, RunId, Safe};
+use prometheus_client::metrics::histogram::Histogram;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
@@ -116,6 +117,16 @@ impl BenchHandle {
     /// Waits until no run is active, starting, or not yet stored; also returns when the daemon ends.
     pub async fn until_free(&self) {
         drop(self.watch().wait_for(|status| !self.shared.is_busy(status)).await);
+    }
+
+    /// Waits until a run is active, starting, or not yet stored; also returns when the daemon ends.
+    pub async fn until_busy(&self) {
+        drop(self.watch().wait_for(|status| self.shared.is_busy(status)).await);
+    }
+
+    /// How long storing took [s].
+    pub fn commit_times(&self) -> Histogram {
+        self.shared.commit_times.clone()
     }
 
     /// `false` if the run was not active.

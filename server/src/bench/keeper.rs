@@ -11,7 +11,7 @@ use jointbench_procedure::{RunId, RunState, Safe};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::sync::mpsc::UnboundedReceiver;
 use tokio::time::{sleep, timeout};
 
@@ -130,7 +130,12 @@ impl Keeper {
     /// One attempt. Reports a slow disk during the wait.
     async fn attempt(&self, work: &Work) -> Result<(), StoreError> {
         self.shared.store.fill_disk(self.shared.disk_is_full.load(Ordering::Acquire)).await?;
-        let mut attempt = std::pin::pin!(self.store(work));
+        let began = Instant::now();
+        let mut attempt = std::pin::pin!(async {
+            let done = self.store(work).await;
+            self.shared.commit_times.observe(began.elapsed().as_secs_f64());
+            done
+        });
         if let Ok(done) = timeout(SLOW, &mut attempt).await {
             return done;
         }

@@ -10,6 +10,7 @@ use crate::store::{SafetyRecord, Store};
 use crate::view::{BenchState, Blocked, LiveMessage};
 use jiff::Timestamp;
 use jointbench_procedure::RunId;
+use prometheus_client::metrics::histogram::{Histogram, exponential_buckets};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::process::ChildStdin;
@@ -42,6 +43,8 @@ pub(super) struct Shared {
     /// Whether the mock bench simulates a full disk, and a notification of changes.
     pub disk_is_full: AtomicBool,
     pub disk_changed: Notify,
+    /// Duration of each attempt to store [s].
+    pub commit_times: Histogram,
     orders: Mutex<Option<ChildStdin>>,
     tickets: Mutex<HashMap<u64, oneshot::Sender<Option<MemoryRead>>>>,
     last_ticket: AtomicU64,
@@ -73,6 +76,7 @@ impl Shared {
             ending: AtomicBool::new(false),
             disk_is_full: AtomicBool::new(false),
             disk_changed: Notify::new(),
+            commit_times: Histogram::new(exponential_buckets(0.001, 4.0, 8)),
             orders: Mutex::default(),
             tickets: Mutex::default(),
             last_ticket: AtomicU64::new(0),

@@ -5,7 +5,8 @@ use super::client::Client;
 use super::exit::{Done, Exit};
 use super::offline::decided;
 use super::progress::RunProgress;
-use super::run::{POLL_INTERVAL, choose_bench, parameters};
+use super::run::{choose_bench, parameters};
+use super::waiting::POLL_INTERVAL;
 use crate::view::{Autopilot, AutopilotState, AutopilotStep, Diagnosis, Model, NewAutopilot, NewExperiment, Run};
 
 pub fn autopilot(arguments: &Arguments) -> Done {

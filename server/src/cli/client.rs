@@ -10,7 +10,8 @@ use std::path::Path;
 use std::sync::Arc;
 use ureq::http::Response;
 use ureq::tls::{PemItem, RootCerts, TlsConfig, parse_pem};
-use ureq::{Agent, Body};
+use ureq::typestate::WithBody;
+use ureq::{Agent, Body, RequestBuilder};
 
 const DEFAULT_DAEMON: &str = "http://127.0.0.1:8080";
 
@@ -60,9 +61,40 @@ impl Client {
     }
 
     pub fn post_bytes<T: DeserializeOwned>(&self, path: &str, media_type: &str, body: &[u8]) -> Result<T, Exit> {
-        let mut request = self.agent.post(format!("{}{path}", self.base)).header("content-type", media_type);
+        let request = self.agent.post(format!("{}{path}", self.base));
+        self.send(request, &[("content-type", media_type)], body)
+    }
+
+    /// A request that the daemon executes once, even if it is repeated.
+    pub fn post_once<T: DeserializeOwned>(&self, path: &str, key: &str, body: &impl Serialize) -> Result<T, Exit> {
+        let body = serde_json::to_vec(body).map_err(|fault| Exit::failed(fault.to_string()))?;
+        let request = self.agent.post(format!("{}{path}", self.base));
+        self.send(request, &[("content-type", "application/json"), ("idempotency-key", key)], &body)
+    }
+
+    pub fn put<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> Result<T, Exit> {
+        let body = serde_json::to_vec(body).map_err(|fault| Exit::failed(fault.to_string()))?;
+        let request = self.agent.put(format!("{}{path}", self.base));
+        self.send(request, &[("content-type", "application/json")], &body)
+    }
+
+    pub fn delete<T: DeserializeOwned>(&self, path: &str) -> Result<T, Exit> {
+        let mut request = self.agent.delete(format!("{}{path}", self.base));
         if let Some(bearer) = &self.bearer {
             request = request.header("authorization", bearer);
+        }
+        self.json(&self.answer(request.call())?)
+    }
+
+    fn send<T: DeserializeOwned>(
+        &self,
+        mut request: RequestBuilder<WithBody>,
+        headers: &[(&str, &str)],
+        body: &[u8],
+    ) -> Result<T, Exit> {
+        let bearer = self.bearer.as_deref().map(|bearer| ("authorization", bearer));
+        for (name, value) in headers.iter().copied().chain(bearer) {
+            request = request.header(name, value);
         }
         self.json(&self.answer(request.send(body))?)
     }

@@ -3,7 +3,8 @@
 use super::arguments::{Control, Reset, Stop};
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::run::{POLL_INTERVAL, choose_bench, wait};
+use super::run::choose_bench;
+use super::waiting::{POLL_INTERVAL, wait};
 use crate::view::{self, Acknowledgement, Bench, Run, RunList, RunState, Safe};
 
 pub fn stop(arguments: &Stop) -> Done {

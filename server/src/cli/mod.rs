@@ -14,6 +14,7 @@ mod identify;
 mod job;
 mod library;
 mod log;
+mod manual;
 mod memory;
 mod model;
 mod offline;
@@ -22,6 +23,7 @@ mod pdf;
 mod ports;
 mod print;
 mod progress;
+mod queue;
 mod reproduce;
 mod run;
 mod runs;
@@ -32,6 +34,7 @@ mod transfer;
 mod units;
 mod user_effects;
 mod verify;
+mod waiting;
 
 use crate::bench::worker;
 use arguments::{Arguments, Command};
@@ -69,6 +72,7 @@ pub fn main() -> ExitCode {
         Command::Resume(arguments) => control::resume(&arguments),
         Command::Reset(arguments) => control::reset(&arguments),
         Command::ServoMemory(arguments) => memory::memory(&arguments),
+        Command::Queue(arguments) => queue::queue(&arguments),
         Command::Runs(arguments) => runs::runs(&arguments),
         Command::Units(arguments) => units::units(&arguments),
         Command::Autopilot(arguments) => autopilot::autopilot(&arguments),
@@ -86,6 +90,8 @@ pub fn main() -> ExitCode {
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
+        Command::Completions { shell } => manual::completions(shell),
+        Command::Man { folder } => manual::pages(&folder),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

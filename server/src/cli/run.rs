@@ -4,21 +4,22 @@ use super::arguments::{Run as Arguments, UnitArguments};
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::outcome::{Found, title};
-use super::progress::RunProgress;
-use super::{files, identify};
+use super::waiting::{lost, notify_on_interrupt, wait_at_most};
+use super::{files, identify, queue};
 use crate::limits::{self, Case, CaseOutcome, Measured, Outcome, Requirement};
 use crate::view::{Bench, Identification, LimitOutcome, NewRun, Run, RunState, Unit, word};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
-use std::time::{Duration, Instant};
-
-pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(250);
 
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach)?;
     arguments.junit.iter().try_for_each(|path| files::writable(path))?;
-    let limits = limits_text(&client, arguments);
-    let ended = limits.and_then(|limits| start(&client, arguments, limits));
+    let new = limits_text(&client, arguments).and_then(|limits| new_run(&client, arguments, limits));
+    if arguments.queue && !arguments.waits() {
+        let entry = queue::add(&client, &new?, arguments.key.as_deref())?;
+        return queue::show(&client, &entry, arguments.json);
+    }
+    let ended = new.and_then(|new| start(&client, arguments, new));
     let found =
         ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
     let required: Vec<(&Requirement, Outcome)> = match &found {
@@ -163,7 +164,7 @@ fn of_limits(found: &Identification) -> Option<Exit> {
 }
 
 /// The started run, or the ended run if the command waits.
-fn start(client: &Client, arguments: &Arguments, limits: Option<String>) -> Result<Run, Exit> {
+fn start(client: &Client, arguments: &Arguments, new: NewRun) -> Result<Run, Exit> {
     let run: Run = match arguments.continues {
         Some(before) => {
             let run: Run = client.get(&format!("/runs/{before}"))?;
@@ -174,7 +175,8 @@ fn start(client: &Client, arguments: &Arguments, limits: Option<String>) -> Resu
             }
             client.post(&format!("/runs/{before}/continue"), &())?
         }
-        None => client.post("/runs", &NewRun { limits, ..new_run(client, arguments)? })?,
+        None if arguments.queue => queue::run_of(client, &queue::add(client, &new, arguments.key.as_deref())?)?,
+        None => client.post("/runs", &new)?,
     };
     let (id, procedure, bench) = (run.summary.id, &run.summary.procedure, &run.summary.bench);
     if !arguments.json {
@@ -182,59 +184,36 @@ fn start(client: &Client, arguments: &Arguments, limits: Option<String>) -> Resu
         let unit = run.summary.unit.as_ref().map(|unit| format!(", unit {}", unit.line())).unwrap_or_default();
         println!("run {id}: {procedure} on {bench}{unit}{goes_on}  {}", client.page(&format!("/runs/{id}")));
     }
-    let is_judged = !arguments.require.is_empty() || arguments.limits.is_some();
-    let waits = arguments.wait || arguments.junit.is_some() || arguments.timeout.is_some() || is_judged;
-    if !waits {
+    if !arguments.waits() {
         return Ok(run);
     }
     notify_on_interrupt(id);
     // The arguments are valid: later errors belong to the run.
-    wait_at_most(client, id, arguments.timeout).map_err(|exit| lost(id, client.is_answered(), &exit.message))
+    wait_at_most(client, id, arguments.timeout, arguments.lease)
+        .map_err(|exit| lost(id, client.is_answered(), &exit.message))
 }
 
-/// Waiting time for a daemon that does not answer.
-const RESTARTED: Duration = Duration::from_secs(15);
-/// Exit code of a shell after Ctrl-C.
-const INTERRUPTED: i32 = 130;
-
-/// Ctrl-C ends only the wait, not the run: informs the person at the bench.
-fn notify_on_interrupt(id: i64) {
-    std::thread::spawn(move || {
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-        // Without the runtime, Ctrl-C ends this command without a message.
-        let Ok(runtime) = runtime else { return };
-        if runtime.block_on(tokio::signal::ctrl_c()).is_ok() {
-            eprintln!("\nrun {id} continues: show it with `jointbench runs id:{id}`, end it with `jointbench stop`");
-            std::process::exit(INTERRUPTED);
-        }
-    });
-}
-
-/// Message about a run whose daemon is gone, or whose state cannot be requested.
-fn lost(id: i64, is_answered: bool, message: &str) -> Exit {
-    Exit::failed(match is_answered {
-        true => format!("run {id}: its state is unknown ({message})"),
-        false => format!(
-            "run {id}: the daemon does not answer, so the state of the run is unknown. The bench worker moves the \
-             bench to its safe state; if it was killed too, the daemon does so at its next start (jointbench serve). \
-             To see how the run ended: `jointbench runs id:{id}`"
-        ),
-    })
-}
-
-fn new_run(client: &Client, arguments: &Arguments) -> Result<NewRun, Exit> {
+/// The requested run; of a continued run only its options.
+fn new_run(client: &Client, arguments: &Arguments, limits: Option<String>) -> Result<NewRun, Exit> {
+    if arguments.continues.is_some() {
+        return Ok(NewRun::default());
+    }
     Ok(NewRun {
         bench: choose_bench(client, arguments.bench.as_deref())?,
         procedure: arguments.procedure.clone().unwrap_or_default(),
         parameters: parameters(&arguments.set)?,
         unit: unit(&arguments.unit),
         operator: arguments.unit.operator.clone(),
-        limits: None,
+        limits,
+        note: arguments.note.clone(),
+        lease_s: arguments.lease.map(|lease| lease.as_secs_f64()),
+        queue: arguments.queue,
+        priority: arguments.priority.unwrap_or_default(),
     })
 }
 
 /// The daemon checks the texts.
-fn unit(arguments: &UnitArguments) -> Option<Unit> {
+pub(super) fn unit(arguments: &UnitArguments) -> Option<Unit> {
     let UnitArguments { unit, part, revision, batch, operator: _ } = arguments;
     Some(Unit { serial: unit.clone()?, part: part.clone(), revision: revision.clone(), batch: batch.clone() })
 }
@@ -266,69 +245,10 @@ pub(super) fn parameters(set: &[String]) -> Result<Map<String, Value>, Exit> {
     Ok(parameters)
 }
 
-pub(super) fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
-    wait_at_most(client, id, None)
-}
-
-/// Aborts a run that takes longer than `limit`, and waits for its end.
-fn wait_at_most(client: &Client, id: i64, limit: Option<Duration>) -> Result<Run, Exit> {
-    let mut shown = RunProgress::begin();
-    let began = Instant::now();
-    let (mut answered, mut exceeded) = (began, None);
-    loop {
-        if let Some(limit) = limit.filter(|limit| exceeded.is_none() && began.elapsed() > *limit) {
-            exceeded = Some(limit);
-            // The daemon refuses this for an ended run; the next request shows the end.
-            drop(client.post::<Run>(&format!("/runs/{id}/abort"), &()));
-        }
-        let run: Run = match client.get(&format!("/runs/{id}")) {
-            Ok(run) => run,
-            // A restarted daemon knows the end of the run.
-            Err(_) if answered.elapsed() < RESTARTED && !client.is_answered() => {
-                std::thread::sleep(POLL_INTERVAL);
-                continue;
-            }
-            Err(exit) => return Err(exit),
-        };
-        answered = Instant::now();
-        // After a restart of the daemon, the end of a run appears before its safe state. A completed run can be read
-        // only when it is stored. Other ends are final immediately.
-        let waits_for_the_disk = run.summary.state == RunState::Completed && run.summary.not_stored.is_some();
-        if run.summary.state.is_over() && run.summary.safe.is_some() && !waits_for_the_disk {
-            shown.end();
-            return Ok(match exceeded {
-                Some(limit) if run.summary.state == RunState::Aborted => timed_out(run, limit),
-                _ => run,
-            });
-        }
-        match &run.progress {
-            _ if run.summary.state == RunState::Paused => shown.paused(id),
-            Some(progress) => shown.show(progress),
-            None => {}
-        }
-        std::thread::sleep(POLL_INTERVAL);
-    }
-}
-
-fn timed_out(mut run: Run, limit: Duration) -> Run {
-    run.summary.reason = Some(format!("it took longer than --timeout {} s", limit.as_secs_f64()));
-    run
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::view::Identified;
-
-    fn asked(words: &[&str]) -> Arguments {
-        use clap::Parser;
-        #[derive(Parser)]
-        struct Alone {
-            #[command(flatten)]
-            run: Arguments,
-        }
-        Alone::parse_from([&["run"], words].concat()).run
-    }
 
     #[test]
     fn values_are_json_where_they_can_be() {
@@ -337,21 +257,6 @@ mod tests {
         assert_eq!(parameters["repeats"], 3);
         assert_eq!(parameters["note"], "warm oil");
         assert_eq!(super::parameters(&["repeats".to_owned()]).unwrap_err().code, 2);
-    }
-
-    #[test]
-    fn a_lost_daemon_is_reported_with_the_known_state() {
-        let (gone, refused) = (lost(7, false, "no daemon answers"), lost(7, true, "a token is needed"));
-        assert!(gone.code == 1 && gone.message.contains("safe state") && gone.message.contains("jointbench runs id:7"));
-        assert_eq!((refused.code, refused.message.as_str()), (1, "run 7: its state is unknown (a token is needed)"));
-    }
-
-    #[test]
-    fn a_timeout_is_a_number_of_seconds() {
-        assert_eq!(asked(&["friction", "--timeout", "1.5"]).timeout, Some(Duration::from_millis(1500)));
-        for text in ["0", "-1", "soon", "inf", "NaN"] {
-            assert!(super::super::arguments::seconds(text).unwrap_err().contains("seconds above 0"), "{text}");
-        }
     }
 
     #[test]

@@ -86,7 +86,7 @@ fn yield_cells(one: &FirstPassYield) -> [String; 7] {
 }
 
 /// Columns as wide as their longest cell.
-fn print_rows<const N: usize>(head: &[&str; N], rows: impl Iterator<Item = [String; N]>) {
+pub(super) fn print_rows<const N: usize>(head: &[&str; N], rows: impl Iterator<Item = [String; N]>) {
     let rows: Vec<[String; N]> = std::iter::once(head.map(str::to_owned)).chain(rows).collect();
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or_default();
     let widths: [usize; N] = std::array::from_fn(width);

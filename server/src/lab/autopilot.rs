@@ -97,20 +97,25 @@ impl Lab {
 
     fn spawn_task(&self, id: i64, bench: &str, goal: Goal, by: String) {
         let (stop, stopped) = watch::channel(None);
-        let (lab, bench) = (self.clone(), bench.to_owned());
+        let (lab, bench, used) = (self.clone(), bench.to_owned(), bench.to_owned());
         let task = AutopilotTask::new(lab.clone(), id, bench.clone(), stopped, by);
         // The lock is held until the autopilot is inserted: the task must not remove it earlier.
         let mut active_autopilots = self.inner.active_autopilots.lock();
         let task = tokio::spawn(async move {
             task.run(goal).await;
             lab.inner.active_autopilots.lock().remove(&id);
+            lab.inner.queues.notify(&used);
         });
         active_autopilots.insert(id, ActiveAutopilot { bench, stop, task });
     }
 
+    /// The autopilot that uses a bench.
+    pub(super) fn active_autopilot(&self, bench: &str) -> Option<i64> {
+        self.inner.active_autopilots.lock().iter().find(|(_, active)| active.bench == bench).map(|(id, _)| *id)
+    }
+
     fn check_is_free(&self, bench: &str) -> Answer<()> {
-        let on = self.inner.active_autopilots.lock().iter().find(|(_, f)| f.bench == bench).map(|(id, _)| *id);
-        match on {
+        match self.active_autopilot(bench) {
             Some(id) => Err(LabError::Conflict(format!(
                 "autopilot {id} uses bench {bench}: stop it, or wait until it finishes"
             ))),

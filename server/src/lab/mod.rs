@@ -11,12 +11,15 @@ mod exclusions;
 mod experiment;
 mod export;
 mod identifications;
+mod leases;
 mod log;
 mod memory;
+mod metrics;
 mod model_overlay;
 mod models;
 pub mod names;
 mod notes;
+mod queue;
 mod report;
 mod resume;
 mod revisions;
@@ -28,6 +31,7 @@ mod tables;
 mod tokens;
 mod transfer;
 mod trends;
+mod unit_changes;
 mod units;
 mod user_effects;
 
@@ -50,6 +54,8 @@ use crate::view::{AutopilotState, reread};
 use autopilot::ActiveAutopilots;
 use computation::Turns;
 use jointbench_procedure::{RunState, Safe};
+use leases::Leases;
+use queue::Queues;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -70,6 +76,8 @@ struct Inner {
     /// Path of the `jointbench` executable.
     program: PathBuf,
     active_autopilots: ActiveAutopilots,
+    queues: Queues,
+    leases: Leases,
     /// Worker processes for computations on whole runs; `None` computes in this process.
     jobs: Option<Jobs>,
     turns: Turns,
@@ -117,17 +125,20 @@ impl Lab {
             inner: Arc::new(Inner {
                 store,
                 hub,
+                queues: Queues::new(benches.iter()),
                 benches,
                 tokens,
                 jobs: Some(Jobs::new(&program, data, analysis)),
                 program,
                 active_autopilots: ActiveAutopilots::default(),
+                leases: Leases::default(),
                 turns: Turns::default(),
             }),
         };
         lab.open_tokens().await?;
         lab.wait_until_secured().await;
         lab.judge_unjudged_runs();
+        lab.open_queues().await?;
         tokio::spawn(lab.inner.store.clone().check_daily());
         Ok(lab)
     }
@@ -142,6 +153,8 @@ impl Lab {
                 tokens: Tokens::default(),
                 program: crate::program::path(),
                 active_autopilots: ActiveAutopilots::default(),
+                queues: Queues::default(),
+                leases: Leases::default(),
                 jobs: None,
                 turns: Turns::default(),
             }),
@@ -164,6 +177,7 @@ impl Lab {
 
     /// Ends all runs, secures all benches and closes the store.
     pub async fn shut_down(&self) {
+        self.inner.queues.abort();
         self.inner.active_autopilots.abort();
         self.inner.jobs.iter().for_each(Jobs::end);
         let benches = self.inner.benches.clone();

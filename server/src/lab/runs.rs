@@ -1,5 +1,7 @@
 //! Runs: start, control, read.
 
+use super::leases::checked_lease;
+use super::names::{LONGEST_NOTE, checked_text};
 use super::units::TestedUnit;
 use super::{Answer, Lab, LabError};
 use crate::bench::{BenchHandle, Status, show_unstored_end};
@@ -20,8 +22,21 @@ impl Lab {
     /// Plans, checks the limits, and passes the plan to the thread of the bench.
     pub async fn start_run(&self, new: &view::NewRun, by: &str) -> Answer<Run> {
         let tested = TestedUnit::of(new)?;
+        let lease = checked_lease(new.lease_s)?;
+        let note = new.note.as_deref().map(|note| checked_text("note", note, LONGEST_NOTE)).transpose()?;
         let (bench, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
-        self.launch(bench, plan, tested, by).await
+        let run = self.launch(bench, plan, tested, by).await?;
+        let id = run.summary.id;
+        if let Some(lease) = lease {
+            self.watch_lease(bench, id, lease);
+        }
+        // The run has started: a note that cannot be stored does not make it an error.
+        if let Some(note) = note
+            && let Err(fault) = self.inner.store.save_note(id, None, note).await
+        {
+            tracing::error!(run.id = id, note, %fault, "the note cannot be stored");
+        }
+        Ok(run)
     }
 
     pub(super) async fn launch(&self, bench: &BenchHandle, plan: Plan, tested: TestedUnit, by: &str) -> Answer<Run> {
@@ -177,7 +192,7 @@ fn new_run(bench: &BenchHandle, plan: &Plan, tested: TestedUnit, by: &str) -> An
     let calibrated: BTreeMap<&str, String> =
         description.calibrated.iter().map(|(role, day)| (role.as_str(), day.to_string())).collect();
     let provenance = json!({
-        "software": concat!("jointbench ", env!("CARGO_PKG_VERSION")),
+        "software": format!("jointbench {}", crate::VERSION),
         "by": by,
         "bench_description": description.text,
         "limits": description.limits,

@@ -41,7 +41,7 @@ impl Lab {
     }
 
     /// Mean temperature of the run [°C], from the midpoints of its sections.
-    async fn temperature_of(&self, run: i64) -> Answer<Option<f64>> {
+    pub(super) async fn temperature_of(&self, run: i64) -> Answer<Option<f64>> {
         // The records of a list have no channels.
         let record = self.inner.store.run(run).await?;
         let Some(channel) = record.channels.iter().find(|channel| channel.unit() == Some("°C")) else {

@@ -48,6 +48,8 @@ pub enum StoreError {
     EffectUsed { effect: String, model: i64 },
     #[error("there is no autopilot {0}")]
     NoAutopilot(i64),
+    #[error("there is no queue entry {0}")]
+    NoQueueEntry(i64),
     #[error("run {run} has no channel {name}: it has {}", .there.join(", "))]
     NoChannel { run: RunId, name: String, there: Vec<String> },
     #[error("run {run} is {state}: nothing can be added to it")]
@@ -102,6 +104,7 @@ impl StoreError {
                 | E::NoDiagnosis(_)
                 | E::NoEffect(_)
                 | E::NoAutopilot(_)
+                | E::NoQueueEntry(_)
                 | E::NoChannel { .. }
         )
     }

@@ -32,6 +32,7 @@ const FILES: &[(&str, &str)] = &[
     ("0022_units.sql", include_str!("../../../migrations/0022_units.sql")),
     ("0023_effect_uses.sql", include_str!("../../../migrations/0023_effect_uses.sql")),
     ("0024_limit_outcomes.sql", include_str!("../../../migrations/0024_limit_outcomes.sql")),
+    ("0025_queue.sql", include_str!("../../../migrations/0025_queue.sql")),
 ];
 
 #[derive(Debug)]

@@ -22,6 +22,7 @@ mod notes;
 mod open;
 mod order;
 pub mod pyramid;
+mod queue;
 mod records;
 mod result_cache;
 mod runs;
@@ -44,9 +45,9 @@ pub use error::StoreError;
 pub use keeper::Loss;
 pub use order::Order;
 pub use records::{
-    AutopilotRecord, CalibrationRecord, DiagnosisRecord, EffectUse, EventRecord, ModelRecord, NewModel, NewRun,
-    NoteRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord, UnitRecord, UnitRunRecord, UserEffectRecord,
-    VersionRecord, Window, WindowColumn,
+    AutopilotRecord, CalibrationRecord, DiagnosisRecord, EffectUse, EventRecord, ModelRecord, NewModel, NewQueueEntry,
+    NewRun, NoteRecord, QueueRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord, UnitRecord, UnitRunRecord,
+    UserEffectRecord, VersionRecord, Window, WindowColumn,
 };
 pub use result_cache::{Subject, packed, unpacked};
 pub use search::Search;

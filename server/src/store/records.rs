@@ -244,6 +244,31 @@ pub struct AutopilotRecord {
     pub finished_at: Option<String>,
 }
 
+/// A run that waits for its bench, before it has an id.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewQueueEntry {
+    pub bench: String,
+    pub proceed_if: String,
+    pub request: Value,
+    pub who: String,
+    pub priority: i32,
+    pub planned_s: f64,
+    pub key: Option<String>,
+}
+
+/// A run that waits or waited for its bench.
+#[derive(Debug, Clone, PartialEq)]
+pub struct QueueRecord {
+    pub id: i64,
+    pub plan: Option<i64>,
+    pub new: NewQueueEntry,
+    pub state: String,
+    pub run: Option<i64>,
+    pub reason: Option<String>,
+    pub created_at: String,
+    pub ended_at: Option<String>,
+}
+
 /// Entry of the safety record of a bench.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SafetyRecord {

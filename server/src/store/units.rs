@@ -8,16 +8,24 @@ use jointbench_procedure::RunId;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{QueryBuilder, Row, SqliteConnection};
 
+const UNIT_RUN: &str = "SELECT id, serial, part, revision, batch, operator, unit_checksum, procedure, state, created_at, \
+    (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict, \
+    (SELECT limits FROM verdicts WHERE run = runs_told.id) AS limits \
+    FROM runs_told WHERE serial ";
+
 impl Store {
+    /// All runs of one unit, in order.
+    pub async fn runs_of_unit(&self, serial: &str) -> Result<Vec<UnitRunRecord>, StoreError> {
+        let mut query = QueryBuilder::new(UNIT_RUN);
+        query.push("= ").push_bind(serial).push(" ORDER BY id");
+        Ok(intact_records(&query.build().fetch_all(&self.readers).await?, unit_run).into_iter().flatten().collect())
+    }
+
     /// All runs of the units that have a run that matches the search, in order.
     pub async fn unit_runs(&self, search: &str) -> Result<Vec<UnitRunRecord>, StoreError> {
         let search = Search::parse(search)?;
-        let mut query = QueryBuilder::new(
-            "SELECT id, serial, part, revision, batch, operator, unit_checksum, procedure, state, created_at, \
-             (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict, \
-             (SELECT limits FROM verdicts WHERE run = runs_told.id) AS limits \
-             FROM runs_told WHERE serial IN (SELECT serial FROM runs_told",
-        );
+        let mut query = QueryBuilder::new(UNIT_RUN);
+        query.push("IN (SELECT serial FROM runs_told");
         search.push(&mut query);
         query.push(") ORDER BY id");
         Ok(intact_records(&query.build().fetch_all(&self.readers).await?, unit_run).into_iter().flatten().collect())

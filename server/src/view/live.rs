@@ -52,6 +52,10 @@ pub enum LiveMessage {
         kind: String,
         effect: String,
     },
+    /// The queue of a bench has changed.
+    Queue {
+        bench: String,
+    },
     /// An autopilot has completed a step or has ended.
     Autopilot {
         autopilot: i64,

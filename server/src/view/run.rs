@@ -225,6 +225,23 @@ pub struct NewRun {
     /// is kept with the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits: Option<String>,
+    /// A note about the run; at most 4000 characters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    /// The run ends in order if its lease is not renewed within this time; 1 s to one day.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 1, maximum = 86_400)]
+    pub lease_s: Option<f64>,
+    /// Waits in the queue of the bench; the answer is the entry of the queue.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub queue: bool,
+    /// In the queue: the largest priority starts first.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub priority: i32,
+}
+
+fn is_zero(priority: &i32) -> bool {
+    *priority == 0
 }
 
 /// One entry of the journal of a run, which is append-only.

@@ -2,6 +2,7 @@
 
 use super::{Identified, LimitOutcome};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use utoipa::ToSchema;
 
 /// A unit under test. The serial number identifies it.
@@ -94,4 +95,48 @@ pub struct UnitList {
     pub yields: Vec<FirstPassYield>,
     /// Ignored terms of an incomplete search.
     pub unclear: Option<String>,
+}
+
+/// What changed since the previous complete run of the same unit and procedure.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct UnitChanges {
+    pub unit: String,
+    pub previous_run: i64,
+    /// Earlier runs with the same settings, which the prediction intervals are from.
+    pub comparable_runs: usize,
+    /// Parameters that differ from the previous run.
+    pub settings: Vec<SettingChange>,
+    /// Mean temperature of the previous run.
+    pub previous_temperature_c: Option<f64>,
+    /// Mean temperature of this run.
+    pub temperature_c: Option<f64>,
+    pub quantities: Vec<QuantityChange>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SettingChange {
+    pub parameter: String,
+    pub previous: Value,
+    pub present: Value,
+}
+
+/// The change of one quantity, in its unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct QuantityChange {
+    pub name: String,
+    pub symbol: String,
+    pub title: String,
+    /// SI symbol; empty for a fraction or a count.
+    pub unit: String,
+    pub previous: f64,
+    pub present: f64,
+    /// 95 % interval of the change, from the intervals of both results.
+    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
+    pub change_ci95: Option<[f64; 2]>,
+    /// 95 % prediction interval of this run from the earlier runs of the unit, at its temperature. `null` with fewer than
+    /// three comparable runs.
+    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
+    pub prediction95: Option<[f64; 2]>,
+    /// Whether the prediction interval follows the temperature.
+    pub follows_temperature: bool,
 }

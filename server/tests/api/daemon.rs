@@ -65,6 +65,12 @@ impl TestDaemon {
         }
     }
 
+    /// Ends the daemon and starts another one with the same data.
+    pub fn restart(&mut self, pace: Option<f64>) {
+        self.stop();
+        self.daemon = Some(self.runtime.block_on(Daemon::start(settings(self.data.path(), pace))).unwrap());
+    }
+
     pub fn get(&self, path: &str) -> (u16, Value) {
         self.get_with(path, &[])
     }

@@ -141,3 +141,38 @@ fn a_quantity_of_the_units_has_a_control_chart_and_a_capability() {
     let (status, problem) = daemon.get("/api/v1/units/chart?procedure=friction&quantity=tau_x");
     assert!(status == 404 && problem["detail"].as_str().unwrap().contains("has the quantity tau_x"), "{problem}");
 }
+
+/// The same mock joint five times: the last run changes nothing. Another setting is named, and is not compared.
+#[test]
+fn a_run_tells_what_changed_since_the_previous_run_of_its_unit() {
+    let daemon = TestDaemon::start();
+    let unit = json!({"serial": "SN \"5\""});
+    let measure = |repeats: u32| {
+        let mut new = run_of(&unit, "Z");
+        new["parameters"]["repeats"] = repeats.into();
+        let (status, run) = daemon.post("/api/v1/runs", &new.to_string());
+        assert_eq!(status, 201, "{run}");
+        let id = run["id"].as_i64().unwrap();
+        daemon.wait_for_end(id);
+        daemon.wait_for(&format!("/api/v1/runs/{id}"), |run| !run["verdict"].is_null());
+        id
+    };
+    let first = measure(2);
+    assert_eq!(daemon.get(&format!("/api/v1/runs/{first}/changes")), (200, Value::Null));
+    let runs = [first, measure(2), measure(2), measure(2), measure(2)];
+    let (_, changes) = daemon.get(&format!("/api/v1/runs/{}/changes", runs[4]));
+    assert_eq!((&changes["previous_run"], &changes["comparable_runs"]), (&json!(runs[3]), &json!(4)), "{changes}");
+    assert_eq!(changes["settings"], json!([]));
+    let tau_c = changes["quantities"].as_array().unwrap().iter().find(|one| one["name"] == "tau_c").unwrap();
+    let number = |value: &Value| value.as_f64().unwrap();
+    let (low, high) = (number(&tau_c["prediction95"][0]), number(&tau_c["prediction95"][1]));
+    assert!(low < number(&tau_c["present"]) && number(&tau_c["present"]) < high, "{tau_c}");
+    let change = number(&tau_c["present"]) - number(&tau_c["previous"]);
+    let middle = (number(&tau_c["change_ci95"][0]) + number(&tau_c["change_ci95"][1])) / 2.0;
+    assert!((change - middle).abs() < 1e-12, "{tau_c}");
+
+    let (_, changes) = daemon.get(&format!("/api/v1/runs/{}/changes", measure(3)));
+    assert_eq!(changes["settings"], json!([{"parameter": "repeats", "previous": 2.0, "present": 3.0}]), "{changes}");
+    assert_eq!(changes["comparable_runs"], 0);
+    assert!(changes["quantities"][0]["prediction95"].is_null(), "{changes}");
+}

@@ -1,5 +1,5 @@
 import { callApi } from './request';
-import type { EffectDefinition, Exclusion, NewAutopilot, NewModel, NewRun } from './types';
+import type { EffectDefinition, Exclusion, NewAutopilot, NewModel, NewRun, QueueEntry, Run } from './types';
 
 export const BASE = '/api/v1';
 
@@ -38,11 +38,20 @@ export const api = {
 	liveComparison: (id: number, signal?: Signal) => callApi('get', '/api/v1/runs/{id}/beside', { path: { id } }, signal),
 	/** Results of complete runs. Some may arrive in a later answer. */
 	trends: (search: string, signal?: Signal) => callApi('get', '/api/v1/trends', { query: { search } }, signal),
-	start: (run: NewRun) => callApi('post', '/api/v1/runs', { body: run }),
+	start: (run: NewRun) => callApi('post', '/api/v1/runs', { body: run }) as Promise<Run>,
+	/** The run starts when its bench is free. */
+	enqueue: (run: NewRun) => callApi('post', '/api/v1/runs', { body: { ...run, queue: true } }) as Promise<QueueEntry>,
+	queues: (signal?: Signal) => callApi('get', '/api/v1/queue', {}, signal),
+	removeFromQueue: (id: number) => callApi('delete', '/api/v1/queue/{id}', { path: { id } }),
+	/** The largest priority starts first. */
+	prioritise: (id: number, priority: number) => callApi('put', '/api/v1/queue/{id}/priority', { path: { id }, body: { priority } }),
+	switchQueue: (bench: string, how: 'pause' | 'resume') => callApi('post', `/api/v1/bench/{bench}/queue/${how}`, { path: { bench } }),
 	/** Units under test and their first-pass yield. */
 	units: (query: { search?: string; typing?: boolean }, signal?: Signal) => callApi('get', '/api/v1/units', { query }, signal),
 	/** Individuals chart of a quantity over units. */
 	controlChart: (query: { search: string; procedure: string; quantity?: string | undefined }, signal?: Signal) => callApi('get', '/api/v1/units/chart', { query }, signal),
+	/** `null` for the first run of a unit. */
+	unitChanges: (id: number, signal?: Signal) => callApi('get', '/api/v1/runs/{id}/changes', { path: { id } }, signal),
 	control: (id: number, what: 'pause' | 'resume' | 'stop' | 'abort') =>
 		callApi('post', `/api/v1/runs/{id}/${what}`, { path: { id } }),
 	/** Starts a run with the remaining steps of this run. */

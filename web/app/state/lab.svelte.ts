@@ -32,6 +32,8 @@ class LabState {
 	models = $state(0);
 	/** Incremented when a user's effect changes, so that diagnoses that may suggest it are requested again. */
 	effects = $state(0);
+	/** Incremented when the queue of a bench changes. */
+	queues = $state(0);
 	/** Incremented when an autopilot makes a step or ends. */
 	autopilots = $state(0);
 	connected = $state(false);
@@ -146,6 +148,9 @@ class LabState {
 				break;
 			case 'effects':
 				this.effects += 1;
+				break;
+			case 'queue':
+				this.queues += 1;
 				break;
 			case 'autopilot':
 				this.autopilots += 1;

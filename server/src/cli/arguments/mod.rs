@@ -4,6 +4,7 @@ mod columns;
 mod control;
 mod model;
 mod place;
+mod run;
 mod runs;
 mod units;
 
@@ -11,17 +12,16 @@ pub use columns::Columns;
 pub use control::{Control, Reset, ServoMemory, Stop};
 pub use model::{Model, ModelCommand};
 pub use place::{Place, Reach, ServedTokens};
+pub use run::{Queue, QueueCommand, Run};
 pub use runs::{Backup, Convert, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
 pub use units::{UnitArguments, Units};
 
 use super::log::LogForm;
 use super::ports::Ports;
 use super::user_effects::OwnEffects;
-use crate::limits::Requirement;
 use clap::{Args, Parser, Subcommand};
 use jointbench_instrument::Kind;
 use std::path::PathBuf;
-use std::time::Duration;
 
 const EXAMPLES: &str = "\
 Getting started:
@@ -33,7 +33,7 @@ Any verdict ends with 0; 3 means that the data do not allow a verdict.";
 
 /// Test bench for robot joints: measure, identify a model, and find where it fails and which effect is missing.
 #[derive(Debug, Parser)]
-#[command(name = "jointbench", version, after_help = EXAMPLES, max_term_width = 100)]
+#[command(name = "jointbench", version = crate::VERSION, after_help = EXAMPLES, max_term_width = 100)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -65,7 +65,7 @@ pub enum Command {
     /// Start a procedure on a running daemon, or complete an interrupted run (--continue)
     #[command(
         override_usage = "jointbench run <PROCEDURE> [OPTIONS]\n       jointbench run --continue <RUN> [OPTIONS]",
-        after_help = RUN
+        after_help = run::RUN
     )]
     Run(Run),
     /// End the active run: the brake is unloaded while the shaft turns, and measured samples are kept
@@ -82,6 +82,9 @@ pub enum Command {
     /// Read the memory of a Puma-type servo (DIAGREAD) between runs, without motion
     #[command(after_help = control::MEMORY)]
     ServoMemory(ServoMemory),
+    /// List the runs that wait for a bench, queue a test plan, or pause and resume a queue
+    #[command(after_help = run::QUEUE)]
+    Queue(Queue),
     /// List the runs of a daemon or of a folder
     Runs(Runs),
     /// List the units under test with their verdicts, and first-pass yield by part, revision and batch
@@ -121,6 +124,17 @@ pub enum Command {
     Reproduce(Reproduce),
     /// Serve the instruments of a simulated bench to other programs, without a daemon
     Simulate(Simulate),
+    /// Write a script that completes the commands in a shell
+    #[command(after_help = COMPLETIONS)]
+    Completions {
+        /// Shell of the script
+        shell: clap_complete::Shell,
+    },
+    /// Write the man pages, one for each command
+    Man {
+        /// Folder of the pages
+        folder: PathBuf,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -191,53 +205,10 @@ pub struct Listed {
     pub id: Option<String>,
 }
 
-#[derive(Debug, Args)]
-pub struct Run {
-    /// Id of the procedure, such as friction or warm_up
-    #[arg(required_unless_present = "continues")]
-    pub procedure: Option<String>,
-    /// Complete an interrupted run: warm up, demagnetise the brake, then continue with the first unfinished step. Both
-    /// runs together form one measurement
-    #[arg(long = "continue", value_name = "RUN", conflicts_with_all = ["procedure", "set", "bench"])]
-    pub continues: Option<i64>,
-    /// A parameter of the procedure, in SI units; repeatable
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
-    /// Bench to run on; optional if the daemon has only one
-    #[arg(long, value_name = "NAME")]
-    pub bench: Option<String>,
-    #[command(flatten)]
-    pub unit: UnitArguments,
-    /// Wait for the end; Ctrl-C stops waiting, not the run
-    #[arg(long)]
-    pub wait: bool,
-    /// Print the run as JSON
-    #[arg(long)]
-    pub json: bool,
-    /// Limit for a quantity of the result, such as 'tau_c < 0.035 Nm'; waits for the end; repeatable. The whole 95 %
-    /// interval must be within the limit: exit code 1 if the value exceeds it, 3 if only the interval exceeds it
-    #[arg(long, value_name = "LIMIT")]
-    pub require: Vec<Requirement>,
-    /// File with the limits of parts and revisions, which is kept with the run; waits for the end. Those of the part and
-    /// revision of the unit apply
-    #[arg(long, value_name = "LIMITS.TOML", conflicts_with = "continues")]
-    pub limits: Option<PathBuf>,
-    /// Write a JUnit report with one test case per limit; waits for the end
-    #[arg(long, value_name = "REPORT.XML")]
-    pub junit: Option<PathBuf>,
-    /// Maximum time to wait for the end [s], by the clock; waits for the end. A run that takes longer is aborted, the bench
-    /// is secured, and the exit code is 1
-    #[arg(long, value_name = "S", value_parser = seconds)]
-    pub timeout: Option<Duration>,
-    #[command(flatten)]
-    pub reach: Reach,
-}
-
-pub(super) fn seconds(text: &str) -> Result<Duration, String> {
-    let wrong = || "expected a number of seconds above 0, such as 600".to_owned();
-    let seconds = text.parse::<f64>().ok().filter(|seconds| *seconds > 0.0).ok_or_else(wrong)?;
-    Duration::try_from_secs_f64(seconds).map_err(|_| wrong())
-}
+const COMPLETIONS: &str = "\
+  jointbench completions bash > ~/.local/share/bash-completion/completions/jointbench
+  jointbench completions zsh > ~/.zfunc/_jointbench
+  jointbench completions fish > ~/.config/fish/completions/jointbench.fish";
 
 const DECIDED: &str = "\
 Exit codes: 0 any verdict, 2 bad arguments or bad input, 3 the data do not allow a verdict: too few data to test the model, \
@@ -255,23 +226,6 @@ with all runs. Every step is stored, and every run is checked against the limits
 
 Exit codes: 0 no further effect to add (unexplained structure may remain, see the verdict), 1 a run failed or was stopped, \
 2 bad arguments, 3 the data do not decide, or the budget is used up.";
-
-const RUN: &str = "\
-A limits file has one [[limit]] for each quantity; part, revision and procedure are optional, and the entry that names most
-of them applies. `pass` needs the whole 95 % interval inside the limits by the guard band; `fail` is a value beyond a limit; all
-between is `marginal`; a value without an interval is `inconclusive`. A run that continues another one keeps its limits.
-
-  [[limit]]
-  part = \"JA-100\"
-  quantity = \"tau_c\"
-  lower = 0.02
-  upper = 0.035
-  unit = \"Nm\"
-  guard_band = 0.0005
-
-Exit codes, when waiting for the end: 0 identified and all limits met, 1 the run or its identification failed or a limit was \
-exceeded, 2 bad arguments (also --continue of a complete run, and --require of a quantity that the result does not contain), \
-3 the identification is inconclusive, or a limit is marginal or inconclusive.";
 
 #[derive(Debug, Args)]
 pub struct Autopilot {

@@ -8,7 +8,7 @@ use clap::Args;
 #[command(next_help_heading = "Unit under test")]
 pub struct UnitArguments {
     /// Serial number of the unit, as a scanner reads it
-    #[arg(long, value_name = "SERIAL", conflicts_with = "continues")]
+    #[arg(long, value_name = "SERIAL")]
     pub unit: Option<String>,
     /// Part number of the unit
     #[arg(long, value_name = "PART", requires = "unit")]
@@ -20,7 +20,7 @@ pub struct UnitArguments {
     #[arg(long, value_name = "BATCH", requires = "unit")]
     pub batch: Option<String>,
     /// Name of the person who starts the run
-    #[arg(long, value_name = "NAME", conflicts_with = "continues")]
+    #[arg(long, value_name = "NAME")]
     pub operator: Option<String>,
 }
 

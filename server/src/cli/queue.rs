@@ -1,0 +1,218 @@
+//! `jointbench queue`: runs that wait for a bench, and test plans.
+
+use super::arguments::{Queue, QueueCommand, UnitArguments};
+use super::client::Client;
+use super::exit::{Done, Exit};
+use super::files;
+use super::offline::json_out;
+use super::run::{choose_bench, unit};
+use super::units::print_rows;
+use super::waiting::POLL_INTERVAL;
+use crate::view::{BenchQueue, NewRun, NewTestPlan, ProceedIf, QueueEntry, QueuePriority, QueueState, Run, word};
+use serde::Deserialize;
+use serde_json::{Map, Value};
+use std::path::{Path, PathBuf};
+
+pub fn queue(arguments: &Queue) -> Done {
+    let client = Client::new(&arguments.reach)?;
+    let json = arguments.json;
+    match arguments.command.as_ref().unwrap_or(&QueueCommand::List) {
+        QueueCommand::List => list(&client, json),
+        QueueCommand::Add { plan, bench, priority, unit } => {
+            let plan = new_plan(&client, plan, bench.as_deref(), *priority, unit)?;
+            let entries: Vec<QueueEntry> = client.post("/queue", &plan)?;
+            if json {
+                return json_out(&entries);
+            }
+            entries.iter().try_for_each(|entry| show(&client, entry, false))
+        }
+        QueueCommand::Remove { entry } => changed(&client.delete(&format!("/queue/{entry}"))?, json),
+        QueueCommand::Priority { entry, priority } => {
+            let priority = QueuePriority { priority: *priority };
+            changed(&client.put(&format!("/queue/{entry}/priority"), &priority)?, json)
+        }
+        QueueCommand::Pause { bench } => switch(&client, bench.as_deref(), "pause", json),
+        QueueCommand::Resume { bench } => switch(&client, bench.as_deref(), "resume", json),
+    }
+}
+
+/// Queues a run.
+pub(super) fn add(client: &Client, new: &NewRun, key: Option<&str>) -> Result<QueueEntry, Exit> {
+    match key {
+        Some(key) => client.post_once("/runs", key, new),
+        None => client.post("/runs", new),
+    }
+}
+
+/// Prints a new entry.
+pub(super) fn show(client: &Client, entry: &QueueEntry, json: bool) -> Done {
+    if json {
+        return json_out(entry);
+    }
+    let NewRun { bench, procedure, .. } = &entry.request;
+    println!("queue entry {}: {procedure} on {bench}  {}", entry.id, client.page("/"));
+    Ok(())
+}
+
+/// Waits until an entry has left the queue, and returns its run.
+pub(super) fn run_of(client: &Client, entry: &QueueEntry) -> Result<Run, Exit> {
+    let id = entry.id;
+    let mut told = None;
+    loop {
+        let entry: QueueEntry = client.get(&format!("/queue/{id}"))?;
+        match (entry.state, entry.run) {
+            (QueueState::Started, Some(run)) => return client.get(&format!("/runs/{run}")),
+            (QueueState::Failed | QueueState::Removed, _) => {
+                let reason = entry.reason.unwrap_or_default();
+                return Err(Exit::failed(format!("queue entry {id} is {}: {reason}", word(entry.state))));
+            }
+            _ => {}
+        }
+        let state = match entry.starts_in_s {
+            Some(_) => "waits in the queue".to_owned(),
+            None => paused(client, &entry.request.bench)?,
+        };
+        if told.as_ref() != Some(&state) {
+            eprintln!("  queue entry {id}: {state}");
+            told = Some(state);
+        }
+        std::thread::sleep(POLL_INTERVAL);
+    }
+}
+
+/// Why the queue of a bench is paused.
+fn paused(client: &Client, bench: &str) -> Result<String, Exit> {
+    let queues: Vec<BenchQueue> = client.get("/queue")?;
+    let paused = queues.into_iter().find(|queue| queue.bench == bench).and_then(|queue| queue.paused);
+    Ok(match paused {
+        Some(pause) => format!("the queue is paused ({}): `jointbench queue resume {bench}`", pause.reason),
+        None => "starts".into(),
+    })
+}
+
+fn list(client: &Client, json: bool) -> Done {
+    let queues: Vec<BenchQueue> = client.get("/queue")?;
+    if json {
+        return json_out(&queues);
+    }
+    for BenchQueue { bench, paused, entries } in queues {
+        if let Some(pause) = &paused {
+            println!("{bench}: paused, {}; resume it with `jointbench queue resume {bench}`", pause.reason);
+        } else if entries.is_empty() {
+            println!("{bench}: no run waits");
+        }
+        if !entries.is_empty() {
+            print_rows(&HEAD, entries.iter().map(cells));
+        }
+    }
+    Ok(())
+}
+
+const HEAD: [&str; 7] = ["entry", "procedure", "unit", "by", "priority", "takes", "starts in"];
+
+fn cells(entry: &QueueEntry) -> [String; 7] {
+    let serial = entry.request.unit.as_ref().map(|unit| unit.serial.clone());
+    [
+        entry.id.to_string(),
+        entry.request.procedure.clone(),
+        serial.unwrap_or_else(|| "–".into()),
+        entry.by.clone(),
+        entry.priority.to_string(),
+        format!("{:.0} s", entry.planned_s),
+        entry.starts_in_s.map_or_else(|| "–".into(), |s| format!("{s:.0} s")),
+    ]
+}
+
+fn changed(entry: &QueueEntry, json: bool) -> Done {
+    if json {
+        return json_out(entry);
+    }
+    println!("queue entry {} is {}, priority {}", entry.id, word(entry.state), entry.priority);
+    Ok(())
+}
+
+fn switch(client: &Client, bench: Option<&str>, how: &str, json: bool) -> Done {
+    let bench = choose_bench(client, bench)?;
+    let queue: BenchQueue = client.post(&format!("/bench/{bench}/queue/{how}"), &())?;
+    if json {
+        return json_out(&queue);
+    }
+    let state = if queue.paused.is_some() { "paused" } else { "active" };
+    println!("the queue of {bench} is {state}: {} waiting", queue.entries.len());
+    Ok(())
+}
+
+/// A test plan: bench, unit and operator are the same for all runs.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlanFile {
+    #[serde(default)]
+    proceed_if: ProceedIf,
+    bench: Option<String>,
+    run: Vec<PlannedRun>,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlannedRun {
+    procedure: String,
+    #[serde(default)]
+    parameters: Map<String, Value>,
+    /// Limits file, relative to the test plan.
+    limits: Option<PathBuf>,
+    note: Option<String>,
+}
+
+fn new_plan(
+    client: &Client,
+    path: &Path,
+    bench: Option<&str>,
+    priority: i32,
+    tested: &UnitArguments,
+) -> Result<NewTestPlan, Exit> {
+    let file = plan_file(path, &files::read_text(path)?)?;
+    let bench = choose_bench(client, bench.or(file.bench.as_deref()))?;
+    let new = |run: PlannedRun| {
+        let limits = run.limits.map(|limits| files::read_text(&path.with_file_name(limits))).transpose()?;
+        Ok(NewRun {
+            bench: bench.clone(),
+            procedure: run.procedure,
+            parameters: run.parameters,
+            unit: unit(tested),
+            operator: tested.operator.clone(),
+            limits,
+            note: run.note,
+            ..NewRun::default()
+        })
+    };
+    let runs = file.run.into_iter().map(new).collect::<Result<_, Exit>>()?;
+    Ok(NewTestPlan { proceed_if: file.proceed_if, runs, priority })
+}
+
+fn plan_file(path: &Path, text: &str) -> Result<PlanFile, Exit> {
+    let wrong = |fault: String| Exit::bad_input(format!("{}: {fault}", path.display()));
+    match path.extension().is_some_and(|extension| extension == "json") {
+        true => serde_json::from_str(text).map_err(|fault| wrong(fault.to_string())),
+        false => toml::from_str(text).map_err(|fault| wrong(fault.to_string())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plan_is_the_same_in_toml_and_json() {
+        let toml = "proceed_if = \"pass\"\n[[run]]\nprocedure = \"friction\"\nparameters = { repeats = 3 }\nlimits = \"l.toml\"";
+        let json = r#"{"proceed_if": "pass", "run": [{"procedure": "friction", "parameters": {"repeats": 3}, "limits": "l.toml"}]}"#;
+        let plan = plan_file(Path::new("plan.toml"), toml).unwrap();
+        assert_eq!(plan, plan_file(Path::new("plan.json"), json).unwrap());
+        assert_eq!((plan.proceed_if, plan.run[0].parameters["repeats"].as_i64()), (ProceedIf::Pass, Some(3)));
+        let wrong = plan_file(Path::new("plan.toml"), "[[run]]\nprocedure = \"friction\"\nrepeats = 3").unwrap_err();
+        assert!(
+            wrong.code == 2 && wrong.message.contains("plan.toml") && wrong.message.contains("repeats"),
+            "{}",
+            wrong.message
+        );
+    }
+}

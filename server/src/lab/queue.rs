@@ -1,0 +1,366 @@
+//! Queues: one for each bench. A waiting run starts when the bench is free, with the same checks as any other run.
+//!
+//! The queue proceeds only after a completed run. It pauses when a run ended in another way, when the bench is not
+//! ready, and at the start of the daemon: nothing moves until a person or a script resumes it.
+
+use super::computation::with_retries;
+use super::leases::checked_lease;
+use super::names::{LONGEST_NAME, LONGEST_NOTE, checked, checked_text};
+use super::units::TestedUnit;
+use super::{Answer, Lab, LabError};
+use crate::bench::BenchHandle;
+use crate::store::{NewQueueEntry, QueueRecord};
+use crate::view::{
+    BenchQueue, LimitOutcome, LiveMessage, NewRun, NewTestPlan, ProceedIf, QueueEntry, QueuePause, QueueState, reread,
+    word,
+};
+use jointbench_procedure::RunState;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+use tokio::sync::Notify;
+use tokio::task::JoinSet;
+
+/// Limit of the waiting entries of a bench.
+const MOST_WAITING: usize = 500;
+/// Limit of the runs of a plan.
+const MOST_RUNS: usize = 100;
+/// Waiting time after a fault of the store.
+const AGAIN: Duration = Duration::from_secs(1);
+const RESTARTED: &str = "the daemon was restarted: inspect the bench, then resume the queue";
+const NOT_STARTED: &str = "the daemon terminated while it started this run: queue it again";
+
+/// Wakes the tasks of the queues.
+#[derive(Default)]
+pub(super) struct Queues {
+    changed: HashMap<String, Arc<Notify>>,
+    tasks: Mutex<JoinSet<()>>,
+}
+
+impl Queues {
+    pub fn new<'b>(benches: impl Iterator<Item = &'b BenchHandle>) -> Self {
+        Self { changed: benches.map(|bench| (bench.name().to_owned(), Arc::default())).collect(), ..Self::default() }
+    }
+
+    /// The queue, its pause or the use of the bench has changed.
+    pub fn notify(&self, bench: &str) {
+        self.changed.get(bench).inspect(|changed| changed.notify_one());
+    }
+
+    /// Ends all queues; the waiting entries are kept.
+    pub fn abort(&self) {
+        self.tasks.lock().unwrap_or_else(PoisonError::into_inner).abort_all();
+    }
+}
+
+impl Lab {
+    /// Starts the task of each queue. Queues with waiting entries are paused.
+    pub(super) async fn open_queues(&self) -> Answer<()> {
+        self.inner.store.hold_queues(RESTARTED, NOT_STARTED).await?;
+        let mut tasks = self.inner.queues.tasks.lock().unwrap_or_else(PoisonError::into_inner);
+        for bench in &self.inner.benches {
+            tasks.spawn(self.clone().serve_queue(bench.clone()));
+        }
+        Ok(())
+    }
+
+    /// Appends a run to the queue of its bench. A repeated request with the same key returns its first entry.
+    pub async fn enqueue(&self, new: &NewRun, key: Option<&str>, by: &str) -> Answer<QueueEntry> {
+        let key = key.map(|key| checked("Idempotency-Key", key, LONGEST_NAME)).transpose()?;
+        let mut entry = self.checked_entry(new, ProceedIf::Completed, new.priority, by).await?;
+        if let Some(key) = key {
+            if let Some(known) = self.inner.store.queue_entry_with_key(key).await? {
+                return match known.new.request == entry.request {
+                    true => queue_entry(known, None),
+                    false => Err(LabError::Conflict(format!(
+                        "Idempotency-Key {key} belongs to another request (queue entry {}): use a new key",
+                        known.id
+                    ))),
+                };
+            }
+            entry.key = Some(key.to_owned());
+        }
+        let ids = self.append(&new.bench, vec![entry]).await?;
+        queue_entry(self.inner.store.queue_entry(ids[0]).await?, None)
+    }
+
+    /// Appends the runs of a plan, all or none.
+    pub async fn enqueue_plan(&self, plan: &NewTestPlan, by: &str) -> Answer<Vec<QueueEntry>> {
+        let bench = match plan.runs.as_slice() {
+            [first, ..] if plan.runs.len() <= MOST_RUNS => first.bench.clone(),
+            _ => return Err(LabError::Invalid(format!("runs: give 1 to {MOST_RUNS}"))),
+        };
+        let mut entries = Vec::new();
+        for (i, run) in plan.runs.iter().enumerate() {
+            if run.bench != bench {
+                return Err(LabError::Invalid(format!("run {}: a test plan uses one bench, {bench}", i + 1)));
+            }
+            let entry = self.checked_entry(run, plan.proceed_if, plan.priority, by).await;
+            entries.push(entry.map_err(|fault| in_run(i, fault))?);
+        }
+        let ids = self.append(&bench, entries).await?;
+        let mut made = Vec::new();
+        for id in ids {
+            made.push(queue_entry(self.inner.store.queue_entry(id).await?, None)?);
+        }
+        Ok(made)
+    }
+
+    async fn append(&self, bench: &str, entries: Vec<NewQueueEntry>) -> Answer<Vec<i64>> {
+        let waiting = self.inner.store.waiting(bench).await?.len();
+        if waiting + entries.len() > MOST_WAITING {
+            return Err(LabError::Conflict(format!(
+                "the queue of bench {bench} holds {waiting} of at most {MOST_WAITING} runs: wait, or remove some"
+            )));
+        }
+        let ids = self.inner.store.enqueue(&entries).await?;
+        self.queue_changed(bench);
+        Ok(ids)
+    }
+
+    /// Refuses now what would be refused at the start.
+    async fn checked_entry(
+        &self,
+        new: &NewRun,
+        proceed_if: ProceedIf,
+        priority: i32,
+        by: &str,
+    ) -> Answer<NewQueueEntry> {
+        TestedUnit::of(new)?;
+        new.note.as_deref().map(|note| checked_text("note", note, LONGEST_NOTE)).transpose()?;
+        checked_lease(new.lease_s)?;
+        let (bench, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
+        if let Some(failed) = plan.preview(&bench.facts()).checks.into_iter().find(|check| !check.ok) {
+            return Err(LabError::Invalid(format!("the plan was rejected: {}: {}", failed.name, failed.refusal())));
+        }
+        Ok(NewQueueEntry {
+            bench: new.bench.clone(),
+            proceed_if: word(proceed_if),
+            request: reread(&NewRun { queue: false, priority: 0, ..new.clone() })?,
+            who: by.to_owned(),
+            priority,
+            planned_s: plan.duration_s() / bench.description().pace().unwrap_or(1.0),
+            key: None,
+        })
+    }
+
+    pub async fn queues(&self) -> Answer<Vec<BenchQueue>> {
+        let mut queues = Vec::new();
+        for bench in &self.inner.benches {
+            queues.push(self.queue(bench.name()).await?);
+        }
+        Ok(queues)
+    }
+
+    pub async fn queue(&self, bench: &str) -> Answer<BenchQueue> {
+        let status = self.handle(bench)?.status();
+        let pause = self.inner.store.queue_pause(bench).await?;
+        let mut starts_in_s = status.progress.map_or(0.0, |progress| progress.remaining_s);
+        let mut entries = Vec::new();
+        for record in self.inner.store.waiting(bench).await? {
+            let planned_s = record.new.planned_s;
+            entries.push(queue_entry(record, pause.is_none().then_some(starts_in_s))?);
+            starts_in_s += planned_s;
+        }
+        let paused = pause.map(|(reason, since)| QueuePause { reason, since });
+        Ok(BenchQueue { bench: bench.to_owned(), paused, entries })
+    }
+
+    /// An entry, also after it has left the queue.
+    pub async fn queue_entry(&self, id: i64) -> Answer<QueueEntry> {
+        let entry = queue_entry(self.inner.store.queue_entry(id).await?, None)?;
+        let queue = self.queue(&entry.request.bench).await;
+        let waiting = queue.ok().and_then(|queue| queue.entries.into_iter().find(|waiting| waiting.id == id));
+        Ok(waiting.unwrap_or(entry))
+    }
+
+    pub async fn prioritise(&self, id: i64, priority: i32) -> Answer<QueueEntry> {
+        let entry = self.queue_entry(id).await?;
+        if !self.inner.store.set_queue_priority(id, priority).await? {
+            return Err(has_left(&entry));
+        }
+        self.queue_changed(&entry.request.bench);
+        self.queue_entry(id).await
+    }
+
+    pub async fn remove_from_queue(&self, id: i64, by: &str) -> Answer<QueueEntry> {
+        let entry = self.queue_entry(id).await?;
+        let (waiting, removed) = (word(QueueState::Waiting), word(QueueState::Removed));
+        let reason = format!("removed by {by}");
+        if !self.inner.store.set_queue_state(id, &waiting, &removed, Some(&reason)).await? {
+            return Err(has_left(&self.queue_entry(id).await?));
+        }
+        self.queue_changed(&entry.request.bench);
+        self.queue_entry(id).await
+    }
+
+    /// No further entry starts; the active run continues.
+    pub async fn pause_queue(&self, bench: &str, by: &str) -> Answer<BenchQueue> {
+        self.handle(bench)?;
+        self.hold_queue(bench, &format!("paused by {by}")).await?;
+        self.queue(bench).await
+    }
+
+    pub async fn resume_queue(&self, bench: &str, by: &str) -> Answer<BenchQueue> {
+        self.handle(bench)?;
+        tracing::info!(bench, by, "queue resumed");
+        self.inner.store.resume_queue(bench).await?;
+        self.queue_changed(bench);
+        self.queue(bench).await
+    }
+
+    async fn hold_queue(&self, bench: &str, reason: &str) -> Answer<()> {
+        tracing::info!(bench, reason, "queue paused");
+        self.inner.store.pause_queue(bench, reason).await?;
+        self.queue_changed(bench);
+        Ok(())
+    }
+
+    fn queue_changed(&self, bench: &str) {
+        self.inner.queues.notify(bench);
+        self.hub().publish(LiveMessage::Queue { bench: bench.to_owned() });
+    }
+
+    /// The task of one queue. Observes every run of the bench, also those that did not wait.
+    async fn serve_queue(self, bench: BenchHandle) {
+        let Some(changed) = self.inner.queues.changed.get(bench.name()).cloned() else { return };
+        let mut last = None;
+        loop {
+            last = bench.status().runs.last_key_value().map(|(run, _)| *run).or(last);
+            bench.until_free().await;
+            let done = match last {
+                Some(run) => self.after_run(&bench, run).await,
+                None => Ok(()),
+            };
+            let next = match done {
+                Ok(()) => {
+                    last = None;
+                    self.start_next(&bench).await
+                }
+                Err(fault) => Err(fault),
+            };
+            match next {
+                Ok(Some(run)) => last = Some(run),
+                Ok(None) => tokio::select! {
+                    () = changed.notified() => {}
+                    () = bench.until_busy() => {}
+                },
+                Err(fault) => {
+                    tracing::error!(bench = bench.name(), %fault, "the queue waits");
+                    tokio::time::sleep(AGAIN).await;
+                }
+            }
+        }
+    }
+
+    /// Decides after a run whether its plan and the queue proceed.
+    async fn after_run(&self, bench: &BenchHandle, run: i64) -> Answer<()> {
+        let record = self.inner.store.run(run).await?;
+        if let Some(entry) = self.inner.store.queue_entry_of_run(run).await?
+            && let Some(plan) = entry.plan
+            && let Some(reason) = self.ends_plan(run, record.state, reread(&entry.new.proceed_if)?).await?
+        {
+            self.inner.store.remove_rest_of_plan(plan, &reason).await?;
+            self.queue_changed(bench.name());
+        }
+        let proceeds = record.state == RunState::Completed || self.inner.leases.has_expired(run);
+        if !proceeds && !self.inner.store.waiting(bench.name()).await?.is_empty() {
+            self.hold_queue(bench.name(), &format!("run {run} is {}: inspect the bench, then resume", record.state))
+                .await?;
+        }
+        Ok(())
+    }
+
+    /// Why a plan does not proceed after this run.
+    async fn ends_plan(&self, run: i64, state: RunState, proceed_if: ProceedIf) -> Answer<Option<String>> {
+        if state != RunState::Completed {
+            return Ok(Some(format!("run {run} of the test plan is {state}")));
+        }
+        if proceed_if == ProceedIf::Completed {
+            return Ok(None);
+        }
+        let found = match with_retries(|| self.identification(run)).await {
+            Ok(found) => found,
+            Err(fault) => return Ok(Some(format!("run {run} of the test plan has no result: {fault}"))),
+        };
+        let verdict = found.result.verdict;
+        if !verdict.is_identified() {
+            return Ok(Some(format!("run {run} of the test plan is {}", word(verdict))));
+        }
+        let worst = found.limits.map(|check| check.outcome).filter(|worst| *worst != LimitOutcome::Pass);
+        Ok(worst
+            .filter(|_| proceed_if == ProceedIf::Pass)
+            .map(|worst| format!("the limits of run {run} of the test plan are not met: {}", word(worst))))
+    }
+
+    /// Starts the first waiting entry, if the queue is not paused and no autopilot uses the bench.
+    async fn start_next(&self, bench: &BenchHandle) -> Answer<Option<i64>> {
+        let name = bench.name();
+        if self.inner.store.queue_pause(name).await?.is_some() || self.active_autopilot(name).is_some() {
+            return Ok(None);
+        }
+        let Some(entry) = self.inner.store.waiting(name).await?.into_iter().next() else { return Ok(None) };
+        let (id, plan) = (entry.id, entry.plan);
+        let (waiting, started) = (word(QueueState::Waiting), word(QueueState::Started));
+        // A daemon that ends between here and the start of the run does not start it again.
+        if !self.inner.store.set_queue_state(id, &waiting, &started, None).await? {
+            return Ok(None);
+        }
+        let request: NewRun = reread(&entry.new.request)?;
+        let run = match self.start_run(&request, &entry.new.who).await {
+            Ok(run) => run.summary.id,
+            Err(fault @ (LabError::Conflict(_) | LabError::Busy(_) | LabError::Bench(_))) => {
+                self.inner.store.set_queue_state(id, &started, &waiting, None).await?;
+                // Another run has started in the meantime: the queue waits for its end.
+                if !bench.is_busy() {
+                    self.hold_queue(name, &fault.to_string()).await?;
+                }
+                return Ok(None);
+            }
+            Err(fault) => {
+                let failed = word(QueueState::Failed);
+                self.inner.store.set_queue_state(id, &started, &failed, Some(&fault.to_string())).await?;
+                if let Some(plan) = plan {
+                    let reason = format!("queue entry {id} of the test plan could not start");
+                    self.inner.store.remove_rest_of_plan(plan, &reason).await?;
+                }
+                self.queue_changed(name);
+                return Ok(None);
+            }
+        };
+        self.inner.store.set_queue_run(id, run).await?;
+        self.queue_changed(name);
+        Ok(Some(run))
+    }
+}
+
+fn in_run(i: usize, fault: LabError) -> LabError {
+    match fault {
+        LabError::Invalid(why) => LabError::Invalid(format!("run {} of the test plan: {why}", i + 1)),
+        LabError::NotFound(what) => LabError::NotFound(format!("run {} of the test plan: {what}", i + 1)),
+        other => other,
+    }
+}
+
+fn has_left(entry: &QueueEntry) -> LabError {
+    let run = entry.run.map(|run| format!(" as run {run}")).unwrap_or_default();
+    LabError::Over(format!("queue entry {} does not wait any more: it is {}{run}", entry.id, word(entry.state)))
+}
+
+fn queue_entry(record: QueueRecord, starts_in_s: Option<f64>) -> Answer<QueueEntry> {
+    Ok(QueueEntry {
+        id: record.id,
+        plan: record.plan,
+        proceed_if: reread(&record.new.proceed_if)?,
+        request: reread(&record.new.request)?,
+        by: record.new.who,
+        priority: record.new.priority,
+        state: reread(&record.state)?,
+        planned_s: record.new.planned_s,
+        starts_in_s,
+        run: record.run,
+        reason: record.reason,
+        created_at: record.created_at,
+        ended_at: record.ended_at,
+    })
+}
