@@ -40,7 +40,7 @@ pub struct ControlChartQuery {
     pub quantity: Option<String>,
 }
 
-/// What changed since the previous run of the same unit, beside the scatter of its earlier runs; `null` for the first run
+/// What changed since the previous run of the same unit, and the scatter of its earlier runs; `null` for the first run, and for one that is not complete
 #[utoipa::path(get, path = "/runs/{id}/changes", operation_id = "get_unit_changes", tag = "runs", params(("id" = i64, Path, description = "Complete run of a unit")),
     responses((status = 200, description = "The changes", body = Option<UnitChanges>), Refusals))]
 pub async fn changes(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Option<UnitChanges>> {

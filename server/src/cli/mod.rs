@@ -24,6 +24,7 @@ mod ports;
 mod print;
 mod progress;
 mod queue;
+mod queue_entry;
 mod reproduce;
 mod run;
 mod runs;

@@ -5,10 +5,10 @@ use super::client::Client;
 use super::exit::{Done, Exit};
 use super::files;
 use super::offline::json_out;
+use super::queue_entry::show;
 use super::run::{choose_bench, unit};
 use super::units::print_rows;
-use super::waiting::POLL_INTERVAL;
-use crate::view::{BenchQueue, NewRun, NewTestPlan, ProceedIf, QueueEntry, QueuePriority, QueueState, Run, word};
+use crate::view::{BenchQueue, NewRun, NewTestPlan, ProceedIf, QueueEntry, QueuePriority, word};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
@@ -34,60 +34,6 @@ pub fn queue(arguments: &Queue) -> Done {
         QueueCommand::Pause { bench } => switch(&client, bench.as_deref(), "pause", json),
         QueueCommand::Resume { bench } => switch(&client, bench.as_deref(), "resume", json),
     }
-}
-
-/// Queues a run.
-pub(super) fn add(client: &Client, new: &NewRun, key: Option<&str>) -> Result<QueueEntry, Exit> {
-    match key {
-        Some(key) => client.post_once("/runs", key, new),
-        None => client.post("/runs", new),
-    }
-}
-
-/// Prints a new entry.
-pub(super) fn show(client: &Client, entry: &QueueEntry, json: bool) -> Done {
-    if json {
-        return json_out(entry);
-    }
-    let NewRun { bench, procedure, .. } = &entry.request;
-    println!("queue entry {}: {procedure} on {bench}  {}", entry.id, client.page("/"));
-    Ok(())
-}
-
-/// Waits until an entry has left the queue, and returns its run.
-pub(super) fn run_of(client: &Client, entry: &QueueEntry) -> Result<Run, Exit> {
-    let id = entry.id;
-    let mut told = None;
-    loop {
-        let entry: QueueEntry = client.get(&format!("/queue/{id}"))?;
-        match (entry.state, entry.run) {
-            (QueueState::Started, Some(run)) => return client.get(&format!("/runs/{run}")),
-            (QueueState::Failed | QueueState::Removed, _) => {
-                let reason = entry.reason.unwrap_or_default();
-                return Err(Exit::failed(format!("queue entry {id} is {}: {reason}", word(entry.state))));
-            }
-            _ => {}
-        }
-        let state = match entry.starts_in_s {
-            Some(_) => "waits in the queue".to_owned(),
-            None => paused(client, &entry.request.bench)?,
-        };
-        if told.as_ref() != Some(&state) {
-            eprintln!("  queue entry {id}: {state}");
-            told = Some(state);
-        }
-        std::thread::sleep(POLL_INTERVAL);
-    }
-}
-
-/// Why the queue of a bench is paused.
-fn paused(client: &Client, bench: &str) -> Result<String, Exit> {
-    let queues: Vec<BenchQueue> = client.get("/queue")?;
-    let paused = queues.into_iter().find(|queue| queue.bench == bench).and_then(|queue| queue.paused);
-    Ok(match paused {
-        Some(pause) => format!("the queue is paused ({}): `jointbench queue resume {bench}`", pause.reason),
-        None => "starts".into(),
-    })
 }
 
 fn list(client: &Client, json: bool) -> Done {

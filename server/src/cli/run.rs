@@ -5,7 +5,7 @@ use super::client::Client;
 use super::exit::{Done, Exit};
 use super::outcome::{Found, title};
 use super::waiting::{lost, notify_on_interrupt, wait_at_most};
-use super::{files, identify, queue};
+use super::{files, identify, queue_entry};
 use crate::limits::{self, Case, CaseOutcome, Measured, Outcome, Requirement};
 use crate::view::{Bench, Identification, LimitOutcome, NewRun, Run, RunState, Unit, word};
 use jointbench_procedure::procedure;
@@ -16,8 +16,8 @@ pub fn run(arguments: &Arguments) -> Done {
     arguments.junit.iter().try_for_each(|path| files::writable(path))?;
     let new = limits_text(&client, arguments).and_then(|limits| new_run(&client, arguments, limits));
     if arguments.queue && !arguments.waits() {
-        let entry = queue::add(&client, &new?, arguments.key.as_deref())?;
-        return queue::show(&client, &entry, arguments.json);
+        let entry = queue_entry::add(&client, &new?, arguments.key.as_deref())?;
+        return queue_entry::show(&client, &entry, arguments.json);
     }
     let ended = new.and_then(|new| start(&client, arguments, new));
     let found =
@@ -175,7 +175,9 @@ fn start(client: &Client, arguments: &Arguments, new: NewRun) -> Result<Run, Exi
             }
             client.post(&format!("/runs/{before}/continue"), &())?
         }
-        None if arguments.queue => queue::run_of(client, &queue::add(client, &new, arguments.key.as_deref())?)?,
+        None if arguments.queue => {
+            queue_entry::run_of(client, &queue_entry::add(client, &new, arguments.key.as_deref())?)?
+        }
         None => client.post("/runs", &new)?,
     };
     let (id, procedure, bench) = (run.summary.id, &run.summary.procedure, &run.summary.bench);

@@ -344,7 +344,7 @@ fn in_run(i: usize, fault: LabError) -> LabError {
 
 fn has_left(entry: &QueueEntry) -> LabError {
     let run = entry.run.map(|run| format!(" as run {run}")).unwrap_or_default();
-    LabError::Over(format!("queue entry {} does not wait any more: it is {}{run}", entry.id, word(entry.state)))
+    LabError::Over(format!("queue entry {} no longer waits: it is {}{run}", entry.id, word(entry.state)))
 }
 
 fn queue_entry(record: QueueRecord, starts_in_s: Option<f64>) -> Answer<QueueEntry> {

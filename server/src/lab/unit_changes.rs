@@ -23,10 +23,11 @@ struct EarlierRun {
 }
 
 impl Lab {
-    /// `None` if the run has no unit, or no earlier complete run of its unit and procedure exists.
+    /// `None` if the run is not complete or has no unit, or no earlier complete run of its unit and procedure exists.
     pub async fn unit_changes(&self, id: i64) -> Answer<Option<UnitChanges>> {
         let record = self.inner.store.run(id).await?;
-        let Some(unit) = record.unit.clone() else { return Ok(None) };
+        let unit = record.unit.clone().filter(|_| record.state == RunState::Completed);
+        let Some(unit) = unit else { return Ok(None) };
         let runs = self.inner.store.runs_of_unit(&unit.serial).await?;
         let is_earlier = |run: &&UnitRunRecord| {
             run.run < id && run.procedure == record.procedure && run.state == RunState::Completed

@@ -65,7 +65,7 @@ pub struct QueuePause {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct BenchQueue {
     pub bench: String,
-    /// No entry starts until somebody resumes the queue; an active run is not affected.
+    /// No entry starts until a person or a script resumes the queue; an active run is not affected.
     pub paused: Option<QueuePause>,
     /// The waiting entries, in the order in which they start.
     pub entries: Vec<QueueEntry>,
