@@ -39,7 +39,7 @@ async function shoot(page, name) {
 await runStory(`screens in ${folder}`, async () => {
 	const { browser, page, faults } = await open(where);
 	await page.goto(where.base);
-	await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 20_000 });
+	await page.waitForFunction(() => document.querySelector('.go .primary:enabled'), null, { timeout: 20_000 });
 	await shoot(page, 'bench');
 
 	const run = await startRun(page, where.base);
@@ -121,7 +121,7 @@ await runStory(`screens in ${folder}`, async () => {
 		await shoot(page, path);
 	}
 	await page.goto(where.base);
-	await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 20_000 });
+	await page.waitForFunction(() => document.querySelector('.go .primary:enabled'), null, { timeout: 20_000 });
 	await page.keyboard.press('?');
 	await page.getByRole('dialog').waitFor();
 	await shoot(page, 'help');

@@ -20,7 +20,7 @@ export async function startRun(page, base, settings = '') {
 	await page.goto(`${base}/${settings}`);
 	const start = page.getByRole('button', { name: 'Start' });
 	try {
-		await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 30_000 });
+		await page.waitForFunction(() => document.querySelector('.go .primary:enabled'), null, { timeout: 30_000 });
 	} catch {
 		const reason = await page.locator('#start-reason').textContent({ timeout: 500 }).catch(() => 'the page has no Start');
 		expect(false, `Start stays disabled: ${reason}`);
@@ -186,7 +186,7 @@ export async function firstUse(page, base) {
 	const answer = await page.goto(base);
 	await page.getByText('No run yet. Start a procedure, or bring a measurement.').waitFor({ timeout: 30_000 });
 	await page.getByRole('button', { name: 'Start a demo run' }).waitFor({ timeout: 30_000 });
-	await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 30_000 });
+	await page.waitForFunction(() => document.querySelector('.go .primary:enabled'), null, { timeout: 30_000 });
 	const jumps = await layoutShiftOf(page);
 	const started = page.waitForRequest((request) => request.method() === 'POST' && request.url().endsWith('/runs'), { timeout: 1000 });
 	await page.locator('.fields input').first().press('Enter');
@@ -239,7 +239,7 @@ export async function loseAndRestoreContact(another, base) {
 	const page = await another(line.base, faults);
 	await page.goto(line.base);
 	const start = page.getByRole('button', { name: 'Start' });
-	await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 30_000 });
+	await page.waitForFunction(() => document.querySelector('.go .primary:enabled'), null, { timeout: 30_000 });
 	await line.cut();
 	await page.getByText('NO CONTACT').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the page does not say that the daemon is gone'));
 	expect(await start.isDisabled(), 'a run can be started without a daemon');
@@ -302,7 +302,7 @@ export async function resetStopped(page, base) {
 		await held.getByLabel('I have looked at the bench').check();
 		await reset.click();
 		await held.waitFor({ state: 'detached', timeout: 30_000 });
-		await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 30_000 });
+		await page.waitForFunction(() => document.querySelector('.go .primary:enabled'), null, { timeout: 30_000 });
 		await page.goto(`${base}/log`);
 		await page.getByText('walked past (local)').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the log does not show the reset, and by whom'));
 	}

@@ -5,7 +5,7 @@
 // steps, derived channels, X–Y, spectrum), tokens, an observer, the log, and results of several procedures.
 // Workbench: the recommended run, regions of residuals, the residual map and its file, exclusions, suggestions tried and added, undo,
 // comparisons, a version from another client, REST, a user's effect, autopilots, and an effect removed and added again.
-// Bench: the software stop by keyboard, before any script is loaded, and its reset; a result applied to a bench and reverted.
+// Bench: the queue, the software stop by keyboard, before any script is loaded, and its reset; a result applied to a bench and reverted.
 // Runs: searches, sorting, base run, saved views, imports, comparisons, trends, models of several runs, and ten thousand runs.
 //
 // No page may break a rule of axe. Exits with 1 and a sentence if a check fails.
@@ -15,6 +15,7 @@ import { audit } from './audit.mjs';
 import { openUnknownVersion, reimportRun, byKeyboard, dashesOf, saveListView, openManyRuns, openTogether, readResults, showEarlier, exportRun, exportMap, countCurves, zoomWhileFollowing } from './checks.mjs';
 import { FOREIGN, importForeign } from './files.mjs';
 import { analyse, compareChannels, followTrend, goToSteps, hideChannel, openTradeOffs, changeMapColours, stopEarly } from './plots.mjs';
+import { useQueue } from './queue.mjs';
 import { WITHOUT_LOAD, brush, compareVersions, excludeAndUndo, firstUse, startAndStopAutopilot, runAutopilotToEnd, loseAndRestoreContact, makeRun, measureNext, runningAnimations, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, waitForOtherVersion, tryAndDrop, watchRun, writeEffect, zoomOnePlot } from './steps.mjs';
 import { applyAndGoBack, makeAndRevoke } from './settings.mjs';
 
@@ -220,6 +221,9 @@ await runStory('walk', async () => {
 	const shown = await readResults(page, where.base, RESULTS);
 	console.log(`results read: ${shown.join(', ')}`);
 	await applyAndGoBack(page, where.base, await makeRun(where.base, 'brake_hysteresis', SLOW));
+
+	const { runs: queued } = await rest(`/runs?search=${await useQueue(page, where.base)}`);
+	expect(queued.length === 1, `${queued.length} runs of the queue exist, not one`);
 
 	await showEarlier(page, where.base);
 

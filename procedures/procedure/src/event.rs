@@ -18,7 +18,7 @@ pub enum Safe {
     UnsafeUnknown,
 }
 
-/// Controls of a run; all but the last two come from a person.
+/// Controls of a run; all but the last three come from a person.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {
@@ -34,6 +34,8 @@ pub enum Control {
     /// Drive torque off first.
     #[serde(rename = "estop")]
     EStop,
+    /// The client of the run is gone: as `Stop`.
+    Abandon,
     /// The process that owns the run is terminated: as `Abort`.
     Quit,
     /// The process that stores the run has died: as `Abort`, and the run counts as interrupted.

@@ -1,11 +1,14 @@
 //! Queues: runs that wait for their bench. A single run enters with `POST /runs`.
 
 use super::extract::{Answer, Created, Json, Path, created};
+use super::problem::Problem;
 use super::refusals::Refusals;
+use super::runs::IDEMPOTENCY_KEY;
 use crate::lab::{Caller, Lab};
-use crate::view::{BenchQueue, NewTestPlan, QueueEntry, QueuePriority};
+use crate::view::{BenchQueue, Lease, NewTestPlan, QueueEntry, QueuePriority};
 use axum::Extension;
 use axum::extract::State;
+use axum::http::HeaderMap;
 
 /// The queues of all benches with their waiting entries
 #[utoipa::path(get, path = "/queue", operation_id = "list_queues", tag = "queue",
@@ -20,8 +23,14 @@ pub async fn list(State(lab): State<Lab>) -> Answer<Vec<BenchQueue>> {
 pub async fn add_plan(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,
+    headers: HeaderMap,
     Json(plan): Json<NewTestPlan>,
 ) -> Created<Vec<QueueEntry>> {
+    if headers.contains_key(IDEMPOTENCY_KEY) {
+        return Err(Problem::malformed(
+            "Idempotency-Key is for single runs (POST /runs): look for the plan with GET /queue",
+        ));
+    }
     created(lab.enqueue_plan(&plan, &caller.name).await?)
 }
 
@@ -45,7 +54,15 @@ pub async fn remove(
     Ok(Json(lab.remove_from_queue(id, &caller.name).await?))
 }
 
-/// Changes the priority of a waiting entry
+/// Renews the lease of a waiting entry
+#[utoipa::path(post, path = "/queue/{id}/lease", operation_id = "renew_queue_lease", tag = "queue",
+    params(("id" = i64, Path, description = "Entry")),
+    responses((status = 200, description = "The renewed lease", body = Lease), Refusals))]
+pub async fn renew_lease(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Lease> {
+    Ok(Json(lab.renew_entry_lease(id).await?))
+}
+
+/// Changes the priority of a waiting entry, and of its test plan
 #[utoipa::path(put, path = "/queue/{id}/priority", operation_id = "set_queue_priority", tag = "queue", request_body = QueuePriority,
     params(("id" = i64, Path, description = "Entry")),
     responses((status = 200, description = "The entry", body = QueueEntry), Refusals))]

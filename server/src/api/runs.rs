@@ -45,7 +45,7 @@ pub async fn list(State(lab): State<Lab>, Query(query): Query<RunQuery>) -> Answ
     }))
 }
 
-const IDEMPOTENCY_KEY: &str = "idempotency-key";
+pub(super) const IDEMPOTENCY_KEY: &str = "idempotency-key";
 
 /// Plans a procedure, checks it against the limits and starts it; with `queue` when the bench is free
 #[utoipa::path(post, path = "/runs", operation_id = "start_run", tag = "runs", request_body = NewRun,
@@ -64,8 +64,8 @@ pub async fn start(
         let entry = lab.enqueue(&new, key, &caller.name).await?;
         return Ok((StatusCode::ACCEPTED, Json(entry)).into_response());
     }
-    if key.is_some() {
-        return Err(Problem::malformed("Idempotency-Key needs \"queue\": true"));
+    if key.is_some() || new.priority != 0 {
+        return Err(Problem::malformed("Idempotency-Key and priority need \"queue\": true"));
     }
     Ok(created(lab.start_run(&new, &caller.name).await?)?.into_response())
 }

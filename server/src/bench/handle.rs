@@ -83,6 +83,17 @@ impl BenchHandle {
         self.shared.status.subscribe()
     }
 
+    /// [`BenchError::Busy`] if no run may start until a person resets the bench.
+    pub fn check_not_blocked(&self) -> Result<(), BenchError> {
+        let Some(block) = self.status().blocked else { return Ok(()) };
+        let (name, word) = (self.name(), if block.stopped { "stopped" } else { "blocked" });
+        Err(BenchError::Busy(format!(
+            "bench {name} is {word}: {}. Inspect the bench, then reset it with a reason in the dashboard or with \
+             `jointbench reset {name} --reason '…'`",
+            block.reason
+        )))
+    }
+
     /// Data for planning, independent of whether the instruments are open.
     pub fn facts(&self) -> BenchFacts {
         facts(&self.shared.description)

@@ -2,6 +2,7 @@
 
 use super::exit::{Done, Exit};
 use jointbench_files::FileFault;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -42,6 +43,20 @@ pub fn writable(path: &Path) -> Done {
 
 pub fn read(path: &Path) -> Result<Vec<u8>, Exit> {
     fs::read(path).map_err(|fault| unread(path, fault))
+}
+
+/// Largest file that a person writes [bytes].
+const SHORT: u64 = 1 << 20;
+
+/// The text of a file that a person has written.
+pub fn read_short_text(path: &Path) -> Result<String, Exit> {
+    let mut text = String::new();
+    let file = fs::File::open(path).map_err(|fault| unread(path, fault))?;
+    file.take(SHORT + 1).read_to_string(&mut text).map_err(|fault| unread(path, fault))?;
+    match text.len() as u64 > SHORT {
+        true => Err(Exit::bad_input(format!("{}: longer than 1 MiB", path.display()))),
+        false => Ok(text),
+    }
 }
 
 pub fn read_text(path: &Path) -> Result<String, Exit> {

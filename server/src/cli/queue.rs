@@ -8,7 +8,7 @@ use super::offline::json_out;
 use super::queue_entry::show;
 use super::run::{choose_bench, unit};
 use super::units::print_rows;
-use crate::view::{BenchQueue, NewRun, NewTestPlan, ProceedIf, QueueEntry, QueuePriority, word};
+use crate::view::{Bench, BenchQueue, NewRun, NewTestPlan, ProceedIf, QueueEntry, QueuePriority, QueueState, word};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
@@ -42,10 +42,12 @@ fn list(client: &Client, json: bool) -> Done {
         return json_out(&queues);
     }
     for BenchQueue { bench, paused, entries } in queues {
+        let state: Bench = client.get(&format!("/bench/{bench}"))?;
+        let on = state.run.map(|run| format!("run {run} is on, ")).unwrap_or_default();
+        let waiting = if entries.is_empty() { "no run waits".to_owned() } else { format!("{} waiting", entries.len()) };
+        println!("{bench}: {on}{waiting}");
         if let Some(pause) = &paused {
-            println!("{bench}: paused, {}; resume it with `jointbench queue resume {bench}`", pause.reason);
-        } else if entries.is_empty() {
-            println!("{bench}: no run waits");
+            println!("paused: {}; `jointbench queue resume {bench}` starts the next run", pause.reason);
         }
         if !entries.is_empty() {
             print_rows(&HEAD, entries.iter().map(cells));
@@ -57,10 +59,11 @@ fn list(client: &Client, json: bool) -> Done {
 const HEAD: [&str; 7] = ["entry", "procedure", "unit", "by", "priority", "takes", "starts in"];
 
 fn cells(entry: &QueueEntry) -> [String; 7] {
+    let procedure = &entry.request.procedure;
     let serial = entry.request.unit.as_ref().map(|unit| unit.serial.clone());
     [
         entry.id.to_string(),
-        entry.request.procedure.clone(),
+        entry.plan.map_or_else(|| procedure.clone(), |plan| format!("{procedure} (plan {plan})")),
         serial.unwrap_or_else(|| "–".into()),
         entry.by.clone(),
         entry.priority.to_string(),
@@ -73,7 +76,10 @@ fn changed(entry: &QueueEntry, json: bool) -> Done {
     if json {
         return json_out(entry);
     }
-    println!("queue entry {} is {}, priority {}", entry.id, word(entry.state), entry.priority);
+    match entry.state {
+        QueueState::Waiting => println!("queue entry {} has priority {}", entry.id, entry.priority),
+        state => println!("queue entry {} is {}", entry.id, word(state)),
+    }
     Ok(())
 }
 
@@ -116,10 +122,10 @@ fn new_plan(
     priority: i32,
     tested: &UnitArguments,
 ) -> Result<NewTestPlan, Exit> {
-    let file = plan_file(path, &files::read_text(path)?)?;
+    let file = plan_file(path, &files::read_short_text(path)?)?;
     let bench = choose_bench(client, bench.or(file.bench.as_deref()))?;
     let new = |run: PlannedRun| {
-        let limits = run.limits.map(|limits| files::read_text(&path.with_file_name(limits))).transpose()?;
+        let limits = run.limits.map(|limits| files::read_short_text(&path.with_file_name(limits))).transpose()?;
         Ok(NewRun {
             bench: bench.clone(),
             procedure: run.procedure,

@@ -176,7 +176,8 @@ fn start(client: &Client, arguments: &Arguments, new: NewRun) -> Result<Run, Exi
             client.post(&format!("/runs/{before}/continue"), &())?
         }
         None if arguments.queue => {
-            queue_entry::run_of(client, &queue_entry::add(client, &new, arguments.key.as_deref())?)?
+            let entry = queue_entry::add(client, &new, arguments.key.as_deref())?;
+            queue_entry::run_of(client, &entry, arguments.timeout)?
         }
         None => client.post("/runs", &new)?,
     };
@@ -189,7 +190,7 @@ fn start(client: &Client, arguments: &Arguments, new: NewRun) -> Result<Run, Exi
     if !arguments.waits() {
         return Ok(run);
     }
-    notify_on_interrupt(id);
+    notify_on_interrupt(id, arguments.lease);
     // The arguments are valid: later errors belong to the run.
     wait_at_most(client, id, arguments.timeout, arguments.lease)
         .map_err(|exit| lost(id, client.is_answered(), &exit.message))

@@ -4,25 +4,41 @@ use super::client::Client;
 use super::exit::Exit;
 use super::progress::RunProgress;
 use crate::view::{Lease, Run, RunState};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(250);
 
 /// Waiting time for a daemon that does not answer.
-const RESTARTED: Duration = Duration::from_secs(15);
+pub(super) const RESTARTED: Duration = Duration::from_secs(15);
 /// A lease is renewed so many times before it expires.
-const RENEWALS: u32 = 4;
+pub(super) const RENEWALS: u32 = 4;
 /// Exit code of a shell after Ctrl-C.
 const INTERRUPTED: i32 = 130;
 
 /// Ctrl-C ends only the wait, not the run: informs the person at the bench.
-pub(super) fn notify_on_interrupt(id: i64) {
-    std::thread::spawn(move || {
+pub(super) fn notify_on_interrupt(id: i64, lease: Option<Duration>) {
+    on_interrupt(move || match lease {
+        Some(lease) => format!("run {id} ends within {} s (--lease)", lease.as_secs_f64()),
+        None => format!("run {id} continues: show it with `jointbench runs id:{id}`, end it with `jointbench stop`"),
+    });
+}
+
+/// The message of the latest call is printed on Ctrl-C.
+pub(super) fn on_interrupt(message: impl Fn() -> String + Send + 'static) {
+    static MESSAGE: Mutex<Option<Box<dyn Fn() -> String + Send>>> = Mutex::new(None);
+    let is_first = MESSAGE.lock().unwrap_or_else(PoisonError::into_inner).replace(Box::new(message)).is_none();
+    if !is_first {
+        return;
+    }
+    std::thread::spawn(|| {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         // Without the runtime, Ctrl-C ends this command without a message.
         let Ok(runtime) = runtime else { return };
         if runtime.block_on(tokio::signal::ctrl_c()).is_ok() {
-            eprintln!("\nrun {id} continues: show it with `jointbench runs id:{id}`, end it with `jointbench stop`");
+            if let Some(message) = &*MESSAGE.lock().unwrap_or_else(PoisonError::into_inner) {
+                eprintln!("\n{}", message());
+            }
             std::process::exit(INTERRUPTED);
         }
     });

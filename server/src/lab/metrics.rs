@@ -98,7 +98,7 @@ impl Lab {
             (vec![("bench", bench), ("procedure", procedure), ("state", state)], count)
         });
         let values = Values::Counter(runs.collect());
-        metrics.0.push(Metric { name: "runs", help: "Runs in the store by state", unit: None, values });
+        metrics.0.push(Metric { name: "runs", help: "Ended runs in the store by state", unit: None, values });
         let health = self.store_health();
         let damage = (health.damaged.len() + health.lost.len()) as f64;
         let help = "Damaged and lost records that the latest check of the store found";
@@ -130,7 +130,7 @@ impl Lab {
 fn commit_times(registry: &mut Registry, bench: &BenchHandle) {
     let labels = [("bench".into(), bench.name().to_owned().into())];
     let registry = registry.sub_registry_with_labels(labels.into_iter());
-    let help = "Time until the store has kept a part of a run";
+    let help = "Duration of a transaction of the store";
     registry.register_with_unit("commit", help, Unit::Seconds, bench.commit_times());
 }
 

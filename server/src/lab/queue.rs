@@ -1,7 +1,8 @@
 //! Queues: one for each bench. A waiting run starts when the bench is free, with the same checks as any other run.
 //!
-//! The queue proceeds only after a completed run. It pauses when a run ended in another way, when the bench is not
-//! ready, and at the start of the daemon: nothing moves until a person or a script resumes it.
+//! The queue proceeds after a completed run, and after one that its lease ended. It pauses when a run ended in another
+//! way, when the next run needs another unit, when the bench is not ready, and at the start of the daemon: nothing moves
+//! until a person or a script resumes it.
 
 use super::computation::with_retries;
 use super::leases::checked_lease;
@@ -27,13 +28,15 @@ const MOST_WAITING: usize = 500;
 const MOST_RUNS: usize = 100;
 /// Waiting time after a fault of the store.
 const AGAIN: Duration = Duration::from_secs(1);
-const RESTARTED: &str = "the daemon was restarted: inspect the bench, then resume the queue";
+const RESTARTED: &str = "the daemon was restarted: inspect the bench";
 const NOT_STARTED: &str = "the daemon terminated while it started this run: queue it again";
 
 /// Wakes the tasks of the queues.
 #[derive(Default)]
 pub(super) struct Queues {
     changed: HashMap<String, Arc<Notify>>,
+    /// One request at a time, so that a repeated one finds its entry.
+    adding: tokio::sync::Mutex<()>,
     tasks: Mutex<JoinSet<()>>,
 }
 
@@ -57,6 +60,12 @@ impl Lab {
     /// Starts the task of each queue. Queues with waiting entries are paused.
     pub(super) async fn open_queues(&self) -> Answer<()> {
         self.inner.store.hold_queues(RESTARTED, NOT_STARTED).await?;
+        for bench in &self.inner.benches {
+            for entry in self.inner.store.waiting(bench.name()).await? {
+                let request: NewRun = reread(&entry.new.request)?;
+                checked_lease(request.lease_s)?.inspect(|lease| self.watch_entry(entry.id, *lease));
+            }
+        }
         let mut tasks = self.inner.queues.tasks.lock().unwrap_or_else(PoisonError::into_inner);
         for bench in &self.inner.benches {
             tasks.spawn(self.clone().serve_queue(bench.clone()));
@@ -68,6 +77,7 @@ impl Lab {
     pub async fn enqueue(&self, new: &NewRun, key: Option<&str>, by: &str) -> Answer<QueueEntry> {
         let key = key.map(|key| checked("Idempotency-Key", key, LONGEST_NAME)).transpose()?;
         let mut entry = self.checked_entry(new, ProceedIf::Completed, new.priority, by).await?;
+        let _adding = self.inner.queues.adding.lock().await;
         if let Some(key) = key {
             if let Some(known) = self.inner.store.queue_entry_with_key(key).await? {
                 return match known.new.request == entry.request {
@@ -81,6 +91,9 @@ impl Lab {
             entry.key = Some(key.to_owned());
         }
         let ids = self.append(&new.bench, vec![entry]).await?;
+        if let Some(lease) = checked_lease(new.lease_s)? {
+            self.watch_entry(ids[0], lease);
+        }
         queue_entry(self.inner.store.queue_entry(ids[0]).await?, None)
     }
 
@@ -88,16 +101,22 @@ impl Lab {
     pub async fn enqueue_plan(&self, plan: &NewTestPlan, by: &str) -> Answer<Vec<QueueEntry>> {
         let bench = match plan.runs.as_slice() {
             [first, ..] if plan.runs.len() <= MOST_RUNS => first.bench.clone(),
-            _ => return Err(LabError::Invalid(format!("runs: give 1 to {MOST_RUNS}"))),
+            _ => return Err(LabError::Invalid(format!("a test plan has 1 to {MOST_RUNS} runs"))),
         };
         let mut entries = Vec::new();
         for (i, run) in plan.runs.iter().enumerate() {
-            if run.bench != bench {
-                return Err(LabError::Invalid(format!("run {}: a test plan uses one bench, {bench}", i + 1)));
+            if run.bench != bench || run.unit != plan.runs[0].unit {
+                return Err(LabError::Invalid(format!("run {}: a test plan has one bench and one unit", i + 1)));
+            }
+            if run.queue || run.priority != 0 || run.lease_s.is_some() {
+                let why =
+                    "queue, priority and lease_s are not for the runs of a test plan; priority belongs to the plan";
+                return Err(LabError::Invalid(format!("run {}: {why}", i + 1)));
             }
             let entry = self.checked_entry(run, plan.proceed_if, plan.priority, by).await;
             entries.push(entry.map_err(|fault| in_run(i, fault))?);
         }
+        let _adding = self.inner.queues.adding.lock().await;
         let ids = self.append(&bench, entries).await?;
         let mut made = Vec::new();
         for id in ids {
@@ -114,6 +133,7 @@ impl Lab {
             )));
         }
         let ids = self.inner.store.enqueue(&entries).await?;
+        tracing::info!(bench, entries = ?ids, by = entries[0].who, "runs wait in the queue");
         self.queue_changed(bench);
         Ok(ids)
     }
@@ -139,7 +159,8 @@ impl Lab {
             request: reread(&NewRun { queue: false, priority: 0, ..new.clone() })?,
             who: by.to_owned(),
             priority,
-            planned_s: plan.duration_s() / bench.description().pace().unwrap_or(1.0),
+            // A mock bench without a pace takes no time.
+            planned_s: bench.description().pace().map_or(0.0, |pace| plan.duration_s() / pace),
             key: None,
         })
     }
@@ -184,10 +205,14 @@ impl Lab {
     }
 
     pub async fn remove_from_queue(&self, id: i64, by: &str) -> Answer<QueueEntry> {
+        self.take_from_queue(id, &format!("by {by}")).await
+    }
+
+    pub(super) async fn take_from_queue(&self, id: i64, reason: &str) -> Answer<QueueEntry> {
         let entry = self.queue_entry(id).await?;
         let (waiting, removed) = (word(QueueState::Waiting), word(QueueState::Removed));
-        let reason = format!("removed by {by}");
-        if !self.inner.store.set_queue_state(id, &waiting, &removed, Some(&reason)).await? {
+        tracing::info!(entry = id, bench = entry.request.bench, reason, "removed from the queue");
+        if !self.inner.store.set_queue_state(id, &waiting, &removed, Some(reason)).await? {
             return Err(has_left(&self.queue_entry(id).await?));
         }
         self.queue_changed(&entry.request.bench);
@@ -197,12 +222,12 @@ impl Lab {
     /// No further entry starts; the active run continues.
     pub async fn pause_queue(&self, bench: &str, by: &str) -> Answer<BenchQueue> {
         self.handle(bench)?;
-        self.hold_queue(bench, &format!("paused by {by}")).await?;
+        self.hold_queue(bench, &format!("by {by}")).await?;
         self.queue(bench).await
     }
 
     pub async fn resume_queue(&self, bench: &str, by: &str) -> Answer<BenchQueue> {
-        self.handle(bench)?;
+        self.handle(bench)?.check_not_blocked()?;
         tracing::info!(bench, by, "queue resumed");
         self.inner.store.resume_queue(bench).await?;
         self.queue_changed(bench);
@@ -263,9 +288,16 @@ impl Lab {
             self.inner.store.remove_rest_of_plan(plan, &reason).await?;
             self.queue_changed(bench.name());
         }
+        let Some(next) = self.inner.store.waiting(bench.name()).await?.into_iter().next() else { return Ok(()) };
         let proceeds = record.state == RunState::Completed || self.inner.leases.has_expired(run);
-        if !proceeds && !self.inner.store.waiting(bench.name()).await?.is_empty() {
-            self.hold_queue(bench.name(), &format!("run {run} is {}: inspect the bench, then resume", record.state))
+        let next: NewRun = reread(&next.new.request)?;
+        let (mounted, needed) = (record.unit.map(|unit| unit.serial), next.unit.map(|unit| unit.serial));
+        if !proceeds {
+            self.hold_queue(bench.name(), &format!("run {run} is {}: inspect the bench", record.state)).await?;
+        } else if let (Some(mounted), Some(needed)) = (mounted, needed)
+            && mounted != needed
+        {
+            self.hold_queue(bench.name(), &format!("the next run is of unit {needed}: mount it in place of {mounted}"))
                 .await?;
         }
         Ok(())

@@ -50,14 +50,7 @@ impl Lab {
         if !failed.is_empty() {
             return Err(LabError::Invalid(format!("the plan was rejected: {}", failed.join("; "))));
         }
-        if let Some(block) = bench.status().blocked {
-            let (name, word) = (bench.name(), if block.stopped { "stopped" } else { "blocked" });
-            return Err(LabError::Conflict(format!(
-                "bench {name} is {word}: {}. Inspect the bench, then reset it with a reason in the dashboard or with \
-                 jointbench reset {name} --reason '…'",
-                block.reason
-            )));
-        }
+        bench.check_not_blocked()?;
         self.wait_for_stored_ends(bench).await;
         let claim = bench.claim()?;
         if bench.status().faults().is_some() {

@@ -55,9 +55,11 @@ impl Store {
         row.as_ref().map(record).transpose()
     }
 
-    /// The waiting entries of a bench, in the order in which they start.
+    /// The waiting entries of a bench, in the order in which they start: first the rest of a test plan that has begun.
     pub async fn waiting(&self, bench: &str) -> Result<Vec<QueueRecord>, StoreError> {
-        let query = "SELECT * FROM queue WHERE bench = ? AND state = 'waiting' ORDER BY priority DESC, id";
+        let query = "SELECT * FROM queue WHERE bench = ? AND state = 'waiting' ORDER BY \
+            EXISTS (SELECT 1 FROM queue AS done WHERE done.plan = queue.plan AND done.state = 'started') DESC, \
+            priority DESC, COALESCE(plan, id), id";
         let rows = sqlx::query(query).bind(bench).fetch_all(&self.readers).await?;
         rows.iter().map(record).collect()
     }
@@ -94,13 +96,12 @@ impl Store {
         Ok(())
     }
 
-    /// `false` if the entry does not wait.
+    /// Sets the priority of a waiting entry and of its test plan; `false` if the entry does not wait.
     pub async fn set_queue_priority(&self, id: i64, priority: i32) -> Result<bool, StoreError> {
-        let changed = sqlx::query("UPDATE queue SET priority = ? WHERE id = ? AND state = 'waiting'")
-            .bind(priority)
-            .bind(id)
-            .execute(&self.writer)
-            .await?;
+        let query = "UPDATE queue SET priority = ?1 WHERE state = 'waiting' \
+            AND EXISTS (SELECT 1 FROM queue AS it WHERE it.id = ?2 AND it.state = 'waiting' \
+                AND (it.id = queue.id OR it.plan = queue.plan))";
+        let changed = sqlx::query(query).bind(priority).bind(id).execute(&self.writer).await?;
         Ok(changed.rows_affected() > 0)
     }
 

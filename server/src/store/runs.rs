@@ -88,9 +88,9 @@ impl Store {
         Ok(())
     }
 
-    /// Number of runs for each bench, procedure and state.
+    /// Number of ended runs for each bench, procedure and state.
     pub async fn run_counts(&self) -> Result<Vec<([String; 3], u64)>, StoreError> {
-        let query = "SELECT bench, procedure, state, COUNT(*) FROM runs GROUP BY 1, 2, 3 ORDER BY 1, 2, 3";
+        let query = "SELECT bench, procedure, state, COUNT(*) FROM runs WHERE finished_at IS NOT NULL GROUP BY 1, 2, 3 ORDER BY 1, 2, 3";
         let rows: Vec<(String, String, String, i64)> = sqlx::query_as(query).fetch_all(&self.readers).await?;
         Ok(rows.into_iter().map(|(bench, procedure, state, n)| ([bench, procedure, state], n as u64)).collect())
     }

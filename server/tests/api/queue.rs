@@ -80,6 +80,62 @@ fn a_repeated_request_is_queued_once() {
 }
 
 #[test]
+fn repeated_requests_at_the_same_time_are_queued_once() {
+    let daemon = TestDaemon::start();
+    switch(&daemon, "pause");
+    let body = short(json!({"queue": true})).to_string();
+    let headers = [("content-type", "application/json"), ("idempotency-key", "once")];
+    std::thread::scope(|scope| {
+        let post = || daemon.post_with("/api/v1/runs", body.as_bytes(), &headers);
+        let answers: Vec<_> = (0..12).map(|_| scope.spawn(post)).collect();
+        for answer in answers {
+            let (status, entry) = answer.join().unwrap();
+            assert_eq!((status, &entry["id"]), (202, &json!(1)), "{entry}");
+        }
+    });
+}
+
+/// Runs of a test plan stay together and in order, whatever their priority; another unit has to be mounted.
+#[test]
+fn a_test_plan_stays_together_and_another_unit_needs_a_person() {
+    let daemon = TestDaemon::start();
+    switch(&daemon, "pause");
+    let unit = |serial: &str| json!({"unit": {"serial": serial}});
+    let plan = json!({"runs": [short(unit("SN1")), short(unit("SN1"))]});
+    let (_, entries) = daemon.post("/api/v1/queue", &plan.to_string());
+    let [first, second] = [0, 1].map(|i| entries[i]["id"].as_i64().unwrap());
+    let other = queued(&daemon, json!({"unit": {"serial": "SN2"}, "priority": 1}));
+    let priority = format!("/api/v1/queue/{second}/priority");
+    let changed = daemon.put_with(&priority, br#"{"priority": 2}"#, &[("content-type", "application/json")]);
+    assert_eq!(changed.0, 200, "{}", changed.1);
+    let (_, queues) = daemon.get("/api/v1/queue");
+    let order: Vec<_> = queues[0]["entries"].as_array().unwrap().iter().map(|entry| entry["id"].as_i64()).collect();
+    assert_eq!(order, [Some(first), Some(second), Some(other)]);
+    switch(&daemon, "resume");
+    assert_eq!(paused(&daemon), "the next run is of unit SN2: mount it in place of SN1");
+    assert!(run_of(&daemon, first) < run_of(&daemon, second));
+    switch(&daemon, "resume");
+    daemon.wait_for_end(run_of(&daemon, other));
+
+    let units = json!({"runs": [short(unit("SN1")), short(unit("SN2"))]});
+    assert_eq!(daemon.post("/api/v1/queue", &units.to_string()).0, 422);
+}
+
+#[test]
+fn a_waiting_run_whose_client_is_gone_leaves_the_queue() {
+    let daemon = TestDaemon::start();
+    switch(&daemon, "pause");
+    let entry = queued(&daemon, json!({"lease_s": 1.0}));
+    for _ in 0..4 {
+        std::thread::sleep(Duration::from_millis(400));
+        assert_eq!(daemon.post(&format!("/api/v1/queue/{entry}/lease"), "").0, 200);
+    }
+    let left = daemon.wait_for(&format!("/api/v1/queue/{entry}"), |entry| entry["state"] == "removed");
+    assert_eq!(left["reason"], "lease not renewed for 1 s");
+    assert_eq!(daemon.post(&format!("/api/v1/queue/{entry}/lease"), "").0, 409);
+}
+
+#[test]
 fn nothing_moves_after_an_aborted_run_a_software_stop_or_a_restart() {
     let mut daemon = TestDaemon::start_with(Some(1.0), |_| {});
     let (_, run) = daemon.post("/api/v1/runs", SHORT_RUN);
@@ -88,11 +144,11 @@ fn nothing_moves_after_an_aborted_run_a_software_stop_or_a_restart() {
         daemon.wait_for("/api/v1/queue", |queues| queues[0]["entries"][0]["starts_in_s"].as_f64() > Some(1.0));
     assert!(waiting[0]["entries"][0]["planned_s"].as_f64() > Some(5.0), "{waiting}");
     daemon.post(&format!("/api/v1/runs/{}/abort", run["id"]), "");
-    assert_eq!(paused(&daemon), format!("run {} is aborted: inspect the bench, then resume", run["id"]));
+    assert_eq!(paused(&daemon), format!("run {} is aborted: inspect the bench", run["id"]));
 
     daemon.post(&format!("/api/v1/bench/{BENCH}/stop"), "");
-    switch(&daemon, "resume");
-    assert!(paused(&daemon).contains("is stopped: software stop pressed"));
+    let (status, refused) = daemon.post(&format!("/api/v1/bench/{BENCH}/queue/resume"), "");
+    assert!(status == 409 && refused["detail"].as_str().unwrap().contains("software stop pressed"), "{refused}");
     daemon.post(&format!("/api/v1/bench/{BENCH}/acknowledge"), r#"{"reason": "inspected"}"#);
     switch(&daemon, "resume");
     let run = run_of(&daemon, entry);
@@ -149,8 +205,9 @@ fn a_run_whose_client_is_gone_ends_and_the_queue_proceeds() {
     }
     let ended = daemon.wait_for_end(id);
     assert_eq!(ended["state"], "stopped", "{ended}");
+    assert_eq!(ended["reason"], "stopped because no client controlled the run");
     let (_, journal) = daemon.get(&format!("/api/v1/runs/{id}/events"));
-    assert!(journal.to_string().contains("lease: not renewed for 1.5 s"), "{journal}");
+    assert!(journal.to_string().contains("the client of the run is gone (lease not renewed for 1.5 s)"), "{journal}");
     assert_eq!(daemon.post(&lease, "").0, 409);
     let run = run_of(&daemon, next);
     assert_eq!(daemon.post(&format!("/api/v1/runs/{run}/lease"), "").0, 409, "a run without a lease");

@@ -85,8 +85,9 @@ impl Session<'_> {
                 Control::Abort => return Err(Ending::Aborted),
                 Control::Quit => return Err(Ending::Quit),
                 Control::StorageLost => return Err(Ending::StorageLost),
-                Control::Stop if self.journal.state() == RunState::Securing => {}
+                Control::Stop | Control::Abandon if self.journal.state() == RunState::Securing => {}
                 Control::Stop => return Err(Ending::Stopped),
+                Control::Abandon => return Err(Ending::Abandoned),
                 Control::Pause => self.request(PendingRequest::Pause, Transition::Pause),
                 Control::Resume => self.request(PendingRequest::Resume, Transition::Resume),
             }

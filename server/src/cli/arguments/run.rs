@@ -23,7 +23,7 @@ pub struct Run {
     pub bench: Option<String>,
     #[command(flatten)]
     pub unit: UnitArguments,
-    /// Wait for the end; Ctrl-C stops waiting, not the run
+    /// Wait for the end; Ctrl-C stops waiting, and the run only with --lease
     #[arg(long)]
     pub wait: bool,
     /// Print the run as JSON
@@ -40,7 +40,7 @@ pub struct Run {
     /// Write a JUnit report with one test case per limit; waits for the end
     #[arg(long, value_name = "REPORT.XML")]
     pub junit: Option<PathBuf>,
-    /// Maximum duration of the run [s], by the clock; waits for the end. A run that takes longer is aborted, the bench
+    /// Maximum time in the queue, and maximum duration of the run [s], by the clock; waits for the end. A run that takes longer is aborted, the bench
     /// is secured, and the exit code is 1
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub timeout: Option<Duration>,
@@ -56,9 +56,9 @@ pub struct Run {
     /// A note about the run
     #[arg(long, value_name = "TEXT", conflicts_with = "continues")]
     pub note: Option<String>,
-    /// End the run in order if this command ends before the run does; waits for the end. The daemon notices it after S
-    /// seconds
-    #[arg(long, value_name = "S", value_parser = seconds, conflicts_with = "continues")]
+    /// End the run in order, or remove it from the queue, S seconds after this command has ended; waits for the end; 1 to
+    /// 86400
+    #[arg(long, value_name = "S", value_parser = lease, conflicts_with = "continues")]
     pub lease: Option<Duration>,
     #[command(flatten)]
     pub reach: Reach,
@@ -70,6 +70,11 @@ impl Run {
         let is_judged = !self.require.is_empty() || self.limits.is_some();
         self.wait || self.junit.is_some() || self.timeout.is_some() || self.lease.is_some() || is_judged
     }
+}
+
+fn lease(text: &str) -> Result<Duration, String> {
+    let is_possible = |lease: &Duration| (1..=86_400).contains(&lease.as_secs());
+    seconds(text).ok().filter(is_possible).ok_or_else(|| "expected 1 to 86400 seconds".to_owned())
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
@@ -98,19 +103,22 @@ exceeded, 2 bad arguments (also --continue of a complete run, and --require of a
 pub(super) const QUEUE: &str = "\
 A test plan has runs of one bench and one unit, in order:
 
-  proceed_if = \"identified\"       # or \"completed\" (default), or \"pass\": identified and all limits met
+  proceed_if = \"identified\"
   [[run]]
   procedure = \"warm_up\"
   [[run]]
   procedure = \"friction\"
   parameters = { repeats = 3 }
-  limits = \"limits.toml\"          # relative to this file
+  limits = \"limits.toml\"
 
   jointbench queue add plan.toml --unit SN123
 
-The same as JSON in a .json file. If a run does not meet `proceed_if`, the rest of its test plan is removed. A queue proceeds only
-after a completed run: after any other end, if the bench is not ready, and after a restart of the daemon it is paused. Nothing
-moves until `jointbench queue resume`.";
+The same as JSON in a .json file. The limits file is relative to the test plan. `proceed_if` is \"completed\" (default),
+\"identified\", or \"pass\" (identified and all limits met). If a run does not meet it, the rest of its test plan is removed. The
+runs of a test plan that has begun stay together.
+
+A queue proceeds after a completed run, and after one that its lease ended. It is paused after any other end, if the next run is
+of another unit, if the bench is not ready, and after a restart of the daemon. Then nothing moves until `jointbench queue resume`.";
 
 #[derive(Debug, Args)]
 pub struct Queue {

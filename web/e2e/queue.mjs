@@ -1,0 +1,28 @@
+// The queue of a bench: runs are added, reordered, removed, and started.
+import { audit } from './audit.mjs';
+import { expect, TIMEOUT_MS } from './browser.mjs';
+import { WITHOUT_LOAD } from './steps.mjs';
+
+/** Queues two runs while the queue is paused, removes one, and resumes. Returns the search of the other one. */
+export async function useQueue(page, base) {
+	await page.goto(`${base}/${WITHOUT_LOAD}`);
+	const [{ name: bench }] = await (await fetch(`${base}/api/v1/bench`)).json();
+	const paused = await fetch(`${base}/api/v1/bench/${bench}/queue/pause`, { method: 'POST' });
+	expect(paused.ok, `the queue of ${bench} is not paused: ${paused.status}`);
+	const serial = page.getByLabel('Unit (serial number)');
+	const entries = page.getByRole('list', { name: 'Queue' }).getByRole('listitem');
+	for (const [i, unit] of ['SN-A', 'SN-B'].entries()) {
+		await serial.fill(unit);
+		await page.getByRole('button', { name: 'Add to queue' }).click({ timeout: TIMEOUT_MS });
+		await entries.nth(i).waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, `the run of ${unit} does not wait in the queue`));
+	}
+	await serial.fill('');
+	await entries.nth(1).getByRole('button', { name: 'to the front' }).click();
+	await entries.nth(0).getByText('SN-B').waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'a run does not move to the front'));
+	await audit(page, 'the queue');
+	await entries.nth(0).getByRole('button', { name: 'Remove' }).click();
+	await page.getByText('SN-B').waitFor({ state: 'detached', timeout: TIMEOUT_MS }).catch(() => expect(false, 'a removed run still waits'));
+	await page.getByRole('button', { name: 'Resume' }).click();
+	await page.getByRole('list', { name: 'Queue' }).waitFor({ state: 'detached', timeout: TIMEOUT_MS }).catch(() => expect(false, 'a resumed queue does not start its run'));
+	return 'unit:SN-A';
+}
