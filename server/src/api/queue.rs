@@ -28,7 +28,7 @@ pub async fn add_plan(
 ) -> Created<Vec<QueueEntry>> {
     if headers.contains_key(IDEMPOTENCY_KEY) {
         return Err(Problem::malformed(
-            "Idempotency-Key is for single runs (POST /runs): look for the plan with GET /queue",
+            "Idempotency-Key is for single runs (POST /runs): GET /queue shows whether the plan waits",
         ));
     }
     created(lab.enqueue_plan(&plan, &caller.name).await?)

@@ -43,7 +43,7 @@ fn list(client: &Client, json: bool) -> Done {
     }
     for BenchQueue { bench, paused, entries } in queues {
         let state: Bench = client.get(&format!("/bench/{bench}"))?;
-        let on = state.run.map(|run| format!("run {run} is on, ")).unwrap_or_default();
+        let on = state.run.map(|run| format!("run {run} in progress, ")).unwrap_or_default();
         let waiting = if entries.is_empty() { "no run waits".to_owned() } else { format!("{} waiting", entries.len()) };
         println!("{bench}: {on}{waiting}");
         if let Some(pause) = &paused {

@@ -96,9 +96,11 @@ fn waiting_line(client: &Client, entry: &QueueEntry) -> Result<String, Exit> {
         return Ok(format!("waits: the queue is paused, {}; `jointbench queue resume {bench}`", pause.reason));
     }
     let position = queue.entries.iter().position(|one| one.id == entry.id);
-    let waiting = position.and_then(|before| Some((before, queue.entries[before].starts_in_s?)));
-    Ok(waiting
-        .map_or_else(|| "starts".to_owned(), |(before, s)| format!("waits: {before} before it, starts in {s:.0} s")))
+    let Some((before, s)) = position.and_then(|before| Some((before, queue.entries[before].starts_in_s?))) else {
+        return Ok("starts".to_owned());
+    };
+    let place = if before == 0 { "next".to_owned() } else { format!("{before} before it") };
+    Ok(format!("waits: {place}, starts in {s:.0} s"))
 }
 
 /// Ctrl-C ends only the command: informs about the entry.

@@ -153,7 +153,7 @@ fn sentence(kind: &EventKind) -> String {
         EventKind::Control { control, by } => {
             let asked = match control {
                 Control::EStop => "software stop pressed".to_owned(),
-                Control::Abandon => "the client of the run is gone".to_owned(),
+                Control::Abandon => "no client controls the run".to_owned(),
                 _ => format!("operator command: {}", view::word(control)),
             };
             by.iter().fold(asked, |asked, by| format!("{asked} ({by})"))

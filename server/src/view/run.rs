@@ -228,7 +228,7 @@ pub struct NewRun {
     /// A note about the run; at most 4000 characters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
-    /// The run ends in order if its lease is not renewed within this time; a waiting run leaves the queue. 1 s to one day.
+    /// The run ends in order if its lease is not renewed within this time; a waiting run is removed from the queue. 1 s to one day.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(minimum = 1, maximum = 86_400)]
     pub lease_s: Option<f64>,

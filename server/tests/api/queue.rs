@@ -207,7 +207,7 @@ fn a_run_whose_client_is_gone_ends_and_the_queue_proceeds() {
     assert_eq!(ended["state"], "stopped", "{ended}");
     assert_eq!(ended["reason"], "stopped because no client controlled the run");
     let (_, journal) = daemon.get(&format!("/api/v1/runs/{id}/events"));
-    assert!(journal.to_string().contains("the client of the run is gone (lease not renewed for 1.5 s)"), "{journal}");
+    assert!(journal.to_string().contains("no client controls the run (lease not renewed for 1.5 s)"), "{journal}");
     assert_eq!(daemon.post(&lease, "").0, 409);
     let run = run_of(&daemon, next);
     assert_eq!(daemon.post(&format!("/api/v1/runs/{run}/lease"), "").0, 409, "a run without a lease");

@@ -113,11 +113,11 @@ A test plan has runs of one bench and one unit, in order:
 
   jointbench queue add plan.toml --unit SN123
 
-The same as JSON in a .json file. The limits file is relative to the test plan. `proceed_if` is \"completed\" (default),
-\"identified\", or \"pass\" (identified and all limits met). If a run does not meet it, the rest of its test plan is removed. The
+The same as JSON in a .json file. The limits file is relative to the test plan. `proceed_if` is \"completed\" (default), \
+\"identified\", or \"pass\" (identified and all limits met). If a run does not meet it, the rest of its test plan is removed. The \
 runs of a test plan that has begun stay together.
 
-A queue proceeds after a completed run, and after one that its lease ended. It is paused after any other end, if the next run is
+A queue proceeds after a completed run, and after one that its lease ended. It is paused after any other end, if the next run is \
 of another unit, if the bench is not ready, and after a restart of the daemon. Then nothing moves until `jointbench queue resume`.";
 
 #[derive(Debug, Args)]
