@@ -125,13 +125,13 @@ fn a_test_plan_stays_together_and_another_unit_needs_a_person() {
 fn a_waiting_run_whose_client_is_gone_leaves_the_queue() {
     let daemon = TestDaemon::start();
     switch(&daemon, "pause");
-    let entry = queued(&daemon, json!({"lease_s": 1.0}));
-    for _ in 0..4 {
-        std::thread::sleep(Duration::from_millis(400));
+    let entry = queued(&daemon, json!({"lease_s": 4.0}));
+    for _ in 0..5 {
+        std::thread::sleep(Duration::from_secs(1));
         assert_eq!(daemon.post(&format!("/api/v1/queue/{entry}/lease"), "").0, 200);
     }
     let left = daemon.wait_for(&format!("/api/v1/queue/{entry}"), |entry| entry["state"] == "removed");
-    assert_eq!(left["reason"], "lease not renewed for 1 s");
+    assert_eq!(left["reason"], "lease not renewed for 4 s");
     assert_eq!(daemon.post(&format!("/api/v1/queue/{entry}/lease"), "").0, 409);
 }
 
@@ -194,20 +194,20 @@ fn a_plan_proceeds_only_if_its_runs_meet_the_condition() {
 #[test]
 fn a_run_whose_client_is_gone_ends_and_the_queue_proceeds() {
     let daemon = TestDaemon::start_with(Some(1.0), |_| {});
-    let (status, run) = daemon.post("/api/v1/runs", &short(json!({"lease_s": 1.5})).to_string());
+    let (status, run) = daemon.post("/api/v1/runs", &short(json!({"lease_s": 4.0})).to_string());
     assert_eq!(status, 201, "{run}");
     let id = run["id"].as_i64().unwrap();
     let next = queued(&daemon, json!({}));
     let lease = format!("/api/v1/runs/{id}/lease");
     for _ in 0..5 {
-        std::thread::sleep(Duration::from_millis(500));
-        assert_eq!(daemon.post(&lease, "").1, json!({"expires_in_s": 1.5}));
+        std::thread::sleep(Duration::from_secs(1));
+        assert_eq!(daemon.post(&lease, "").1, json!({"expires_in_s": 4.0}));
     }
     let ended = daemon.wait_for_end(id);
     assert_eq!(ended["state"], "stopped", "{ended}");
     assert_eq!(ended["reason"], "stopped because no client controlled the run");
     let (_, journal) = daemon.get(&format!("/api/v1/runs/{id}/events"));
-    assert!(journal.to_string().contains("no client controls the run (lease not renewed for 1.5 s)"), "{journal}");
+    assert!(journal.to_string().contains("no client controls the run (lease not renewed for 4 s)"), "{journal}");
     assert_eq!(daemon.post(&lease, "").0, 409);
     let run = run_of(&daemon, next);
     assert_eq!(daemon.post(&format!("/api/v1/runs/{run}/lease"), "").0, 409, "a run without a lease");
