@@ -39,7 +39,7 @@ pub(super) fn run_of(client: &Client, entry: &QueueEntry, limit: Option<Duration
     notify_on_interrupt(id, entry.request.lease_s);
     let renewal = entry.request.lease_s.map(|s| Duration::from_secs_f64(s) / RENEWALS);
     let began = Instant::now();
-    let (mut answered, mut renewed, mut told) = (began, began, None::<(Instant, String)>);
+    let (mut answered, mut renewed, mut printed) = (began, began, None::<(Instant, String)>);
     loop {
         if renewal.is_some_and(|interval| renewed.elapsed() > interval) {
             renewed = Instant::now();
@@ -72,10 +72,10 @@ pub(super) fn run_of(client: &Client, entry: &QueueEntry, limit: Option<Duration
             _ => {}
         }
         let line = waiting_line(client, &entry)?;
-        let is_new = told.as_ref().is_none_or(|(at, text)| at.elapsed() > LINE_EVERY || is_other(text, &line));
+        let is_new = printed.as_ref().is_none_or(|(at, text)| at.elapsed() > LINE_EVERY || is_other(text, &line));
         if is_new {
             eprintln!("  queue entry {id} {line}");
-            told = Some((Instant::now(), line));
+            printed = Some((Instant::now(), line));
         }
         std::thread::sleep(POLL_INTERVAL);
     }

@@ -101,7 +101,12 @@ impl Lab {
         if let Some(kept) = self.inner.store.cached_result(Subject::Run(run), what).await? {
             return serde_json::from_slice(&kept).map_err(damaged);
         }
+        // The result of an active run changes: it is not cached.
+        let is_over = self.inner.store.run(run).await?.state.is_final();
         let part = part(self.identification(run).await?);
+        if !is_over {
+            return Ok(part);
+        }
         let json = serde_json::to_vec(&part).map_err(damaged)?;
         self.inner.store.cache_result(Subject::Run(run), what, &json).await?;
         Ok(part)

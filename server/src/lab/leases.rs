@@ -50,9 +50,9 @@ impl Leases {
         Some(Lease { expires_in_s: lease.duration.as_secs_f64() })
     }
 
-    /// Whether the lease of a run has expired.
-    pub fn has_expired(&self, run: i64) -> bool {
-        self.deadline(Leased::Run(run)).is_some_and(|deadline| deadline <= Instant::now())
+    /// Removes the lease of an ended run. Returns whether it has expired.
+    pub fn remove_expired(&self, run: i64) -> bool {
+        self.lock().remove(&Leased::Run(run)).is_some_and(|lease| lease.deadline <= Instant::now())
     }
 
     /// Returns when the lease has expired.

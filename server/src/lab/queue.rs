@@ -7,6 +7,7 @@
 use super::computation::with_retries;
 use super::leases::checked_lease;
 use super::names::{LONGEST_NAME, LONGEST_NOTE, checked, checked_text};
+use super::runs::check_plan;
 use super::units::TestedUnit;
 use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
@@ -150,9 +151,7 @@ impl Lab {
         new.note.as_deref().map(|note| checked_text("note", note, LONGEST_NOTE)).transpose()?;
         checked_lease(new.lease_s)?;
         let (bench, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
-        if let Some(failed) = plan.preview(&bench.facts()).checks.into_iter().find(|check| !check.ok) {
-            return Err(LabError::Invalid(format!("the plan was rejected: {}: {}", failed.name, failed.refusal())));
-        }
+        check_plan(bench, &plan)?;
         Ok(NewQueueEntry {
             bench: new.bench.clone(),
             proceed_if: word(proceed_if),
@@ -205,16 +204,16 @@ impl Lab {
     }
 
     pub async fn remove_from_queue(&self, id: i64, by: &str) -> Answer<QueueEntry> {
-        self.take_from_queue(id, &format!("by {by}")).await
+        self.take_from_queue(id, &format!("requested by {by}")).await
     }
 
     pub(super) async fn take_from_queue(&self, id: i64, reason: &str) -> Answer<QueueEntry> {
         let entry = self.queue_entry(id).await?;
         let (waiting, removed) = (word(QueueState::Waiting), word(QueueState::Removed));
-        tracing::info!(entry = id, bench = entry.request.bench, reason, "removed from the queue");
         if !self.inner.store.set_queue_state(id, &waiting, &removed, Some(reason)).await? {
             return Err(has_left(&self.queue_entry(id).await?));
         }
+        tracing::info!(entry = id, bench = entry.request.bench, reason, "removed from the queue");
         self.queue_changed(&entry.request.bench);
         self.queue_entry(id).await
     }
@@ -222,7 +221,7 @@ impl Lab {
     /// No further entry starts; the active run continues.
     pub async fn pause_queue(&self, bench: &str, by: &str) -> Answer<BenchQueue> {
         self.handle(bench)?;
-        self.hold_queue(bench, &format!("by {by}")).await?;
+        self.hold_queue(bench, &format!("requested by {by}")).await?;
         self.queue(bench).await
     }
 
@@ -288,8 +287,8 @@ impl Lab {
             self.inner.store.remove_rest_of_plan(plan, &reason).await?;
             self.queue_changed(bench.name());
         }
+        let proceeds = self.inner.leases.remove_expired(run) || record.state == RunState::Completed;
         let Some(next) = self.inner.store.waiting(bench.name()).await?.into_iter().next() else { return Ok(()) };
-        let proceeds = record.state == RunState::Completed || self.inner.leases.has_expired(run);
         let next: NewRun = reread(&next.new.request)?;
         let (mounted, needed) = (record.unit.map(|unit| unit.serial), next.unit.map(|unit| unit.serial));
         if !proceeds {

@@ -40,16 +40,7 @@ impl Lab {
     }
 
     pub(super) async fn launch(&self, bench: &BenchHandle, plan: Plan, tested: TestedUnit, by: &str) -> Answer<Run> {
-        let preview = plan.preview(&bench.facts());
-        let failed: Vec<String> = preview
-            .checks
-            .iter()
-            .filter(|check| !check.ok)
-            .map(|check| format!("{}: {}", check.name, check.refusal()))
-            .collect();
-        if !failed.is_empty() {
-            return Err(LabError::Invalid(format!("the plan was rejected: {}", failed.join("; "))));
-        }
+        check_plan(bench, &plan)?;
         bench.check_not_blocked()?;
         self.wait_for_stored_ends(bench).await;
         let claim = bench.claim()?;
@@ -176,6 +167,21 @@ impl Lab {
         let meta = serde_json::from_value(Value::Object(record.meta.clone()))
             .map_err(|fault| LabError::Internal(format!("the metadata of run {id} cannot be read: {fault}")))?;
         Ok((meta, record))
+    }
+}
+
+/// [`LabError::Invalid`] with all failed checks of a plan.
+pub(super) fn check_plan(bench: &BenchHandle, plan: &Plan) -> Answer<()> {
+    let failed: Vec<String> = plan
+        .preview(&bench.facts())
+        .checks
+        .iter()
+        .filter(|check| !check.ok)
+        .map(|check| format!("{}: {}", check.name, check.refusal()))
+        .collect();
+    match failed.is_empty() {
+        true => Ok(()),
+        false => Err(LabError::Invalid(format!("the plan was rejected: {}", failed.join("; ")))),
     }
 }
 

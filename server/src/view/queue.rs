@@ -10,7 +10,7 @@ pub enum QueueState {
     Waiting,
     /// `run` is the run, as soon as it exists.
     Started,
-    /// The run could not be started; `reason` tells why.
+    /// The run could not be started; `reason` is the cause.
     Failed,
     /// By a person, or because its test plan did not proceed.
     Removed,

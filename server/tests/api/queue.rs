@@ -95,7 +95,7 @@ fn repeated_requests_at_the_same_time_are_queued_once() {
     });
 }
 
-/// Runs of a test plan stay together and in order, whatever their priority; another unit has to be mounted.
+/// Runs of a test plan stay together and in order, whatever their priority; a person mounts another unit.
 #[test]
 fn a_test_plan_stays_together_and_another_unit_needs_a_person() {
     let daemon = TestDaemon::start();
