@@ -54,9 +54,12 @@ pub enum Drive {
 pub enum Feedforward {
     /// Over the time of the step (A).
     Planned(Profile),
-    /// A share of the measured friction: motor torque less link torque, low-pass filtered. It has the sign of the
-    /// velocity set-point and is linear in it below `ramp_rad_s` (motor).
+    /// A planned current, and what a share of the measured friction (motor torque less link torque, low-pass filtered)
+    /// exceeds it. The latter has the sign of the velocity set-point and is linear in it below `ramp_rad_s` (motor).
     Observed {
+        /// Over the time of the step (A).
+        #[serde(default = "nothing")]
+        planned_a: Profile,
         /// Share of the measured friction that is fed forward.
         share: f64,
         /// Corner frequency of the low-pass.
@@ -64,6 +67,37 @@ pub enum Feedforward {
         /// Motor-side speed below which the current is linear in the velocity set-point.
         ramp_rad_s: f64,
     },
+    /// A planned current, and a part in proportion to the measured link torque, with the sign of the velocity set-point.
+    LoadDependent {
+        /// Over the time of the step (A).
+        planned_a: Profile,
+        /// Current per link torque (A/Nm).
+        a_per_nm: f64,
+        /// Motor-side speed below which the second part is linear in the velocity set-point.
+        ramp_rad_s: f64,
+    },
+    /// A constant current in the direction of the measured motor velocity.
+    MeasuredDirection {
+        /// Its magnitude (A).
+        current_a: f64,
+    },
+}
+
+/// Plans of earlier versions have an observer alone.
+fn nothing() -> Profile {
+    Profile::constant(0.0)
+}
+
+impl Feedforward {
+    /// The planned part (A), where there is one.
+    fn planned_a(&self) -> Option<&Profile> {
+        match self {
+            Self::Planned(planned_a) | Self::Observed { planned_a, .. } | Self::LoadDependent { planned_a, .. } => {
+                Some(planned_a)
+            }
+            Self::MeasuredDirection { .. } => None,
+        }
+    }
 }
 
 /// End of a section with current alone: the velocity loop takes over after a breakaway.
@@ -103,8 +137,7 @@ impl Step {
     pub fn duration_s(&self) -> f64 {
         let drive_s = match &self.drive {
             Drive::Velocity => 0.0,
-            Drive::Fed(Feedforward::Planned(current_a)) => current_a.duration_s(),
-            Drive::Fed(Feedforward::Observed { .. }) => 0.0,
+            Drive::Fed(feedforward) => feedforward.planned_a().map_or(0.0, Profile::duration_s),
             Drive::Current { from_s, current_a, .. } => from_s + current_a.duration_s(),
         };
         self.velocity.duration_s().max(self.brake.duration_s()).max(drive_s)
@@ -118,8 +151,10 @@ impl Step {
     /// The largest commanded motor current (A).
     pub fn top_motor_current_a(&self) -> f64 {
         match &self.drive {
-            Drive::Fed(Feedforward::Planned(current_a)) | Drive::Current { current_a, .. } => current_a.largest(),
-            Drive::Velocity | Drive::Fed(Feedforward::Observed { .. }) => 0.0,
+            Drive::Velocity => 0.0,
+            Drive::Fed(Feedforward::MeasuredDirection { current_a }) => *current_a,
+            Drive::Fed(feedforward) => feedforward.planned_a().map_or(0.0, Profile::largest),
+            Drive::Current { current_a, .. } => current_a.largest(),
         }
     }
 }

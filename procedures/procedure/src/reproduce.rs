@@ -126,9 +126,11 @@ pub fn reproduce(
         let Some(procedure) = procedure(id).filter(|_| is_documented || extent == Extent::Complete) else { continue };
         let mut parameters = parameters.as_object().cloned().unwrap_or_default();
         if id == "compensation" {
-            let friction = results.iter().find(|result| result.procedure == "friction");
-            let next = friction.and_then(|result| crate::procedure("friction")?.follow_up(&result.identification));
-            parameters.extend(next.map(|next| next.parameters).unwrap_or_default());
+            for result in &results {
+                let next = crate::procedure(result.procedure).and_then(|of| of.follow_up(&result.identification));
+                parameters
+                    .extend(next.filter(|next| next.procedure == id).map(|next| next.parameters).unwrap_or_default());
+            }
         }
         let InMemoryRun { table, identification, duration_s } =
             run_in_memory_with_facts(bench, &facts, procedure, &parameters)?;

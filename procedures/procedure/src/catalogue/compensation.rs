@@ -1,24 +1,30 @@
 //! Friction compensation by feedforward of motor current, evaluated on a reference trajectory (thesis, sections 4.2.2
 //! to 4.2.6, table 4.7).
 //!
-//! The same oscillation is followed with each compensation method. The feedforward is planned from the friction in
-//! the parameters and never exceeds it, because over-compensation makes the controller active.
+//! The same reference is followed with each compensation method. The feedforward is planned from the friction in the
+//! parameters and never exceeds it, because over-compensation makes the controller active.
 
+mod cause;
 mod identify;
+mod method;
+mod reference;
 
 use super::legs::{Legs, sample_rate};
 use super::{Findable, Procedure};
 use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
-use crate::identification::{FollowUp, Identification};
+use crate::identification::{FollowUp, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{Drive, Feedforward, Plan, PlanFault};
+use crate::plan::{Drive, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
+use method::{FrictionParameters, Method};
 use serde_json::{Map, Value};
-use std::f64::consts::TAU;
 
 pub(super) struct Compensation;
+
+/// The parameter of the dynamic model; 0 omits this method.
+pub(super) const STIFFNESS: &str = "presliding_stiffness_nm_rad";
 
 const SCHEMA: &[Parameter] = &[
     Parameter::number("tau_c_nm", "Coulomb friction (motor)", "Nm", 0.030, [0.0, 100.0]),
@@ -26,93 +32,31 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("tau_h_nm", "Friction at zero speed (motor)", "Nm", 0.039, [0.0, 100.0]),
     Parameter::number("stribeck_speed_rad_s", "Stribeck velocity (link)", "rad/s", 0.06, [0.001, 10.0]),
     Parameter::number("stribeck_exponent", "Stribeck exponent", "", 0.8, [0.1, 4.0]),
+    Parameter::number(
+        STIFFNESS,
+        "Presliding stiffness for the dynamic model (motor; 0: unknown)",
+        "Nm/rad",
+        0.0,
+        [0.0, 1e6],
+    ),
+    Parameter::number("load_friction", "Friction per Nm of load, motor side (0: unknown)", "", 0.0, [0.0, 0.9]),
+    Parameter::number("load", "Brake current during the reference, fraction of rated", "", 0.0, [0.0, 1.0]),
     Parameter::number("share", "Fraction of the friction that is compensated", "", 0.95, [0.1, 1.0]),
     Parameter::number("amplitude_rad_s", "Amplitude of the reference (link)", "rad/s", 0.15, [0.01, 20.0]),
     Parameter::number("period_s", "Period of the reference", "s", 6.0, [0.5, 120.0]),
-    Parameter::count("periods", "Periods with each method", 3, [2, 100]),
+    Parameter::number("ramp_s", "Ramp of a trapezoidal reference (0: sinusoid)", "s", 0.0, [0.0, 30.0]),
+    Parameter::count("periods", "Periods with each method; the first is not evaluated", 2, [2, 100]),
+    Parameter::count("rounds", "Rounds of all methods; their scatter gives the intervals", 3, [1, 20]),
     Parameter::number("acceleration_rad_s2", "Acceleration between methods (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
     sample_rate(250.0),
 ];
 
-/// Around zero velocity the jump of Coulomb friction is omitted or linearised (thesis, section 4.2.3; link side).
-const RAMP_RAD_S: f64 = 0.05;
-/// The full model includes that region: its slope is limited only by the uncertainty of the velocity set-point.
-const STEEP_RAD_S: f64 = 0.002;
-/// Corner frequency of the observer.
-const CORNER_HZ: f64 = 10.0;
-/// Points of a planned current in one period.
-const POINTS: u32 = 1000;
-
-/// The compensation methods, in the order of table 4.7; the column `repeat` numbers them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Method {
-    None,
-    ZeroArea,
-    Interpolated,
-    CoulombViscous,
-    Full,
-    Observer,
-}
-
-impl Method {
-    const ALL: [Method; 6] =
-        [Method::None, Method::ZeroArea, Method::Interpolated, Method::CoulombViscous, Method::Full, Method::Observer];
-
-    fn words(self) -> [&'static str; 2] {
-        match self {
-            Method::None => ["none", "no compensation"],
-            Method::ZeroArea => ["zero_area", "Coulomb with dead band"],
-            Method::Interpolated => ["interpolated", "Coulomb, interpolated"],
-            Method::CoulombViscous => ["coulomb_viscous", "Coulomb and viscous"],
-            Method::Full => ["full", "full model"],
-            Method::Observer => ["observer", "observer"],
-        }
-    }
-}
-
-/// Friction from the parameters, over the link velocity; motor torque.
-struct FrictionParameters {
-    coulomb_nm: f64,
-    viscous_nm_s: f64,
-    rise_nm: f64,
-    stribeck_rad_s: f64,
-    exponent: f64,
-    gear_ratio: f64,
-}
-
-impl FrictionParameters {
-    fn new(values: &Values, gear_ratio: f64) -> Self {
-        let coulomb_nm = values.number("tau_c_nm");
-        Self {
-            coulomb_nm,
-            viscous_nm_s: values.number("c_v_nm_s"),
-            rise_nm: (values.number("tau_h_nm") - coulomb_nm).max(0.0),
-            stribeck_rad_s: values.number("stribeck_speed_rad_s"),
-            exponent: values.number("stribeck_exponent"),
-            gear_ratio,
-        }
-    }
-
-    fn friction_nm(&self, link_rad_s: f64) -> f64 {
-        let fading = (-(link_rad_s.abs() / self.stribeck_rad_s).powf(self.exponent)).exp();
-        let speed_nm = self.viscous_nm_s * self.gear_ratio * link_rad_s.abs();
-        (self.coulomb_nm + self.rise_nm * fading + speed_nm).copysign(link_rad_s)
-    }
-
-    /// Planned feedforward before scaling. `None`: the method has no planned feedforward.
-    fn fed_nm(&self, method: Method, link_rad_s: f64) -> Option<f64> {
-        let line = |over: f64| (link_rad_s / over).clamp(-1.0, 1.0);
-        let viscous_nm = self.viscous_nm_s * self.gear_ratio * link_rad_s;
-        match method {
-            Method::None | Method::Observer => None,
-            Method::ZeroArea if link_rad_s.abs() < RAMP_RAD_S => Some(0.0),
-            Method::ZeroArea => Some(self.coulomb_nm.copysign(link_rad_s)),
-            Method::Interpolated => Some(self.coulomb_nm * line(RAMP_RAD_S)),
-            Method::CoulombViscous => Some(self.coulomb_nm * line(RAMP_RAD_S) + viscous_nm),
-            Method::Full => Some(self.friction_nm(link_rad_s).abs() * line(STEEP_RAD_S)),
-        }
-    }
-}
+/// Brake current at which the load term is compared, fraction of rated.
+const LOAD: f64 = 0.5;
+/// Speeds at which the feedforward is compared with the friction.
+const CHECKED: u32 = 1000;
+/// Number in the column `repeat` of the steps between the methods.
+const NO_METHOD: u32 = 99;
 
 impl Procedure for Compensation {
     fn id(&self) -> &'static str {
@@ -124,8 +68,8 @@ impl Procedure for Compensation {
     }
 
     fn summary(&self) -> &'static str {
-        "Follows a reference with six methods of friction compensation, from none to the full model and an observer. \
-         Compares their tracking errors."
+        "Follows a reference with up to ten methods of friction compensation: none, static models, a load term, a dynamic \
+         model and an observer. Compares their tracking errors."
     }
 
     fn kind(&self) -> Kind {
@@ -149,31 +93,39 @@ impl Procedure for Compensation {
         }
         let constants = &bench.constants;
         let rate_hz = values.number("sample_rate_hz");
-        let friction = FrictionParameters::new(values, constants.gear_ratio);
-        let period_s = values.number("period_s");
-        let points = POINTS * values.count("periods");
-        let step_s = period_s / f64::from(POINTS);
-        let link_rad_s = |i: u32| values.number("amplitude_rad_s") * (TAU * f64::from(i) / f64::from(POINTS)).sin();
-        let profile = |value: &dyn Fn(f64) -> f64| {
-            (1..=points).fold(Profile::from(0.0), |profile, i| profile.to(value(link_rad_s(i)), step_s))
-        };
-        // The last point of a sine is zero except for rounding.
-        let velocity = profile(&|v| constants.gear_ratio * v).to(0.0, 0.0);
+        let friction = FrictionParameters::new(values, constants);
+        let period = reference::period(values)?;
+        let (periods, share) = (values.count("periods"), values.number("share"));
+        let step_s = values.number("period_s") / period.len() as f64;
+        let setpoints = period.iter().cycle().take(period.len() * periods as usize);
+        let velocity = setpoints.fold(Profile::from(0.0), |profile, v| profile.to(constants.gear_ratio * v, step_s));
+        let top_rad_s = values.number("amplitude_rad_s");
+        let load_a = self.load_a(values, bench)?;
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
-        for method in Method::ALL {
-            legs.repeat = method as u32;
-            legs.push(method.words()[1].into(), velocity.clone(), Profile::constant(0.0));
-            let share = values.number("share");
-            let fed_a = |v: f64| share * friction.fed_nm(method, v).unwrap_or(0.0) / constants.torque_constant_nm_per_a;
-            match method {
-                Method::None => {}
-                Method::Observer => {
-                    let ramp_rad_s = RAMP_RAD_S * constants.gear_ratio;
-                    legs.drive_of_last(Drive::Fed(Feedforward::Observed { share, corner_hz: CORNER_HZ, ramp_rad_s }));
-                }
-                _ => legs.drive_of_last(Drive::Fed(Feedforward::Planned(profile(&fed_a)))),
+        legs.repeat = NO_METHOD;
+        if load_a > 0.0 {
+            legs.change(top_rad_s * constants.gear_ratio, 0.0, load_a);
+        }
+        let methods = Method::ALL.into_iter().filter(|method| method.is_planned(values));
+        let methods = methods.map(|method| (method, friction.drive(method, share, &period, step_s, periods)));
+        let mut methods: Vec<(Method, Drive)> = methods.collect();
+        for (method, _) in &methods {
+            over_compensates(&friction, *method, share, top_rad_s)?;
+        }
+        let rounds = values.count("rounds");
+        for round in 0..rounds {
+            for (method, drive) in &methods {
+                legs.repeat = method.repeat(round);
+                let label = format!("{}, round {} of {rounds}", method.words()[1], round + 1);
+                legs.push(label, velocity.clone(), Profile::constant(load_a));
+                legs.drive_of_last(drive.clone());
             }
-            over_compensates(&friction, method, share, values.number("amplitude_rad_s"))?;
+            // Reversed in the next round, so that a steady drift affects all methods alike.
+            methods.reverse();
+        }
+        legs.repeat = NO_METHOD;
+        if load_a > 0.0 {
+            legs.unload(top_rad_s * constants.gear_ratio, load_a, bench);
         }
         Ok(legs.friction_plan(self, values, bench, rate_hz))
     }
@@ -188,6 +140,19 @@ impl Procedure for Compensation {
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
         verdict(identify::identify(values.number("period_s"), run))
+    }
+}
+
+impl Compensation {
+    fn load_a(&self, values: &Values, bench: &BenchFacts) -> Result<f64, PlanFault> {
+        let missing = |role, cure| PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure };
+        if values.number("load") > 0.0 && !bench.has_brake {
+            return Err(missing("brake", "set load to 0"));
+        }
+        if values.number("load_friction") > 0.0 && !bench.has_torque_sensor {
+            return Err(missing("torque sensor", "set load_friction to 0"));
+        }
+        Ok(values.number("load") * bench.constants.brake_rated_current_a)
     }
 }
 
@@ -223,6 +188,25 @@ pub(super) fn of_friction(found: &Identification) -> Option<FollowUp> {
     Some(FollowUp { procedure: Compensation.id(), parameters, why })
 }
 
+/// The dynamic model beside the static ones, with the presliding stiffness that a run has identified.
+pub(super) fn of_presliding(found: &Identification) -> Option<FollowUp> {
+    let stiffness = found.quantity("sigma_0").filter(|_| found.verdict == Verdict::Identified)?;
+    let parameters = Map::from_iter([(STIFFNESS.to_owned(), Value::from(four_digits(stiffness.value)))]);
+    Values::parse(SCHEMA, &parameters).ok()?;
+    let why = "compare the dynamic model with the static ones";
+    Some(FollowUp { procedure: Compensation.id(), parameters, why })
+}
+
+/// The load term beside the other methods, with the load-dependent friction that a run has identified.
+pub(super) fn of_load(found: &Identification) -> Option<FollowUp> {
+    let grows = found.quantity("mu").filter(|mu| mu.ci95.is_some_and(|[low, _]| low > 0.0))?;
+    let mut next = of_friction(found)?;
+    next.parameters.insert("load_friction".into(), four_digits(grows.value).into());
+    next.parameters.insert("load".into(), LOAD.into());
+    Values::parse(SCHEMA, &next.parameters).ok()?;
+    Some(FollowUp { why: "compare the load term with the other methods, under load", ..next })
+}
+
 /// Rounds to a number of digits that a person would type.
 fn four_digits(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
@@ -235,8 +219,8 @@ fn over_compensates(
     share: f64,
     top_rad_s: f64,
 ) -> Result<(), PlanFault> {
-    let over = (1..=POINTS).map(|i| top_rad_s * f64::from(i) / f64::from(POINTS)).find(|v| {
-        friction.fed_nm(method, *v).is_some_and(|fed_nm| share * fed_nm > friction.friction_nm(*v) * (1.0 + 1e-9))
+    let over = (1..=CHECKED).map(|i| top_rad_s * f64::from(i) / f64::from(CHECKED)).find(|v| {
+        friction.static_nm(method, *v).is_some_and(|fed_nm| share * fed_nm > friction.friction_nm(*v) * (1.0 + 1e-9))
     });
     match over {
         None => Ok(()),
@@ -252,19 +236,72 @@ mod tests {
     use super::super::legs::testing::joint_a;
     use super::*;
     use crate::findings::quantity;
-    use crate::identification::Verdict;
+    use crate::plan::Feedforward;
     use serde_json::json;
 
     #[test]
     fn every_way_follows_the_same_reference_and_none_exceeds_friction() {
         let plan = Compensation.plan(json!({}).as_object().unwrap(), &joint_a()).unwrap();
         assert!(plan.preview(&joint_a()).is_allowed(), "{:?}", plan.preview(&joint_a()).checks);
-        assert_eq!(plan.steps.len(), Method::ALL.len());
+        // Without their parameters the load term and the dynamic model are omitted.
+        assert_eq!(plan.steps.len(), 3 * (Method::ALL.len() - 2));
         assert!(plan.steps.iter().all(|step| step.velocity == plan.steps[0].velocity));
         // At most the stated friction at the top speed of the reference.
         let most_a = (0.039 + 1.512e-4 * 0.15 * 177.8) / 0.0406;
         assert!(plan.top_motor_current_a() < most_a, "{} A", plan.top_motor_current_a());
         assert!(plan.top_motor_current_a() > 0.9 * 0.95 * (0.030 + 1.512e-4 * 0.15 * 177.8) / 0.0406);
+    }
+
+    #[test]
+    fn a_trapezoid_reaches_its_speed_in_its_ramp_and_ends_at_rest() {
+        let given = json!({"ramp_s": 0.5, "period_s": 4.0, "amplitude_rad_s": 0.2});
+        let plan = Compensation.plan(given.as_object().unwrap(), &joint_a()).unwrap();
+        let velocity = &plan.steps[0].velocity;
+        for (t_s, link_rad_s) in
+            [(0.25, 0.1), (0.5, 0.2), (1.4, 0.2), (2.0, 0.0), (2.5, -0.2), (3.75, -0.1), (20.0, 0.0)]
+        {
+            assert!((velocity.at(t_s) - 177.8 * link_rad_s).abs() < 1e-9, "{} at {t_s} s", velocity.at(t_s));
+        }
+        let fault = Compensation.plan(json!({"ramp_s": 2.0}).as_object().unwrap(), &joint_a()).unwrap_err();
+        assert!(fault.to_string().contains("above a quarter of period_s = 6"), "{fault}");
+    }
+
+    #[test]
+    fn the_dynamic_model_follows_the_static_one_in_steady_motion_and_lags_it_after_a_reversal() {
+        let values = |stiffness_nm_rad: f64| {
+            let given = json!({STIFFNESS: stiffness_nm_rad, "ramp_s": 0.1, "period_s": 4.0, "share": 1.0});
+            Values::parse(SCHEMA, given.as_object().unwrap()).unwrap()
+        };
+        let planned = |method: Method, stiffness_nm_rad: f64| {
+            let values = values(stiffness_nm_rad);
+            let friction = FrictionParameters::new(&values, &joint_a().constants);
+            let period = reference::period(&values).unwrap();
+            match friction.drive(method, 1.0, &period, 0.004, 2) {
+                Drive::Fed(Feedforward::Planned(current_a)) => current_a,
+                drive => panic!("{drive:?}"),
+            }
+        };
+        let (dynamic, full) = (planned(Method::Dynamic, 14.0), planned(Method::Full, 0.0));
+        for t_s in [1.0, 3.0, 5.0, 7.0] {
+            assert!((dynamic.at(t_s) - full.at(t_s)).abs() < 1e-5, "{} and {}", dynamic.at(t_s), full.at(t_s));
+        }
+        // 4 ms after the reversal at 2 s the motor has turned by less than the bristles bend.
+        assert!(full.at(2.004) < 0.0 && dynamic.at(2.004) > full.at(2.004), "{} {}", dynamic.at(2.004), full.at(2.004));
+    }
+
+    #[test]
+    fn a_load_needs_a_brake_and_its_friction_a_torque_sensor() {
+        let refused = |given: Value, bench: BenchFacts| {
+            Compensation.plan(given.as_object().unwrap(), &bench).unwrap_err().to_string()
+        };
+        let no_brake = refused(json!({"load": 0.5}), BenchFacts { has_brake: false, ..joint_a() });
+        assert!(no_brake.contains("no brake: set load to 0"), "{no_brake}");
+        let blind = refused(json!({"load_friction": 0.1}), BenchFacts { has_torque_sensor: false, ..joint_a() });
+        assert!(blind.contains("no torque sensor: set load_friction to 0"), "{blind}");
+        let loaded = json!({"load": 0.5, "load_friction": 0.1, STIFFNESS: 14.0});
+        let plan = Compensation.plan(loaded.as_object().unwrap(), &joint_a()).unwrap();
+        assert_eq!(plan.steps.iter().filter(|step| step.repeat != NO_METHOD).count(), 3 * Method::ALL.len());
+        assert_eq!((plan.top_brake_current_a(), plan.steps.last().unwrap().brake.end()), (0.3, 0.0));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! The plan is that of `friction` with more loads and fewer speeds. The torque sensor measures the brake torque. The
 //! additional motor torque is the load-dependent friction.
 
+use super::compensation;
 use super::friction::Friction;
 use super::legs::sample_rate;
 use super::{Findable, Procedure, findable};
@@ -10,7 +11,7 @@ use crate::bench_facts::BenchFacts;
 use crate::findings::{
     Unusable, bounded, curve, interval_of, legs, parameter, plateaus, quantity, scatter, select_legs, settled, verdict,
 };
-use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::identification::{Axis, Figure, FollowUp, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
@@ -68,6 +69,10 @@ impl Procedure for FrictionLoad {
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
         verdict(identify(run))
+    }
+
+    fn follow_up(&self, found: &Identification) -> Option<FollowUp> {
+        compensation::of_load(found)
     }
 }
 

@@ -4,7 +4,7 @@
 //!
 //! Each part is planned and identified by its own procedure, on its own rows. Every part begins and ends without
 //! brake current and at the start position of the run, so that the parts only share the warm-up. Compensation also
-//! needs the identified friction for its feedforward: it is planned when that is known.
+//! needs the identified friction and presliding stiffness for its feedforward: it is planned when these are known.
 
 mod deferred;
 mod part;
@@ -12,7 +12,7 @@ mod part;
 use super::brake_hysteresis::BrakeHysteresis;
 use super::brake_speed_independence::BrakeSpeedIndependence;
 use super::breakaway::Breakaway;
-use super::compensation::Compensation;
+use super::compensation::{Compensation, STIFFNESS};
 use super::friction::Friction;
 use super::friction_load::FrictionLoad;
 use super::friction_temperature::FrictionTemperature;
@@ -44,12 +44,14 @@ const SCHEMA: &[Parameter] = &[
     Parameter::count(
         "periods",
         "Periods with each compensation method, at least 2, if the drive supports it (0: skip)",
-        3,
+        2,
         [0, 100],
     ),
     sample_rate(250.0),
 ];
 
+/// Presliding stiffness with which the dynamic compensation is planned before the run.
+const EXPECTED_STIFFNESS_NM_RAD: f64 = 15.0;
 /// Name of the fact that assigns rows to parts.
 const PARTS: &str = "parts";
 
@@ -107,7 +109,9 @@ fn parts(values: &Values, bench: &BenchFacts) -> Vec<(&'static dyn Procedure, Va
         parts.insert(0, (&FrictionTemperature, given));
     }
     if values.count("periods") > 0 && bench.feeds_forward {
-        parts.push((&Compensation, json!({"periods": values.count("periods").max(2), "sample_rate_hz": rate})));
+        let periods = values.count("periods").max(2);
+        let given = json!({"periods": periods, "sample_rate_hz": rate, STIFFNESS: EXPECTED_STIFFNESS_NM_RAD});
+        parts.push((&Compensation, given));
     }
     parts
 }

@@ -4,11 +4,12 @@
 //! from the same state. The torque is commanded, and the motor encoder measures the displacement. The joint moves by
 //! only a few counts, so that the times at which a reading changes are evaluated.
 
+use super::compensation;
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
-use crate::identification::Identification;
+use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Drive, EndCondition, Plan, PlanFault};
 use crate::profile::Profile;
@@ -98,6 +99,10 @@ impl Procedure for Presliding {
 
     fn finds(&self) -> Vec<Findable> {
         findable(&[("Nm/rad", "sigma_0 element_#_stiffness"), ("Nm", "tau_c bias element_#_slip"), ("rad", "reach")])
+    }
+
+    fn follow_up(&self, found: &Identification) -> Option<FollowUp> {
+        compensation::of_presliding(found)
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

@@ -5,10 +5,10 @@ use crate::plan::{Drive, EndCondition, Feedforward, Step};
 use jointbench_instrument::roles::JointReading;
 use std::f64::consts::TAU;
 
-/// Measured friction, low-pass filtered, during a step.
+/// Measured friction in excess of the planned feedforward, low-pass filtered, during a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct MeasuredFriction {
-    current_a: f64,
+    left_a: f64,
 }
 
 /// Detects a breakaway: counts consecutive increases of the motor position.
@@ -37,14 +37,35 @@ impl Session<'_> {
                 DriveCommand::Current { a: current_a.at(t_s - from_s) }
             }
             Drive::Velocity | Drive::Current { .. } => DriveCommand::Velocity { rad_s, feedforward_a: 0.0 },
-            Drive::Fed(Feedforward::Planned(current_a)) => {
-                DriveCommand::Velocity { rad_s, feedforward_a: current_a.at(t_s) }
+            Drive::Fed(feedforward) => {
+                DriveCommand::Velocity { rad_s, feedforward_a: self.feedforward_a(feedforward, rad_s, t_s, friction) }
             }
-            Drive::Fed(Feedforward::Observed { share, corner_hz, ramp_rad_s }) => {
+        }
+    }
+
+    fn feedforward_a(
+        &self,
+        feedforward: &Feedforward,
+        setpoint_rad_s: f64,
+        t_s: f64,
+        friction: &mut MeasuredFriction,
+    ) -> f64 {
+        let side = |ramp_rad_s: f64| (setpoint_rad_s / ramp_rad_s).clamp(-1.0, 1.0);
+        match feedforward {
+            Feedforward::Planned(current_a) => current_a.at(t_s),
+            Feedforward::Observed { planned_a, share, corner_hz, ramp_rad_s } => {
+                let planned_a = planned_a.at(t_s);
                 let gain = 1.0 - (-TAU * corner_hz * self.period.duration_s).exp();
-                friction.current_a += gain * (self.friction_a() - friction.current_a);
-                let side = (rad_s / ramp_rad_s).clamp(-1.0, 1.0);
-                DriveCommand::Velocity { rad_s, feedforward_a: share * friction.current_a * side }
+                let left_a = share * self.friction_a() - planned_a.abs();
+                friction.left_a += gain * (left_a - friction.left_a);
+                planned_a + friction.left_a * side(*ramp_rad_s)
+            }
+            Feedforward::LoadDependent { planned_a, a_per_nm, ramp_rad_s } => {
+                planned_a.at(t_s) + a_per_nm * self.link_torque_nm.unwrap_or(0.0).abs() * side(*ramp_rad_s)
+            }
+            Feedforward::MeasuredDirection { current_a } => {
+                let rad_s = self.joint.map_or(0.0, |joint| joint.motor_velocity.0);
+                if rad_s == 0.0 { 0.0 } else { current_a.copysign(rad_s) }
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Identifications of procedures: from simulated tables, and on the mock bench.
 
+mod compensation;
 mod diagnosed;
 mod mock;
 mod next;

@@ -2,13 +2,13 @@
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::catalogue::brake_model;
-use jointbench_procedure::identification::{Identification, Series, Verdict};
+use jointbench_procedure::identification::{Identification, Verdict};
 use jointbench_procedure::in_memory_run::{run_in_memory, run_in_memory_with_facts};
 use jointbench_procedure::parameter::Values;
 use jointbench_procedure::{BenchFacts, procedure};
 use serde_json::{Value, json};
 
-fn found(settings: MockSettings, id: &str, parameters: Value) -> (MockBench, Identification) {
+pub fn found(settings: MockSettings, id: &str, parameters: Value) -> (MockBench, Identification) {
     let mock = MockBench::start(settings).unwrap();
     let mut bench = mock.open_bench("mock").unwrap();
     let done = run_in_memory(&mut bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap();
@@ -274,25 +274,6 @@ fn stiffness_takes_the_bearing_off() {
     }
 }
 
-#[test]
-fn the_full_model_halves_the_error_without_over_compensating() {
-    let mock = MockBench::start(MockSettings::new(Joint::JointA, 1).hiding(&["stribeck"])).unwrap();
-    let truth = mock.truth();
-    let rise_nm = truth.hidden[0].parameters["rise_nm"];
-    let given = json!({
-        "tau_c_nm": truth.coulomb_nm, "c_v_nm_s": truth.viscous_nm_s, "tau_h_nm": truth.coulomb_nm + rise_nm,
-        "stribeck_speed_rad_s": truth.hidden[0].parameters["velocity_rad_s"] / truth.gear_ratio,
-        "stribeck_exponent": 0.8, "periods": 2, "period_s": 4.0,
-    });
-    let mut bench = mock.open_bench("mock").unwrap();
-    let procedure = procedure("compensation").unwrap();
-    let found = run_in_memory(&mut bench, procedure, given.as_object().unwrap()).unwrap().identification.unwrap();
-    assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
-    let ratio = |way: &str| found.quantity(&format!("ratio_{way}")).unwrap().value;
-    assert!(ratio("full") < 0.5 && ratio("full") < ratio("interpolated"), "{}", found.summary);
-    assert!(ratio("observer") < 1.0);
-}
-
 /// The arm's constants are within the intervals of the run, and the directions are distinguished.
 #[test]
 fn an_arm_gives_a_line_for_each_direction_and_its_stiction() {
@@ -349,22 +330,4 @@ fn a_soft_start_is_shown_with_its_curve_its_table_and_its_loop() {
     assert!((end - beta_rad).abs() < 0.2 * beta_rad, "{end} for {beta_rad}");
     let reach = |y: &[f64]| y.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
     assert!(reach(&beyond.series[0].y) < 0.2 * reach(&whole.series[0].y), "the slope is taken off the loop too");
-}
-
-#[test]
-fn table_4_7_is_drawn_as_bars_with_a_trajectory() {
-    let (_, found) = found(MockSettings::new(Joint::JointA, 2).hiding(&["stribeck"]), "compensation", json!({}));
-    let figure = |name: &str| found.figures.iter().find(|figure| figure.name == name).unwrap();
-    let bars = &figure("ratio").series;
-    for (series, name) in bars.iter().zip(["rho_1", "rho_2", "rho_max"]) {
-        let of = |way: &str| found.quantity(&format!("{name}_{way}")).unwrap().value;
-        assert_eq!((series.y[0], series.y.last()), (1.0, Some(&(of("observer") / of("none")))), "{name}");
-    }
-    let rms_rad = |way: &str| found.quantity(&format!("rms_{way}")).unwrap().value;
-    assert!(0.0 < rms_rad("full") && rms_rad("full") < rms_rad("none"), "{}", found.summary);
-    assert!(found.summary.contains("the RMS error from "), "{}", found.summary);
-    let [reference, none, best] = &figure("trajectory").series[..] else { panic!("{:?}", figure("trajectory")) };
-    let off = |one: &Series| reference.y.iter().zip(&one.y).map(|(a, b)| (a - b).abs()).sum::<f64>();
-    assert!(off(best) < 0.5 * off(none) && off(none) > 0.0, "{} {}", best.label, none.label);
-    assert!((reference.x.last().unwrap() - 6.0).abs() < 0.1, "one period");
 }

@@ -1,8 +1,8 @@
 //! Compensation of the friction that the campaign itself identified.
 
-use super::super::compensation::{self, Compensation};
+use super::super::compensation::{self, Compensation, STIFFNESS};
 use super::super::{PlannedSteps, Procedure};
-use super::{Friction, found, numbered, parts_of};
+use super::{Friction, Presliding, found, numbered, parts_of};
 use crate::bench_facts::BenchFacts;
 use crate::deferred_plan::DeferredPlan;
 use crate::identification::Verdict;
@@ -10,31 +10,37 @@ use jointbench_instrument::RunTable;
 use serde_json::Value;
 use std::ops::Range;
 
-/// The part that waits, and the part that it depends on.
+/// The part that waits, and the parts that it depends on.
 pub(super) fn deferred_plan(facts: &[Value]) -> Option<DeferredPlan> {
-    let [from, to] =
-        [&Friction as &dyn Procedure, &Compensation].map(|part| Some(segments(&facts[place(facts, part)?])));
-    Some(DeferredPlan { from: from?, to: to?, earlier: None })
+    let of = |part: &dyn Procedure| Some(segments(&facts[place(facts, part)?]));
+    let from = of(&Friction)?.start..of(&Presliding)?.end;
+    Some(DeferredPlan { from, to: of(&Compensation)?, earlier: None })
 }
 
-/// The steps of compensation with the friction identified from the earlier rows.
+/// The steps of compensation with the friction and the presliding stiffness identified from the earlier rows.
 pub(super) fn compensation(run: &RunTable, bench: &BenchFacts) -> Result<PlannedSteps, String> {
     let facts = parts_of(run).map_err(|why| why.to_string())?;
-    let [from, to] = [&Friction as &dyn Procedure, &Compensation].map(|part| place(facts, part));
-    let (from, to) = from.zip(to).ok_or("the campaign does not contain both parts")?;
-    let (_, friction) = found(run, facts, from).map_err(|why| why.to_string())?;
-    let friction = friction.ok_or("the friction part has no samples")?;
+    let result = |part: &dyn Procedure| {
+        let number = place(facts, part).ok_or("the campaign does not contain all parts")?;
+        found(run, facts, number).map(|(_, found)| found).map_err(|why| why.to_string())
+    };
+    let to = place(facts, &Compensation).ok_or("the campaign does not contain all parts")?;
+    let friction = result(&Friction)?.ok_or("the friction part has no samples")?;
     if friction.verdict != Verdict::Identified {
         return Err(format!("friction is not determined well enough for feed-forward. {}", friction.summary));
     }
     let next = compensation::of_friction(&friction).ok_or("the identified friction cannot be used for feed-forward")?;
+    let dynamic = result(&Presliding)?.and_then(|presliding| compensation::of_presliding(&presliding));
+    let mut identified = next.parameters;
+    identified.insert(STIFFNESS.into(), 0.0.into());
+    identified.extend(dynamic.map(|next| next.parameters).unwrap_or_default());
     let mut parameters = facts[to]["parameters"].as_object().cloned().unwrap_or_default();
-    parameters.extend(next.parameters.clone());
+    parameters.extend(identified.clone());
     let plan = Compensation.plan(&parameters, bench).map_err(|fault| fault.to_string())?;
     if let Some(broken) = plan.preview(bench).checks.into_iter().find(|check| !check.ok) {
         return Err(broken.detail);
     }
-    let fed: Vec<String> = next.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let fed: Vec<String> = identified.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let first = segments(&facts[to]).start as usize;
     Ok(PlannedSteps {
         steps: numbered(plan.steps, &Compensation, first).collect(),
