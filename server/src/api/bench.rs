@@ -39,7 +39,7 @@ pub async fn stop(
 }
 
 /// Resets the bench after a software stop or after a run whose safe state is not confirmed
-#[utoipa::path(post, path = "/bench/{bench}/acknowledge", tag = "bench",
+#[utoipa::path(post, path = "/bench/{bench}/acknowledge", operation_id = "acknowledge_bench", tag = "bench",
     params(("bench" = String, Path, description = "Name")), request_body = Acknowledgement,
     responses((status = 200, description = "The released bench", body = Bench), Refusals))]
 pub async fn acknowledge(
@@ -61,7 +61,7 @@ pub async fn retry(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<
 }
 
 /// The text of the bench description (TOML) that the daemon was started with
-#[utoipa::path(get, path = "/bench/{bench}/description", operation_id = "bench_description", tag = "bench",
+#[utoipa::path(get, path = "/bench/{bench}/description", operation_id = "get_bench_description", tag = "bench",
     params(("bench" = String, Path, description = "Name")),
     responses((status = 200, description = "The description", body = String), Refusals))]
 pub async fn description(State(lab): State<Lab>, Path(bench): Path<String>) -> Result<String, Problem> {
@@ -69,7 +69,7 @@ pub async fn description(State(lab): State<Lab>, Path(bench): Path<String>) -> R
 }
 
 /// Stops, blocks and resets of the bench with user and reason, newest first
-#[utoipa::path(get, path = "/bench/{bench}/safety", operation_id = "bench_safety", tag = "bench",
+#[utoipa::path(get, path = "/bench/{bench}/safety", operation_id = "get_bench_safety", tag = "bench",
     params(("bench" = String, Path, description = "Name")),
     responses((status = 200, description = "The newest entries", body = Vec<SafetyEntry>), Refusals))]
 pub async fn safety(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Vec<SafetyEntry>> {
@@ -77,7 +77,7 @@ pub async fn safety(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer
 }
 
 /// The instruments of all benches
-#[utoipa::path(get, path = "/instruments", tag = "bench",
+#[utoipa::path(get, path = "/instruments", operation_id = "list_instruments", tag = "bench",
     responses((status = 200, description = "The instruments", body = Vec<Instrument>), Refusals))]
 pub async fn instruments(State(lab): State<Lab>) -> Answer<Vec<Instrument>> {
     Ok(Json(lab.benches().into_iter().flat_map(|bench| bench.instruments).collect()))
@@ -93,7 +93,7 @@ pub struct MemoryQuery {
 }
 
 /// The memory of the joint's servo (DIAGREAD), for a Puma-type servo; only between runs, and without motion
-#[utoipa::path(get, path = "/bench/{bench}/servo-memory", operation_id = "servo_memory", tag = "bench",
+#[utoipa::path(get, path = "/bench/{bench}/servo-memory", operation_id = "read_servo_memory", tag = "bench",
     params(("bench" = String, Path, description = "Name"), MemoryQuery),
     responses((status = 200, description = "The variables of the memory", body = ServoMemory),
         (status = 409, description = "A run is in progress: wait until it ends, or stop it", body = Problem,

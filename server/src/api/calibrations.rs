@@ -16,7 +16,7 @@ pub async fn list(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<V
 }
 
 /// Applies the result of a run to the bench for subsequent runs. To revert, apply an earlier one or none
-#[utoipa::path(post, path = "/bench/{bench}/calibrations", operation_id = "calibrate", tag = "bench",
+#[utoipa::path(post, path = "/bench/{bench}/calibrations", operation_id = "apply_calibration", tag = "bench",
     params(("bench" = String, Path, description = "Name")), request_body = NewCalibration,
     responses((status = 201, description = "All entries, the new one first", body = Vec<Calibration>), Refusals))]
 pub async fn apply(

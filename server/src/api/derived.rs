@@ -28,7 +28,7 @@ pub struct DerivedQuery {
 }
 
 /// Channels computed from those of the run, each by a formula
-#[utoipa::path(get, path = "/runs/{id}/derived", operation_id = "derived_samples", tag = "samples",
+#[utoipa::path(get, path = "/runs/{id}/derived", operation_id = "derive_samples", tag = "samples",
     params(("id" = i64, Path, description = "Run"), DerivedQuery),
     responses((status = 200, description = "The window; a channel is named by its formula", body = Samples), Refusals))]
 pub async fn samples(
@@ -54,7 +54,7 @@ pub struct SpectrumQuery {
 }
 
 /// Amplitude spectrum of a channel of the run, or of a formula over its channels
-#[utoipa::path(get, path = "/runs/{id}/spectrum", operation_id = "spectrum", tag = "samples",
+#[utoipa::path(get, path = "/runs/{id}/spectrum", operation_id = "get_spectrum", tag = "samples",
     params(("id" = i64, Path, description = "Run"), SpectrumQuery),
     responses((status = 200, description = "The spectrum of the window", body = SpectrumView), Refusals))]
 pub async fn spectrum(

@@ -29,7 +29,7 @@ pub struct Health {
 }
 
 /// Whether the daemon is running
-#[utoipa::path(get, path = "/health", tag = "daemon",
+#[utoipa::path(get, path = "/health", operation_id = "get_health", tag = "daemon",
     responses((status = 200, description = "The daemon is running", body = Health), Refusals))]
 pub async fn health(State(lab): State<Lab>, Extension(caller): Extension<Caller>) -> Answer<Health> {
     let dashboard_missing = jointbench_ui::missing().map(str::to_owned);
@@ -49,7 +49,7 @@ pub async fn metrics(State(lab): State<Lab>) -> Result<impl IntoResponse, Proble
 }
 
 /// This description
-#[utoipa::path(get, path = "/openapi.json", tag = "daemon",
+#[utoipa::path(get, path = "/openapi.json", operation_id = "get_specification", tag = "daemon",
     responses((status = 200, description = "OpenAPI 3.1", body = serde_json::Value), Refusals))]
 pub async fn specification() -> Json<utoipa::openapi::OpenApi> {
     Json(super::specification())

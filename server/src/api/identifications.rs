@@ -19,7 +19,7 @@ pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Identifi
 }
 
 /// Results of earlier complete runs of the same bench and procedure, newest first, at most twelve
-#[utoipa::path(get, path = "/runs/{id}/earlier", tag = "runs", params(("id" = i64, Path, description = "Run")),
+#[utoipa::path(get, path = "/runs/{id}/earlier", operation_id = "list_earlier_results", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Quantities of earlier runs", body = Vec<Earlier>), Refusals))]
 pub async fn earlier(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Earlier>> {
     Ok(Json(lab.earlier(id).await?))
@@ -41,7 +41,7 @@ pub struct TrendQuery {
 }
 
 /// What the newest 500 complete runs that a search finds have found, the oldest first
-#[utoipa::path(get, path = "/trends", operation_id = "trends", tag = "runs", params(TrendQuery),
+#[utoipa::path(get, path = "/trends", operation_id = "get_trends", tag = "runs", params(TrendQuery),
     responses((status = 200, description = "Quantities with intervals, and the conditions of each run", body = Trends), Refusals))]
 pub async fn trends(State(lab): State<Lab>, Query(query): Query<TrendQuery>) -> Answer<Trends> {
     Ok(Json(lab.trends(&query.search).await?))
@@ -49,7 +49,7 @@ pub async fn trends(State(lab): State<Lab>, Query(query): Query<TrendQuery>) -> 
 
 /// A run, also an active one, compared with the latest model of its kind from another run of its bench; `null` without
 /// one
-#[utoipa::path(get, path = "/runs/{id}/beside", operation_id = "beside", tag = "runs", params(("id" = i64, Path, description = "Run")),
+#[utoipa::path(get, path = "/runs/{id}/beside", operation_id = "compare_with_latest_model", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Measured signal, model and residual", body = Option<ModelOverlay>), Refusals))]
 pub async fn model_overlay(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Option<ModelOverlay>> {
     Ok(Json(lab.model_overlay(id).await?))
@@ -66,7 +66,7 @@ pub struct ReportQuery {
 }
 
 /// Report of the run as HTML: a first page that fits one sheet, and an appendix with model, diagnosis and provenance
-#[utoipa::path(get, path = "/runs/{id}/report", tag = "runs", params(("id" = i64, Path, description = "Run"), ReportQuery),
+#[utoipa::path(get, path = "/runs/{id}/report", operation_id = "get_report", tag = "runs", params(("id" = i64, Path, description = "Run"), ReportQuery),
     responses((status = 200, description = "The self-contained page", body = String, content_type = "text/html"), Refusals))]
 pub async fn report(
     State(lab): State<Lab>,

@@ -33,7 +33,7 @@ const SILENCE: Duration = Duration::from_secs(60);
 /// `time_s` is relative to t0. A token is sent as the header `Authorization: Bearer TOKEN`, as `?token=TOKEN`, or, from
 /// a browser and outside the address, in the subprotocols `jointbench` and `token.TOKEN` (percent-encoded). At most 30
 /// frames a second; a slow client gets larger frames, never older ones.
-#[utoipa::path(get, path = "/events", tag = "live",
+#[utoipa::path(get, path = "/events", operation_id = "stream_events", tag = "live",
     responses((status = 101, description = "The stream", body = crate::view::LiveMessage), Refusals))]
 pub async fn stream(
     State(lab): State<Lab>,

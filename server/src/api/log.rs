@@ -22,7 +22,7 @@ pub struct LogQuery {
 
 /// Event log with users, newest first: safety records, journals of runs, model versions, and tokens for callers with
 /// full access
-#[utoipa::path(get, path = "/log", operation_id = "log", tag = "daemon", params(LogQuery),
+#[utoipa::path(get, path = "/log", operation_id = "get_log", tag = "daemon", params(LogQuery),
     responses((status = 200, description = "The entries", body = Vec<LogEntry>), Refusals))]
 pub async fn log(
     State(lab): State<Lab>,

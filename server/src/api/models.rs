@@ -23,7 +23,7 @@ pub struct EffectQuery {
 }
 
 /// The library of effects, including user-defined effects
-#[utoipa::path(get, path = "/effects", tag = "effects", params(EffectQuery),
+#[utoipa::path(get, path = "/effects", operation_id = "list_effects", tag = "effects", params(EffectQuery),
     responses((status = 200, description = "The effects", body = Vec<Effect>), Refusals))]
 pub async fn effects(State(lab): State<Lab>, Query(query): Query<EffectQuery>) -> Answer<Vec<Effect>> {
     Ok(Json(lab.effects(query.kind.as_deref()).await?))
@@ -82,7 +82,7 @@ pub async fn fit(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Fit> {
 }
 
 /// Measured, predicted and residual of a model version, with the coordinates of each point
-#[utoipa::path(get, path = "/models/{id}/residuals", tag = "models",
+#[utoipa::path(get, path = "/models/{id}/residuals", operation_id = "get_residuals", tag = "models",
     params(("id" = i64, Path, description = "Model version")),
     responses((status = 200, description = "The residuals", body = ResidualSet), Refusals))]
 pub async fn residuals(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<Response, Problem> {
@@ -92,7 +92,7 @@ pub async fn residuals(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<Re
 
 /// Finds where a model version fails and which effect is missing, and stores the diagnosis; a read token gets the
 /// latest stored one
-#[utoipa::path(post, path = "/diagnoses", tag = "diagnoses", params(DetachQuery), request_body = NewDiagnosis,
+#[utoipa::path(post, path = "/diagnoses", operation_id = "diagnose_run", tag = "diagnoses", params(DetachQuery), request_body = NewDiagnosis,
     responses((status = 201, description = "The diagnosis", body = Diagnosis), Refusals))]
 pub async fn diagnose(
     State(lab): State<Lab>,
@@ -110,7 +110,7 @@ pub async fn diagnose(
 }
 
 /// One diagnosis
-#[utoipa::path(get, path = "/diagnoses/{id}", tag = "diagnoses",
+#[utoipa::path(get, path = "/diagnoses/{id}", operation_id = "get_diagnosis", tag = "diagnoses",
     params(("id" = i64, Path, description = "Diagnosis")),
     responses((status = 200, description = "The diagnosis", body = Diagnosis), Refusals))]
 pub async fn diagnosis(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Diagnosis> {
@@ -126,7 +126,7 @@ pub struct DiagnosisQuery {
 }
 
 /// The diagnoses of a model version, oldest first
-#[utoipa::path(get, path = "/diagnoses", tag = "diagnoses", params(DiagnosisQuery),
+#[utoipa::path(get, path = "/diagnoses", operation_id = "list_diagnoses", tag = "diagnoses", params(DiagnosisQuery),
     responses((status = 200, description = "The diagnoses", body = Vec<Diagnosis>), Refusals))]
 pub async fn diagnoses(State(lab): State<Lab>, Query(query): Query<DiagnosisQuery>) -> Answer<Vec<Diagnosis>> {
     Ok(Json(lab.diagnoses(query.model).await?))

@@ -25,7 +25,7 @@ pub async fn list(State(lab): State<Lab>, Query(query): Query<ProcedureQuery>) -
 }
 
 /// Dry run without motion: duration, steps, extremes against the limits, checks
-#[utoipa::path(post, path = "/procedures/{id}/preview", tag = "procedures",
+#[utoipa::path(post, path = "/procedures/{id}/preview", operation_id = "preview_plan", tag = "procedures",
     params(("id" = String, Path, description = "Procedure")), request_body = PreviewRequest,
     responses((status = 200, description = "The plan of the procedure", body = Preview), Refusals))]
 pub async fn preview(

@@ -36,7 +36,7 @@ pub async fn compare(
 }
 
 /// Contribution of each effect of a model version: validation error without it, the others refitted
-#[utoipa::path(get, path = "/models/{id}/worth", operation_id = "effects_worth", tag = "models",
+#[utoipa::path(get, path = "/models/{id}/worth", operation_id = "get_effects_worth", tag = "models",
     params(("id" = i64, Path, description = "Model version")),
     responses((status = 200, description = "One entry for each effect; nothing is stored", body = Vec<Worth>), Refusals))]
 pub async fn worth(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Worth>> {
@@ -44,7 +44,7 @@ pub async fn worth(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Wo
 }
 
 /// Change of the prediction by an additional effect, at each point of the residuals
-#[utoipa::path(get, path = "/models/{id}/with/{effect}", operation_id = "predict_with", tag = "models",
+#[utoipa::path(get, path = "/models/{id}/with/{effect}", operation_id = "predict_with_effect", tag = "models",
     params(("id" = i64, Path, description = "Model version"), ("effect" = String, Path, description = "A missing effect")),
     responses((status = 200, description = "In the unit of the residuals", body = Vec<f64>), Refusals))]
 pub async fn with_effect(State(lab): State<Lab>, Path((id, effect)): Path<(i64, String)>) -> Answer<Vec<f64>> {

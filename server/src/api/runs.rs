@@ -85,7 +85,7 @@ pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
 }
 
 /// Pauses the run after the current step
-#[utoipa::path(post, path = "/runs/{id}/pause", tag = "runs", params(("id" = i64, Path, description = "Run")),
+#[utoipa::path(post, path = "/runs/{id}/pause", operation_id = "pause_run", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Accepted; present state of the run", body = Run), Refusals))]
 pub async fn pause(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.control(id, Control::Pause, &caller.name).await?))
@@ -99,7 +99,7 @@ pub async fn plan(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Preview
 }
 
 /// Resumes the run after a pause
-#[utoipa::path(post, path = "/runs/{id}/resume", tag = "runs", params(("id" = i64, Path, description = "Run")),
+#[utoipa::path(post, path = "/runs/{id}/resume", operation_id = "resume_run", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Accepted; present state of the run", body = Run), Refusals))]
 pub async fn resume(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.control(id, Control::Resume, &caller.name).await?))
@@ -121,7 +121,7 @@ pub async fn stop(State(lab): State<Lab>, Extension(caller): Extension<Caller>, 
 }
 
 /// Ends the run immediately; the bench is secured
-#[utoipa::path(post, path = "/runs/{id}/abort", tag = "runs", params(("id" = i64, Path, description = "Run")),
+#[utoipa::path(post, path = "/runs/{id}/abort", operation_id = "abort_run", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Accepted; present state of the run", body = Run), Refusals))]
 pub async fn abort(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.control(id, Control::Abort, &caller.name).await?))
@@ -136,7 +136,7 @@ pub struct EventQuery {
 }
 
 /// The journal of the run
-#[utoipa::path(get, path = "/runs/{id}/events", tag = "runs",
+#[utoipa::path(get, path = "/runs/{id}/events", operation_id = "list_run_events", tag = "runs",
     params(("id" = i64, Path, description = "Run"), EventQuery),
     responses((status = 200, description = "Events in order", body = Vec<RunEvent>), Refusals))]
 pub async fn events(
@@ -163,7 +163,7 @@ pub struct SampleQuery {
 }
 
 /// Samples of a window, at most one minimum and maximum for each pixel
-#[utoipa::path(get, path = "/runs/{id}/samples", tag = "samples",
+#[utoipa::path(get, path = "/runs/{id}/samples", operation_id = "get_samples", tag = "samples",
     params(("id" = i64, Path, description = "Run"), SampleQuery),
     responses((status = 200, description = "The window", body = Samples), Refusals))]
 pub async fn samples(State(lab): State<Lab>, Path(id): Path<i64>, Query(query): Query<SampleQuery>) -> Answer<Samples> {
@@ -184,7 +184,7 @@ pub struct StatisticsQuery {
 }
 
 /// Mean, standard deviation, RMS, minimum and maximum of each channel over all rows of a window
-#[utoipa::path(get, path = "/runs/{id}/statistics", tag = "samples",
+#[utoipa::path(get, path = "/runs/{id}/statistics", operation_id = "get_statistics", tag = "samples",
     params(("id" = i64, Path, description = "Run"), StatisticsQuery),
     responses((status = 200, description = "One entry for each channel", body = Vec<ChannelStatistics>), Refusals))]
 pub async fn statistics(
@@ -210,7 +210,7 @@ pub struct DifferenceQuery {
 }
 
 /// Difference of a channel between runs and a reference run, over time or another channel, with two standard errors
-#[utoipa::path(get, path = "/runs/{id}/differences", operation_id = "run_differences", tag = "samples",
+#[utoipa::path(get, path = "/runs/{id}/differences", operation_id = "get_run_differences", tag = "samples",
     params(("id" = i64, Path, description = "Reference run of the comparison"), DifferenceQuery),
     responses((status = 200, description = "Figures; the means first if the runs are not aligned by time", body = Vec<Figure>), Refusals))]
 pub async fn differences(

@@ -17,12 +17,6 @@ fn the_kept_specification_is_the_routers() {
     );
 }
 
-/// Words of the languages that clients are generated in: each generator would rename them in its own way.
-const RESERVED: [&str; 16] = [
-    "as", "async", "await", "break", "continue", "default", "delete", "export", "for", "import", "match", "new",
-    "return", "switch", "type", "use",
-];
-
 #[test]
 fn files_are_binary_and_named_by_their_kind() {
     let document = serde_json::to_value(super::specification()).unwrap();
@@ -58,7 +52,7 @@ fn every_response_is_described() {
                 names.insert(name.to_owned()),
                 "{method} {path}: two operations are called {name}; name one with operation_id"
             );
-            assert!(!RESERVED.contains(&name), "{method} {path}: generators cannot call an operation {name}");
+            assert!(name.contains('_'), "{method} {path}: {name} is not a verb with its object");
             assert!(operation["summary"].is_string() && operation["tags"].is_array(), "{method} {path}");
             for parameter in operation["parameters"].as_array().into_iter().flatten() {
                 assert!(parameter["description"].is_string(), "{method} {path}: {parameter} has no description");

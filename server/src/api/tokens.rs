@@ -17,7 +17,7 @@ pub async fn list(State(lab): State<Lab>, Extension(caller): Extension<Caller>) 
 }
 
 /// Creates a token; its secret is returned only once
-#[utoipa::path(post, path = "/tokens", operation_id = "make_token", tag = "daemon", request_body = NewToken,
+#[utoipa::path(post, path = "/tokens", operation_id = "create_token", tag = "daemon", request_body = NewToken,
     responses((status = 201, description = "The token with its secret", body = MadeToken), Refusals))]
 pub async fn make(
     State(lab): State<Lab>,

@@ -58,7 +58,7 @@ pub async fn export(
 }
 
 /// Metadata of the run as `meta.json`, required for the import of an exported CSV
-#[utoipa::path(get, path = "/runs/{id}/meta", operation_id = "export_meta", tag = "runs",
+#[utoipa::path(get, path = "/runs/{id}/meta", operation_id = "export_run_meta", tag = "runs",
     params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "The facts", body = serde_json::Value), Refusals))]
 pub async fn export_meta(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<Response, Problem> {

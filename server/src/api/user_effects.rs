@@ -48,7 +48,7 @@ pub async fn opt_in(
 }
 
 /// Keeps a user-defined effect out of the diagnosis of a run; models that contain it remain
-#[utoipa::path(delete, path = "/runs/{id}/effects/{effect}", operation_id = "do_not_use_effect", tag = "effects",
+#[utoipa::path(delete, path = "/runs/{id}/effects/{effect}", operation_id = "exclude_effect", tag = "effects",
     params(("id" = i64, Path, description = "The run"), ("effect" = String, Path, description = "A user-defined effect")),
     responses((status = 204, description = "The run does not use the effect"), Refusals))]
 pub async fn opt_out(
@@ -78,7 +78,7 @@ pub async fn delete(State(lab): State<Lab>, Path((kind, id)): Path<(String, Stri
 }
 
 /// Signals, functions and operators that a formula of a kind may use
-#[utoipa::path(get, path = "/formulas/{kind}", operation_id = "formula_language", tag = "effects",
+#[utoipa::path(get, path = "/formulas/{kind}", operation_id = "get_formula_language", tag = "effects",
     params(("kind" = String, Path, description = "Kind of runs")),
     responses((status = 200, description = "Signals, functions and operators", body = FormulaLanguage), Refusals))]
 pub async fn language(State(lab): State<Lab>, Path(kind): Path<String>) -> Answer<FormulaLanguage> {

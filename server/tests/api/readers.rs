@@ -7,10 +7,10 @@ use serde_json::Value;
 /// Its permitted operations other than GET.
 const MAY: [&str; 9] = [
     "check_effect",
-    "diagnose",
+    "diagnose_run",
     "evaluate_model",
-    "preview",
     "preview_import",
+    "preview_plan",
     "stop_autopilot",
     "stop_bench",
     "stop_run",
