@@ -64,12 +64,15 @@ impl Display {
             None if progress.elapsed_s > 0.0 => elapsed_s / progress.elapsed_s,
             None => 1.0,
         };
+        let remaining_s = progress.remaining_s * wall;
+        let whole_s = elapsed_s + remaining_s;
         Progress {
             step: progress.step,
             steps: progress.steps,
             label: progress.label.clone(),
             elapsed_s,
-            remaining_s: progress.remaining_s * wall,
+            remaining_s,
+            fraction: if whole_s > 0.0 { elapsed_s / whole_s } else { 0.0 },
             at_most: progress.at_most,
         }
     }

@@ -38,17 +38,15 @@ impl RunProgress {
         if std::mem::take(&mut self.paused) {
             self.printed_at = None;
         }
-        let whole_s = progress.elapsed_s + progress.remaining_s;
-        let share = if whole_s > 0.0 { (progress.elapsed_s / whole_s).clamp(0.0, 1.0) } else { 0.0 };
         let at_most = if progress.at_most { "at most " } else { "" };
         let left = format!("{at_most}{:.0} s left", progress.remaining_s);
         let step = format!("step {}/{}", (progress.step + 1).min(progress.steps), progress.steps);
         if let Some(bar) = &self.bar {
-            bar.set_position((1000.0 * share) as u64);
+            bar.set_position((1000.0 * progress.fraction) as u64);
             bar.set_message(format!("{left}  {step}  {}", progress.label));
         } else if self.printed_at.is_none_or(|printed_at| printed_at.elapsed() >= LINE_EVERY) {
             self.printed_at = Some(Instant::now());
-            eprintln!("  {:>3.0} %  {left}  {step}  {}", 100.0 * share, progress.label);
+            eprintln!("  {:>3.0} %  {left}  {step}  {}", 100.0 * progress.fraction, progress.label);
         }
     }
 

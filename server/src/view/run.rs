@@ -200,6 +200,9 @@ pub struct Progress {
     /// In wall-clock time, like the remaining time.
     pub elapsed_s: f64,
     pub remaining_s: f64,
+    /// Completed fraction of the expected duration, 0 to 1.
+    #[serde(default)]
+    pub fraction: f64,
     /// The run warms the joint up until it is steady: it takes no longer than the remaining time, and may end before.
     #[serde(default)]
     pub at_most: bool,

@@ -61,7 +61,7 @@ it('draws the model of a run that is on beside what was measured, apart from the
 });
 
 it('counts the step that is on, and stays on the last', () => {
-	const at = (step: number) => activeStep({ step, steps: 3, label: '', elapsed_s: 0, remaining_s: 0, at_most: false });
+	const at = (step: number) => activeStep({ step, steps: 3, label: '', elapsed_s: 0, remaining_s: 0, fraction: 0, at_most: false });
 	expect([at(0), at(1), at(3)]).toEqual([1, 2, 3]);
 });
 
