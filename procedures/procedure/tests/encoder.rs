@@ -288,6 +288,15 @@ fn offset_and_delay_are_those_that_the_mock_was_given() {
     let delay = run(&mut bench, "encoder_delay", json!({}));
     check(&delay, "delay", truth.delay_s, 1e-6);
     check(&delay, "hysteresis", truth.hysteresis_rad, 2.0 * POINT_RAD);
+    // Table 4.2: three speeds in both directions; hysteresis belongs to the difference.
+    for i in 1..=6 {
+        let figure = |name: &str| delay.quantity(&format!("{name}_{i}")).unwrap();
+        let (speed, disparity) = (figure("speed").value, figure("disparity"));
+        let truth_rad = -truth.delay_s * speed - truth.hysteresis_rad * speed.signum();
+        let [low, high] = disparity.ci95.unwrap();
+        assert!((low..=high).contains(&truth_rad), "{low:e} … {high:e} for {truth_rad:e} at {speed} rad/s");
+        assert_eq!(figure("delay").value, -disparity.value / speed);
+    }
 
     let without_s = delay.quantity("delay").unwrap().value;
     let (truth, _mock, mut bench) = open(3, true);

@@ -31,6 +31,7 @@ mod runs;
 mod secrets;
 mod serve;
 mod simulate;
+mod test_plan;
 mod transfer;
 mod units;
 mod user_effects;

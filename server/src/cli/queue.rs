@@ -3,11 +3,11 @@
 use super::arguments::{Queue, QueueCommand, UnitArguments};
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::files;
 use super::offline::json_out;
 use super::queue_entry::show;
 use super::run::{choose_bench, unit};
 use super::units::print_rows;
+use super::{files, test_plan};
 use crate::view::{Bench, BenchQueue, NewRun, NewTestPlan, ProceedIf, QueueEntry, QueuePriority, QueueState, word};
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -18,9 +18,13 @@ pub fn queue(arguments: &Queue) -> Done {
     let json = arguments.json;
     match arguments.command.as_ref().unwrap_or(&QueueCommand::List) {
         QueueCommand::List => list(&client, json),
-        QueueCommand::Add { plan, bench, priority, unit } => {
+        QueueCommand::Add { plan, bench, priority, wait, junit, unit } => {
+            junit.iter().try_for_each(|path| files::writable(path))?;
             let plan = new_plan(&client, plan, bench.as_deref(), *priority, unit)?;
             let entries: Vec<QueueEntry> = client.post("/queue", &plan)?;
+            if *wait || junit.is_some() {
+                return test_plan::wait(&client, &entries, junit.as_deref(), json);
+            }
             if json {
                 return json_out(&entries);
             }

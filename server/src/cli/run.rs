@@ -3,6 +3,7 @@
 use super::arguments::{Run as Arguments, UnitArguments};
 use super::client::Client;
 use super::exit::{Done, Exit};
+use super::offline::json_out;
 use super::outcome::{Found, title};
 use super::waiting::{lost, notify_on_interrupt, wait_at_most};
 use super::{files, identify, queue_entry};
@@ -10,6 +11,8 @@ use crate::limits::{self, Case, CaseOutcome, Measured, Outcome, Requirement};
 use crate::view::{Bench, Identification, LimitOutcome, NewRun, Run, RunState, Unit, word};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
+use std::path::Path;
+use std::time::Duration;
 
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach)?;
@@ -20,29 +23,40 @@ pub fn run(arguments: &Arguments) -> Done {
         return queue_entry::show(&client, &entry, arguments.json);
     }
     let ended = new.and_then(|new| start(&client, arguments, new));
-    let found =
-        ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
+    let found = found(&client, &ended);
     let required: Vec<(&Requirement, Outcome)> = match &found {
         Some(found) => arguments.require.iter().map(|limit| (limit, check(limit, found))).collect(),
         None => Vec::new(),
     };
     if let Some(path) = &arguments.junit {
-        files::write(path, report(arguments, &ended, found.as_ref(), &required).as_bytes())?;
+        let cases = cases(&title(arguments), &ended, found.as_ref(), &arguments.require, &required);
+        write_junit(path, &[(&ended, found.as_ref())], &cases)?;
     }
     let run = ended?;
-    let message = if run.summary.state.is_over() { run.ending() } else { String::new() };
     if arguments.json {
-        let text = serde_json::to_string_pretty(&run).map_err(|fault| Exit::failed(fault.to_string()))?;
-        println!("{text}");
-    } else if !message.is_empty() {
+        json_out(&run)?;
+    }
+    conclude(&run, found.as_ref(), &required, arguments.json)
+}
+
+/// The result of a completed run.
+pub(super) fn found(client: &Client, ended: &Result<Run, Exit>) -> Option<Found> {
+    let completed = ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed)?;
+    Some(client.get(&format!("/runs/{}/identification", completed.summary.id)))
+}
+
+/// Prints how a run ended and its result, unless `quiet`. Returns the exit of the command.
+pub(super) fn conclude(run: &Run, found: Option<&Found>, required: &[(&Requirement, Outcome)], quiet: bool) -> Done {
+    let message = if run.summary.state.is_over() { run.ending() } else { String::new() };
+    if !quiet && !message.is_empty() {
         println!("{message}");
-        if let Some(Ok(found)) = &found {
+        if let Some(Ok(found)) = found {
             identify::print(found);
         }
     }
     match run.summary.state.is_over() && run.summary.state != RunState::Completed {
-        true => Err(Exit::failed(if arguments.json { message } else { String::new() })),
-        false => judge(found.as_ref(), &required, arguments.json),
+        true => Err(Exit::failed(if quiet { message } else { String::new() })),
+        false => judge(found, required, quiet),
     }
 }
 
@@ -72,36 +86,36 @@ fn limits_text(client: &Client, arguments: &Arguments) -> Result<Option<String>,
     Ok(Some(text))
 }
 
-/// The JUnit report. The limits are skipped if no run has completed.
-fn report(
-    arguments: &Arguments,
+/// The JUnit cases of a run: the run and its limits. The limits are skipped if it has not completed.
+pub(super) fn cases(
+    title: &str,
     ended: &Result<Run, Exit>,
     found: Option<&Found>,
+    require: &[Requirement],
     required: &[(&Requirement, Outcome)],
-) -> String {
+) -> Vec<Case> {
     let found_case = found.map(|found| found.as_ref().map_err(|exit| exit.message.as_str()));
-    let (suite, case) = match ended {
-        Ok(run) => (run.summary.bench.as_str(), limits::run_case(run, found_case)),
-        Err(exit) => {
-            let outcome = CaseOutcome::Error(exit.message.clone());
-            ("jointbench", Case { name: title(arguments), time_s: 0.0, outcome })
-        }
-    };
-    let mut cases = vec![case];
+    let mut cases = vec![match ended {
+        Ok(run) => limits::run_case(run, found_case),
+        Err(exit) => Case { name: title.to_owned(), time_s: 0.0, outcome: CaseOutcome::Error(exit.message.clone()) },
+    }];
     cases.extend(required.iter().map(|(limit, outcome)| limits::limit_case(&limit.text, outcome)));
-    let result = found.and_then(|found| found.as_ref().ok());
-    if let Some(found) = result {
+    if let Some(Ok(found)) = found {
         cases.extend(found.limits.iter().flat_map(limits::cases_of));
     } else {
         let kept = ended.as_ref().ok().map(limits::of_run).unwrap_or_default();
-        let unchecked = arguments.require.iter().filter(|_| required.is_empty()).chain(&kept);
+        let unchecked = require.iter().filter(|_| required.is_empty()).chain(&kept);
         cases.extend(unchecked.map(|limit| limits::skipped_case(&limit.text)));
     }
-    limits::junit(suite, &cases, result.map_or(&[], |found| &found.result.warnings))
+    cases
 }
 
-fn shown(client: &Client, run: &Run) -> Found {
-    client.get(&format!("/runs/{}/identification", run.summary.id))
+/// One suite, named after the bench, with the warnings of all results.
+pub(super) fn write_junit(path: &Path, runs: &[(&Result<Run, Exit>, Option<&Found>)], cases: &[Case]) -> Done {
+    let suite = runs.iter().find_map(|(ended, _)| Some(ended.as_ref().ok()?.summary.bench.clone()));
+    let found = runs.iter().filter_map(|(_, found)| found.and_then(|found| found.as_ref().ok()));
+    let warnings: Vec<String> = found.flat_map(|found| found.result.warnings.clone()).collect();
+    files::write(path, limits::junit(suite.as_deref().unwrap_or("jointbench"), cases, &warnings).as_bytes())
 }
 
 fn check(limit: &Requirement, found: &Found) -> Outcome {
@@ -137,7 +151,11 @@ fn judge(found: Option<&Found>, required: &[(&Requirement, Outcome)], quiet: boo
         .and_then(|found| found.as_ref().ok())
         .and_then(of_limits)
         .map(|exit| Exit { message: if quiet { exit.message } else { String::new() }, ..exit });
-    let exits: Vec<Exit> = result.err().into_iter().chain(of_required).chain(of_limits).collect();
+    worst(&result.err().into_iter().chain(of_required).chain(of_limits).collect::<Vec<_>>())
+}
+
+/// The first exit of the code with the highest priority.
+pub(super) fn worst(exits: &[Exit]) -> Done {
     match [2, 1, 3].into_iter().find_map(|code| exits.iter().find(|exit| exit.code == code)) {
         None => Ok(()),
         Some(worst) => Err(worst.clone()),
@@ -181,19 +199,27 @@ fn start(client: &Client, arguments: &Arguments, new: NewRun) -> Result<Run, Exi
         }
         None => client.post("/runs", &new)?,
     };
-    let (id, procedure, bench) = (run.summary.id, &run.summary.procedure, &run.summary.bench);
     if !arguments.json {
-        let goes_on = arguments.continues.map(|before| format!(", continues run {before}")).unwrap_or_default();
-        let unit = run.summary.unit.as_ref().map(|unit| format!(", unit {}", unit.line())).unwrap_or_default();
-        println!("run {id}: {procedure} on {bench}{unit}{goes_on}  {}", client.page(&format!("/runs/{id}")));
+        announce(client, &run, arguments.continues);
     }
     if !arguments.waits() {
         return Ok(run);
     }
-    notify_on_interrupt(id, arguments.lease);
     // The arguments are valid: later errors belong to the run.
-    wait_at_most(client, id, arguments.timeout, arguments.lease)
-        .map_err(|exit| lost(id, client.is_answered(), &exit.message))
+    end_of(client, run.summary.id, arguments.timeout, arguments.lease)
+}
+
+pub(super) fn announce(client: &Client, run: &Run, continues: Option<i64>) {
+    let (id, procedure, bench) = (run.summary.id, &run.summary.procedure, &run.summary.bench);
+    let goes_on = continues.map(|before| format!(", continues run {before}")).unwrap_or_default();
+    let unit = run.summary.unit.as_ref().map(|unit| format!(", unit {}", unit.line())).unwrap_or_default();
+    println!("run {id}: {procedure} on {bench}{unit}{goes_on}  {}", client.page(&format!("/runs/{id}")));
+}
+
+/// The ended run.
+pub(super) fn end_of(client: &Client, id: i64, limit: Option<Duration>, lease: Option<Duration>) -> Result<Run, Exit> {
+    notify_on_interrupt(id, lease);
+    wait_at_most(client, id, limit, lease).map_err(|exit| lost(id, client.is_answered(), &exit.message))
 }
 
 /// The requested run; of a continued run only its options.

@@ -212,6 +212,35 @@ fn a_run_that_decides_nothing_is_no_success() {
 }
 
 #[test]
+fn a_test_plan_is_waited_for_to_its_end_and_reported() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = bench(folder.path(), "b", 200.0);
+    let daemon = Daemon::serve(&folder.path().join("data"), &config);
+    let plan = folder.path().join("plan.toml");
+    let junit = folder.path().join("plan.xml");
+    let wait = |proceed_if: &str, more: &[&str]| {
+        let sliding = "{ top_torque_nm = 0.06, repeats = 2, amplitudes = 2, swings = 1 }";
+        let runs = format!(
+            "proceed_if = \"{proceed_if}\"\n[[run]]\nprocedure = \"presliding\"\nparameters = {sliding}\n\
+             [[run]]\nprocedure = \"demagnetise\"\nparameters = {{ turns = 1, speed_rad_s = 3 }}\n"
+        );
+        std::fs::write(&plan, runs).expect("the plan");
+        let arguments = ["queue", "add", &plan.display().to_string(), "--unit", "SN1", "--daemon", &daemon.base];
+        let ended = run(&[&arguments[..], more].concat());
+        (ended.status.code(), stdout(&ended), stderr(&ended))
+    };
+    let (code, text, _) = wait("completed", &["--wait"]);
+    assert_eq!(code, Some(3), "the first result is inconclusive: {text}");
+    assert!(text.contains("run 1: inconclusive") && text.contains("run 2: identified"), "{text}");
+
+    let (code, text, fault) = wait("identified", &["--junit", &junit.display().to_string()]);
+    assert_eq!(code, Some(1), "the second run was not made: {text} {fault}");
+    assert!(fault.contains("was removed (run 3 of the test plan is inconclusive)"), "{fault}");
+    let report = std::fs::read_to_string(&junit).expect("the report");
+    assert!(report.contains("tests=\"2\"") && report.contains("errors=\"1\""), "{report}");
+}
+
+#[test]
 fn a_second_daemon_on_the_same_folder_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let config = bench(folder.path(), "b", 20.0);

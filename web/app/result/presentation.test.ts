@@ -22,7 +22,7 @@ it('sets what was found for several ways side by side, and nothing else', () => 
 		['Sum of the errors, share of none', 0, 1, 2],
 	]);
 	expect(configurationTable(found.slice(1))).toBeNull();
-	expect(configurationTable(found.map((one) => ({ ...one, ci95: [0, 1] })))).toBeNull();
+	expect(configurationTable([{ ...found[0]!, name: 'delay', symbol: 't_d', configuration: undefined }, ...found])).toEqual(table);
 });
 
 it('takes a campaign apart into its parts, and nothing else', () => {

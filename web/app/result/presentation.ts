@@ -58,20 +58,20 @@ export function formatResult(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci
 	};
 }
 
-/** Results for several directions. */
+/** Results for several directions, methods or speeds. */
 export interface ResultTable {
 	configurations: string[];
 	rows: { symbol: string; title: string; of: IdentifiedQuantity[] }[];
 }
 
-/** A column per configuration, if every symbol has a value, without an interval, for each of at least three. */
+/** A row per configuration, if every symbol that has configurations has a value for each of at least three. */
 export function configurationTable(quantities: readonly IdentifiedQuantity[]): ResultTable | null {
 	const bySymbol = new Map<string, IdentifiedQuantity[]>();
-	for (const one of quantities) bySymbol.set(one.symbol, [...(bySymbol.get(one.symbol) ?? []), one]);
+	for (const one of quantities.filter(({ configuration }) => configuration)) bySymbol.set(one.symbol, [...(bySymbol.get(one.symbol) ?? []), one]);
 	const rows = [...bySymbol].map(([symbol, of]) => ({ symbol, title: of[0]!.base_title ?? of[0]!.title, of }));
 	const configurations = (rows[0]?.of ?? []).flatMap(({ configuration }) => configuration ?? []);
 	const hasEach = ({ of }: { of: IdentifiedQuantity[] }) => of.length === configurations.length && of.every((one, i) => one.configuration === configurations[i]);
-	return configurations.length > 2 && rows.length > 1 && rows.every(hasEach) && quantities.every((one) => !one.ci95) ? { configurations, rows } : null;
+	return configurations.length > 2 && rows.length > 1 && rows.every(hasEach) ? { configurations, rows } : null;
 }
 
 /** A part of a campaign with its quantities and figures. */

@@ -111,7 +111,7 @@ A test plan has runs of one bench and one unit, in order:
   parameters = { repeats = 3 }
   limits = \"limits.toml\"
 
-  jointbench queue add plan.toml --unit SN123
+  jointbench queue add plan.toml --unit SN123 --wait --junit report.xml
 
 The same as JSON in a .json file. The limits file is relative to the test plan. `proceed_if` is \"completed\" (default), \
 \"identified\", or \"pass\" (identified and all limits met). If a run does not meet it, the rest of its test plan is removed. The \
@@ -146,6 +146,12 @@ pub enum QueueCommand {
         /// The largest priority starts first
         #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
         priority: i32,
+        /// Wait for the end of all runs; the exit code is that of the worst, as of `jointbench run`
+        #[arg(long)]
+        wait: bool,
+        /// Write a JUnit report with one test case per run and limit; waits for the end
+        #[arg(long, value_name = "REPORT.XML")]
+        junit: Option<PathBuf>,
         #[command(flatten)]
         unit: UnitArguments,
     },

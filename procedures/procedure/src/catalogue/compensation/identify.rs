@@ -228,6 +228,9 @@ impl<'f> Conclusion<'f> {
             [] => "No method over-compensates.".to_owned(),
             methods => format!("Over-compensating methods: {}.", methods.join(", ")),
         });
+        if none.rounds.len() > 1 {
+            sentences.push("The intervals are the scatter between rounds, at the temperature of this run.".to_owned());
+        }
         sentences.join(" ")
     }
 

@@ -7,8 +7,8 @@ use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
-use crate::findings::solve;
-use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
+use crate::findings::{Solved, solve, t95};
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
 use crate::stage_pose::StagePose;
@@ -69,7 +69,7 @@ impl Procedure for EncoderDelay {
     }
 
     fn finds(&self) -> Vec<Findable> {
-        findable(&[("s", "delay filter_delay"), ("rad", "offset hysteresis")])
+        findable(&[("s", "delay filter_delay delay_#"), ("rad", "offset hysteresis disparity_#"), ("rad/s", "speed_#")])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
@@ -89,6 +89,7 @@ impl Procedure for EncoderDelay {
             quantity(["offset", "ξ", "Offset at rest", "rad"], offset_rad, Some(solved.ci95(0))),
             quantity(["hysteresis", "h", "Half the hysteresis", "rad"], hysteresis_rad, Some(solved.ci95(1))),
         ];
+        quantities.extend(by_speed(&points, &solved));
         let without_s = values.number("delay_without_filter_s");
         let mut summary = format!("The encoder under test lags by {:.2} µs.", 1e6 * delay_s);
         if without_s > 0.0 {
@@ -121,4 +122,42 @@ impl Procedure for EncoderDelay {
             ..Identification::default()
         })
     }
+}
+
+/// Largest difference of measured speeds that belong to one set-point, relative.
+const SAME_SPEED: f64 = 0.02;
+
+/// Table 4.2: measured speed, encoder difference without the offset, and their ratio, for each set-point. The intervals
+/// come from the scatter around the straight line and from the offset.
+fn by_speed(points: &[(f64, f64)], solved: &Solved<3>) -> Vec<Quantity> {
+    let [offset_rad, hysteresis_rad, delay_s] = solved.values;
+    let rest = |(v, mean): &(f64, f64)| mean - (offset_rad - hysteresis_rad * v.signum() - delay_s * v);
+    let freedom = points.len() as f64 - 3.0;
+    let scatter_rad = (points.iter().map(|point| rest(point).powi(2)).sum::<f64>() / freedom).sqrt();
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let is_same = |a: &(f64, f64), b: &(f64, f64)| (b.0 - a.0).abs() < SAME_SPEED * a.0.abs();
+    let mut quantities = Vec::new();
+    for (i, repeats) in sorted.chunk_by(is_same).enumerate() {
+        let n = repeats.len() as f64;
+        let speed_rad_s = repeats.iter().map(|(v, _)| v).sum::<f64>() / n;
+        let disparity_rad = repeats.iter().map(|(_, mean)| mean - offset_rad).sum::<f64>() / n;
+        let reach_rad = (t95(freedom) * scatter_rad / n.sqrt()).hypot(solved.reach[0]);
+        let ends = |value: f64, reach: f64| Some([value - reach, value + reach]);
+        let here_s = -disparity_rad / speed_rad_s;
+        let found = [
+            (["speed", "ω", "Measured speed", "rad/s"], speed_rad_s, None),
+            (
+                ["disparity", "Δ", "Encoder difference without the offset", "rad"],
+                disparity_rad,
+                ends(disparity_rad, reach_rad),
+            ),
+            (["delay", "t_ω", "Delay at this speed", "s"], here_s, ends(here_s, reach_rad / speed_rad_s.abs())),
+        ];
+        for ([name, symbol, title, unit], value, ci95) in found {
+            let words = [&format!("{name}_{}", i + 1), symbol, title, unit];
+            quantities.push(quantity(words, value, ci95).in_configuration(&format!("{speed_rad_s:+.1} rad/s")));
+        }
+    }
+    quantities
 }
