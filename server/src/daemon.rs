@@ -1,7 +1,7 @@
 //! The daemon: a lab with a network interface.
 
 use crate::api::{self, Transport};
-use crate::config::BenchDescription;
+use crate::config::{BenchDescription, Notify};
 use crate::job;
 use crate::lab::{Lab, LabError, Tokens, weakness};
 use crate::listener::{self, Limits, Tls, TlsFiles};
@@ -20,6 +20,7 @@ pub struct DaemonSettings {
     pub read_token: Option<String>,
     pub network: Network,
     pub benches: Vec<BenchDescription>,
+    pub notify: Notify,
     /// Path of the `jointbench` executable, for parts of the daemon in separate processes.
     pub program: PathBuf,
     /// Limits of one computation on whole runs.
@@ -55,9 +56,15 @@ impl Daemon {
         refuse_plain(&settings)?;
         let listener = TcpListener::bind(settings.listen).await.map_err(|fault| taken(settings.listen, &fault))?;
         let address = listener.local_addr().map_err(|fault| taken(settings.listen, &fault))?;
-        let lab = Lab::open(&settings.data, settings.benches, tokens, settings.program, settings.analysis).await?;
-        let router = api::router(lab.clone(), Transport { tls: tls.is_some(), behind_proxy });
         let scheme = if tls.is_some() { "https" } else { "http" };
+        let mut notify = settings.notify;
+        // An address such as 0.0.0.0 is no link.
+        if notify.dashboard.is_none() && !address.ip().is_unspecified() {
+            notify.dashboard = Some(format!("{scheme}://{address}"));
+        }
+        let (data, benches, program) = (&settings.data, settings.benches, settings.program);
+        let lab = Lab::open(data, benches, tokens, program, settings.analysis, notify).await?;
+        let router = api::router(lab.clone(), Transport { tls: tls.is_some(), behind_proxy });
         let server = tokio::spawn(listener::serve(listener, router, tls, limits));
         tracing::info!(%address, scheme, data = %settings.data.display(), "listening");
         Ok(Daemon { lab, address, scheme, server })

@@ -15,6 +15,7 @@ pub mod lab;
 pub mod limits;
 pub mod listener;
 pub mod live;
+mod notify;
 mod priority;
 pub mod program;
 pub mod report;

@@ -16,6 +16,7 @@ mod live;
 mod log;
 mod models;
 mod notes;
+mod notifications;
 mod presence;
 mod problem;
 mod procedures;
@@ -216,6 +217,8 @@ fn daemon() -> OpenApiRouter<Lab> {
         .routes(routes!(log::log))
         .routes(routes!(tokens::list, tokens::make))
         .routes(routes!(tokens::revoke))
+        .routes(routes!(notifications::list))
+        .routes(routes!(notifications::test))
         .routes(routes!(health::health))
         .routes(routes!(health::specification))
 }

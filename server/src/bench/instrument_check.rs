@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn every_mock_bench_is_ready_and_described() {
         for (name, text) in READY_MADE.into_iter().filter(|(name, _)| name.ends_with("-mock")) {
-            let mut reached = reach(&parse(name, text).unwrap()[0]).unwrap();
+            let mut reached = reach(&parse(name, text).unwrap().benches[0]).unwrap();
             let checks = check_instruments(&mut reached.slots);
             assert_eq!(checks.len(), reached.slots.asked.len(), "{name}");
             for InstrumentCheck { role, state, timing } in checks {
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn a_problem_of_an_instrument_is_reported() {
         let (name, text) = READY_MADE[0];
-        let mut reached = reach(&parse(name, text).unwrap()[0]).unwrap();
+        let mut reached = reach(&parse(name, text).unwrap().benches[0]).unwrap();
         reached.slots.joint.as_mut().unwrap().arm(RadPerSec(10.0), Amperes(1.0)).unwrap();
         let checks = check_instruments(&mut reached.slots);
         let why =

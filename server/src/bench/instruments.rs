@@ -112,7 +112,7 @@ mod tests {
     fn a_recorded_bench_can_be_opened_again_from_its_record() {
         let folder = tempfile::tempdir().unwrap();
         let (name, text) = READY_MADE.into_iter().find(|(name, _)| *name == "encoder-bench-mock").unwrap();
-        let mut description = parse(name, text).unwrap().remove(0);
+        let mut description = parse(name, text).unwrap().benches.remove(0);
         description.record = Some(folder.path().join(name));
         let asked = reach(&description).unwrap().slots.asked;
         let opening = std::fs::read_dir(folder.path().join(name)).unwrap().next().unwrap().unwrap().path();

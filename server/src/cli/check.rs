@@ -4,7 +4,7 @@ use super::arguments::Check;
 use super::exit::{Done, Exit};
 use super::serve::describe;
 use crate::bench::{InstrumentCheck, check_instruments, reach};
-use crate::config::{BenchDescription, READY_MADE, unread};
+use crate::config::{BenchDescription, Description, READY_MADE, unread};
 use jiff::Zoned;
 use jointbench_instrument::roles::Identity;
 
@@ -23,7 +23,10 @@ pub fn check(arguments: &Check) -> Done {
         print!("{text}");
         return Ok(());
     }
-    let benches = describe(&arguments.config)?;
+    let Description { benches, notify } = describe(&arguments.config)?;
+    for target in &notify.targets {
+        println!("notify {} ({}): description is valid", target.name, target.channel.kind());
+    }
     let not_ready: usize = benches.iter().map(check_bench).sum();
     match not_ready {
         0 => Ok(()),

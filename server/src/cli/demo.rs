@@ -7,7 +7,7 @@ use super::exit::{Done, Exit};
 use super::print;
 use super::progress::RunProgress;
 use super::serve::{runtime, settings};
-use crate::config::BenchDescription;
+use crate::config::{BenchDescription, Description, Notify};
 use crate::daemon::{Daemon, shutdown_signal};
 use crate::lab::{LOCAL, Lab};
 use crate::view::{Model, NewRun, Run, RunState, Suggestion, reread};
@@ -24,9 +24,10 @@ pub fn demo(arguments: Demo) -> Done {
     let hidden = Hidden::choose(&arguments)?;
     let mock = MockSettings::new(hidden.setup.joint, hidden.seed).hiding(&[hidden.effect]);
     let benches = vec![BenchDescription::mock(hidden.setup.bench, mock)];
+    let description = Description { benches, notify: Notify::default() };
     let stays = !arguments.exit;
     runtime()?.block_on(async {
-        let daemon = Daemon::start(settings(arguments.place, "jointbench-data/demo", benches)?).await?;
+        let daemon = Daemon::start(settings(arguments.place, "jointbench-data/demo", description)?).await?;
         let address = format!("{}://{}", daemon.scheme, daemon.address);
         let end = tokio::select! {
             shown = show(&daemon.lab, &hidden) => match shown {

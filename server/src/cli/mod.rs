@@ -17,6 +17,7 @@ mod log;
 mod manual;
 mod memory;
 mod model;
+mod notify;
 mod offline;
 mod outcome;
 mod pdf;
@@ -75,6 +76,7 @@ pub fn main() -> ExitCode {
         Command::Reset(arguments) => control::reset(&arguments),
         Command::ServoMemory(arguments) => memory::memory(&arguments),
         Command::Queue(arguments) => queue::queue(&arguments),
+        Command::Notify(arguments) => notify::notify(&arguments),
         Command::Runs(arguments) => runs::runs(&arguments),
         Command::Units(arguments) => units::units(&arguments),
         Command::Autopilot(arguments) => autopilot::autopilot(&arguments),

@@ -2,13 +2,11 @@
 
 use super::arguments::{Reach, ServedTokens};
 use super::exit::Exit;
+use crate::config::read_secret;
 use crate::program::TOKENS;
 use std::ffi::{OsStr, OsString};
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Limit of a token file: a token is one short line.
-const LONGEST_BYTES: u64 = 4096;
 /// Folder of the files from systemd (`LoadCredential=`).
 const CREDENTIALS: &str = "CREDENTIALS_DIRECTORY";
 const CREDENTIAL: &str = "jointbench-token";
@@ -43,33 +41,8 @@ fn credential(name: &str) -> Option<PathBuf> {
 }
 
 fn read(file: &Path) -> Result<String, Exit> {
-    let refused = |why: String| Exit::bad_input(format!("token file {}: {why}", file.display()));
-    let opened = std::fs::File::open(file).map_err(|fault| refused(format!("cannot be read ({fault})")))?;
-    warn_if_shared(file, &opened);
-    let mut text = String::new();
-    opened
-        .take(LONGEST_BYTES)
-        .read_to_string(&mut text)
-        .map_err(|fault| refused(format!("is not a text file ({fault})")))?;
-    match text.trim() {
-        "" => Err(refused("is empty: generate a token with `openssl rand -hex 24`".into())),
-        token if token.contains('\n') => Err(refused("has more than one line: write only the token".into())),
-        token => Ok(token.to_owned()),
-    }
+    read_secret(file).map_err(|why| Exit::bad_input(format!("token file {}: {why}", file.display())))
 }
-
-#[cfg(unix)]
-fn warn_if_shared(file: &Path, opened: &std::fs::File) {
-    use std::os::unix::fs::PermissionsExt;
-    const OTHERS: u32 = 0o007;
-    if opened.metadata().is_ok_and(|opened| opened.permissions().mode() & OTHERS != 0) {
-        let file = file.display();
-        eprintln!("jointbench: token file {file} is readable by all users of this computer: chmod 600 {file}");
-    }
-}
-
-#[cfg(not(unix))]
-fn warn_if_shared(_: &Path, _: &std::fs::File) {}
 
 /// Removes tokens from the arguments, which all users of the computer can see (`ps`). The program restarts itself with
 /// the tokens in its environment. Returns if the arguments contain no token.

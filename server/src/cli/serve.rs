@@ -3,7 +3,7 @@
 use super::arguments::{Place, Serve};
 use super::exit::{Done, Exit};
 use super::secrets;
-use crate::config::{self, BenchDescription};
+use crate::config::{self, BenchDescription, Description};
 use crate::daemon::{Daemon, DaemonSettings, Network, shutdown_signal};
 use crate::job::{GIB, Limits};
 use crate::listener::TlsFiles;
@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 pub fn serve(arguments: Serve) -> Done {
-    let benches = describe(&arguments.config)?;
+    let description = describe(&arguments.config)?;
     let runtime = runtime()?;
     let done = runtime.block_on(async {
-        let daemon = Daemon::start(settings(arguments.place, "jointbench-data", benches)?).await?;
+        let daemon = Daemon::start(settings(arguments.place, "jointbench-data", description)?).await?;
         println!("dashboard and API on {}://{}  (Ctrl-C to exit)", daemon.scheme, daemon.address);
         shutdown_signal().await;
         daemon.stop().await;
@@ -26,16 +26,17 @@ pub fn serve(arguments: Serve) -> Done {
 }
 
 /// Reads a description from a file or by the name of a ready-made one.
-pub(super) fn describe(config: &str) -> Result<Vec<BenchDescription>, Exit> {
+pub(super) fn describe(config: &str) -> Result<Description, Exit> {
     let ready_made = config::READY_MADE.iter().find(|(name, _)| *name == config);
-    let benches = match ready_made {
+    let description = match ready_made {
         Some((name, text)) => config::parse(name, text),
         None => config::read(Path::new(config)),
     };
-    benches.map_err(|errors| Exit::bad_input(errors.to_string()))
+    description.map_err(|errors| Exit::bad_input(errors.to_string()))
 }
 
-pub(super) fn settings(place: Place, data: &str, mut benches: Vec<BenchDescription>) -> Result<DaemonSettings, Exit> {
+pub(super) fn settings(place: Place, data: &str, description: Description) -> Result<DaemonSettings, Exit> {
+    let Description { mut benches, notify } = description;
     if let Some(folder) = &place.record {
         benches.iter_mut().for_each(|bench| bench.record = Some(folder.join(&bench.name)));
     }
@@ -53,6 +54,7 @@ pub(super) fn settings(place: Place, data: &str, mut benches: Vec<BenchDescripti
         read_token,
         network: Network { tls, behind_proxy: place.behind_proxy, ..Network::default() },
         benches,
+        notify,
         program: crate::program::path(),
         analysis,
     })

@@ -24,7 +24,7 @@ struct Simulated {
 /// Serves the instruments until the program is ended.
 pub fn simulate(arguments: &Simulate) -> Done {
     let mut benches = Vec::new();
-    for description in describe(&arguments.config)? {
+    for description in describe(&arguments.config)?.benches {
         let bench = MockBench::start(settings(&description, arguments)?);
         benches.push((description.name, bench.map_err(|fault| Exit::failed(fault.to_string()))?));
     }

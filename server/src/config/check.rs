@@ -3,9 +3,10 @@
 use super::error::{Collector, ConfigErrors};
 use super::figures::{Sheet, check_reach};
 use super::instruments::{calibrations, instruments, ninter};
+use super::notify::{check_dashboard, check_targets};
 use super::raw::{RawBench, RawFile, RawMock};
-use super::values::{choice, positive, within};
-use super::{BenchDescription, Source};
+use super::values::{choice, flip, positive, within};
+use super::{BenchDescription, Description, Notify, Source};
 use jointbench_devices::sim::{Load, MockInstrument, PlannedTrouble, Supply, Transport, Trouble};
 use jointbench_devices::{Joint, MockSettings};
 use jointbench_instrument::spelling::plainly;
@@ -15,7 +16,7 @@ use toml::Spanned;
 /// Of the name of a bench.
 const LONGEST_NAME: usize = 64;
 
-pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, ConfigErrors> {
+pub(super) fn check(file: &str, text: &str) -> Result<Description, ConfigErrors> {
     let mut wrong = Collector::new(text);
     let raw: RawFile = match toml::from_str(text) {
         Ok(raw) => raw,
@@ -37,7 +38,18 @@ pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Con
     }
     // Checks every bench, so that the errors of all benches are reported.
     let benches: Vec<_> = raw.bench.iter().map(|bench| check_bench(bench, text, &mut wrong)).collect();
-    wrong.finish(file, benches.into_iter().collect())
+    let heads = text.lines().filter(|line| is_notify(line)).count();
+    if let Some(hidden) = raw.notify.get(heads) {
+        wrong.add(hidden.span(), "write each target of notifications as a table [[notify]]");
+    }
+    let targets = check_targets(file, &raw.notify, &mut wrong);
+    let dashboard = raw.dashboard.as_ref().map(|given| check_dashboard(given, &mut wrong));
+    let checked = || {
+        let benches = benches.into_iter().collect::<Option<_>>()?;
+        Some(Description { benches, notify: Notify { dashboard: flip(dashboard)?, targets: targets? } })
+    };
+    let checked = checked();
+    wrong.finish(file, checked)
 }
 
 fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<BenchDescription> {
@@ -77,7 +89,7 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
         constants: constants?,
         calibrated: calibrated?,
         record: None,
-        text: bench_section(text, raw.name.span().start).to_owned(),
+        text: without_notify(bench_section(text, raw.name.span().start)),
     })
 }
 
@@ -93,6 +105,24 @@ fn bench_section(text: &str, name_at: usize) -> &str {
         Some(own) if heads.len() > 1 => &text[heads[own]..heads.get(own + 1).copied().unwrap_or(text.len())],
         _ => text,
     }
+}
+
+/// The text without the tables of targets: their addresses are not for everybody who reads a run.
+fn without_notify(section: &str) -> String {
+    let mut notify = false;
+    let kept = section.split_inclusive('\n').filter(|line| {
+        if line.trim_start().starts_with('[') {
+            notify = is_notify(line);
+        }
+        !notify
+    });
+    kept.collect()
+}
+
+/// Whether a line is the head of a target.
+fn is_notify(line: &str) -> bool {
+    let head = line.trim_start().strip_prefix("[[").and_then(|rest| rest.split_once("]]"));
+    head.is_some_and(|(name, _)| name.trim() == "notify")
 }
 
 /// Checks simulated faults, each for an instrument of the bench.

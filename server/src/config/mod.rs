@@ -4,12 +4,16 @@ mod check;
 mod error;
 mod figures;
 mod instruments;
+mod notify;
 mod raw;
+mod secret;
 #[cfg(test)]
 mod tests;
 mod values;
 
 pub use error::{ConfigError, ConfigErrors};
+pub use notify::{Channel, Notify, NotifyEvent, NotifyTarget, Server, SigningKey};
+pub use secret::{Secret, read_secret};
 
 use jiff::civil::Date;
 use jointbench_devices::sim::{ENCODER_COUNTS, MockInstrument};
@@ -33,6 +37,13 @@ pub const READY_MADE: [(&str, &str); 8] = [
     ("puma", include_str!("../../descriptions/puma.toml")),
 ];
 
+/// A checked file.
+#[derive(Debug, Clone)]
+pub struct Description {
+    pub benches: Vec<BenchDescription>,
+    pub notify: Notify,
+}
+
 /// A checked bench.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct BenchDescription {
@@ -44,7 +55,7 @@ pub struct BenchDescription {
     pub calibrated: Vec<(String, Date)>,
     /// Each time the instruments are opened, their traffic is recorded in a new subfolder.
     pub record: Option<PathBuf>,
-    /// Original text for the provenance of its runs, without other benches of the file.
+    /// Original text for the provenance of its runs, without other benches of the file and without targets of notifications.
     pub text: String,
 }
 
@@ -146,7 +157,7 @@ impl BenchDescription {
 }
 
 /// Reads a description. Reports every error with line and remedy.
-pub fn read(path: &Path) -> Result<Vec<BenchDescription>, ConfigErrors> {
+pub fn read(path: &Path) -> Result<Description, ConfigErrors> {
     let file = path.display().to_string();
     match std::fs::read_to_string(path) {
         Ok(text) => parse(&file, &text),
@@ -166,6 +177,6 @@ pub fn unread(name: &str, fault: &std::io::Error) -> String {
 }
 
 /// `file` is the name in messages.
-pub fn parse(file: &str, text: &str) -> Result<Vec<BenchDescription>, ConfigErrors> {
+pub fn parse(file: &str, text: &str) -> Result<Description, ConfigErrors> {
     check::check(file, text)
 }

@@ -1,5 +1,6 @@
 //! The bench description before the checks. Values keep their position in the file for messages.
 
+use super::notify::NotifyEvent;
 use jointbench_devices::PumaGains;
 use jointbench_devices::sim::PlannedTrouble;
 use serde::Deserialize;
@@ -11,6 +12,26 @@ use toml::value::Datetime;
 pub struct RawFile {
     #[serde(default)]
     pub bench: Vec<RawBench>,
+    pub dashboard: Option<Spanned<String>>,
+    #[serde(default)]
+    pub notify: Vec<Spanned<RawNotify>>,
+}
+
+/// A target of notifications: `webhook`, `mail` or `mqtt`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawNotify {
+    pub name: Option<Spanned<String>>,
+    pub events: Option<Vec<NotifyEvent>>,
+    pub webhook: Option<Spanned<String>>,
+    pub mail: Option<Spanned<String>>,
+    pub smtp: Option<Spanned<String>>,
+    pub from: Option<Spanned<String>>,
+    pub mqtt: Option<Spanned<String>>,
+    pub topic: Option<Spanned<String>>,
+    /// Signing key or password.
+    pub secret_file: Option<Spanned<String>>,
+    pub secret_env: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -2,6 +2,10 @@
 
 use super::*;
 
+fn parse(file: &str, text: &str) -> Result<Vec<BenchDescription>, ConfigErrors> {
+    super::parse(file, text).map(|description| description.benches)
+}
+
 #[test]
 fn the_ready_made_descriptions_are_right() {
     for (name, text) in READY_MADE {

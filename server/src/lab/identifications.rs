@@ -226,10 +226,13 @@ impl Lab {
         });
     }
 
-    /// A run without a result is not a fault.
+    /// A run without a result is not a fault. Its notifications wait for this.
     async fn judge(&self, run: i64) {
         if let Err(fault) = with_retries(|| self.identification(run)).await {
             tracing::debug!(run.id = run, %fault, "no result of the run");
+        }
+        if let Err(fault) = self.inner.store.release_notifications(run).await {
+            tracing::warn!(run.id = run, %fault, "the notifications of the run wait longer");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Answer, Lab, LabError};
 use crate::bench::{BenchHandle, bench_view};
-use crate::view::{Bench, BenchState, word};
+use crate::view::{Bench, BenchState, NotificationTarget, word};
 use prometheus_client::collector::Collector;
 use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric, text};
 use prometheus_client::metrics::counter::ConstCounter;
@@ -93,6 +93,7 @@ impl Lab {
         let views: Vec<Bench> = benches.iter().map(|bench| bench_view(bench.description(), &bench.status())).collect();
         bench_metrics(&mut metrics, &views);
         self.queue_metrics(&mut metrics).await?;
+        self.notification_metrics(&mut metrics).await?;
         let runs = self.inner.store.run_counts().await?.into_iter().map(|(labels, count)| {
             let [bench, procedure, state] = labels;
             (vec![("bench", bench), ("procedure", procedure), ("state", state)], count)
@@ -122,6 +123,18 @@ impl Lab {
         metrics.gauge("queue_entries", "Runs that wait for the bench", None, of(|queue| queue.entries.len() as f64));
         let paused = of(|queue| f64::from(queue.paused.is_some()));
         metrics.gauge("queue_paused", "1: the queue waits for a person or a script", None, paused);
+        Ok(())
+    }
+
+    async fn notification_metrics(&self, metrics: &mut Metrics) -> Answer<()> {
+        let targets = self.notification_targets().await?;
+        let of = |value: fn(&NotificationTarget) -> u64| {
+            targets.iter().map(|target| (vec![("target", target.name.clone())], value(target) as f64)).collect()
+        };
+        let help = "Messages that wait for their delivery";
+        metrics.gauge("notifications_pending", help, None, of(|target| target.pending));
+        let help = "Messages of the last days that were not delivered within a day";
+        metrics.gauge("notifications_failed", help, None, of(|target| target.failed));
         Ok(())
     }
 }

@@ -19,6 +19,7 @@ mod model_overlay;
 mod models;
 pub mod names;
 mod notes;
+mod notifications;
 mod queue;
 mod report;
 mod resume;
@@ -46,7 +47,7 @@ pub use tokens::{Caller, LOCAL, Tokens, weakness};
 pub use transfer::{ATTENTION, COPY_OF, UNDERSTOOD};
 
 use crate::bench::{BenchHandle, InitialState, store_leftovers, worker};
-use crate::config::BenchDescription;
+use crate::config::{BenchDescription, Notify};
 use crate::job::{Jobs, Limits};
 use crate::live::Hub;
 use crate::store::{Store, StoreHealth};
@@ -55,6 +56,7 @@ use autopilot::ActiveAutopilots;
 use computation::Turns;
 use jointbench_procedure::{RunState, Safe};
 use leases::Leases;
+use notifications::Notifications;
 use queue::Queues;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -78,6 +80,7 @@ struct Inner {
     active_autopilots: ActiveAutopilots,
     queues: Queues,
     leases: Leases,
+    notifications: Notifications,
     /// Worker processes for computations on whole runs; `None` computes in this process.
     jobs: Option<Jobs>,
     turns: Turns,
@@ -92,8 +95,11 @@ impl Lab {
         tokens: Tokens,
         program: PathBuf,
         analysis: Limits,
+        notify: Notify,
     ) -> Answer<Lab> {
         let store = Store::open(data).await?;
+        let notifications = Notifications::new(notify);
+        notifications.set_targets(&store).await?;
         store.block_where_missing(descriptions.iter().map(|description| description.name.as_str())).await?;
         wait_for_workers(data).await;
         store_leftovers(data, &store).await?;
@@ -132,6 +138,7 @@ impl Lab {
                 program,
                 active_autopilots: ActiveAutopilots::default(),
                 leases: Leases::default(),
+                notifications,
                 turns: Turns::default(),
             }),
         };
@@ -139,6 +146,7 @@ impl Lab {
         lab.wait_until_secured().await;
         lab.judge_unjudged_runs();
         lab.open_queues().await?;
+        lab.open_notifications();
         tokio::spawn(lab.inner.store.clone().check_daily());
         Ok(lab)
     }
@@ -155,6 +163,7 @@ impl Lab {
                 active_autopilots: ActiveAutopilots::default(),
                 queues: Queues::default(),
                 leases: Leases::default(),
+                notifications: Notifications::default(),
                 jobs: None,
                 turns: Turns::default(),
             }),
@@ -178,6 +187,7 @@ impl Lab {
     /// Ends all runs, secures all benches and closes the store.
     pub async fn shut_down(&self) {
         self.inner.queues.abort();
+        self.inner.notifications.abort();
         self.inner.active_autopilots.abort();
         self.inner.jobs.iter().for_each(Jobs::end);
         let benches = self.inner.benches.clone();

@@ -33,6 +33,7 @@ const FILES: &[(&str, &str)] = &[
     ("0023_effect_uses.sql", include_str!("../../../migrations/0023_effect_uses.sql")),
     ("0024_limit_outcomes.sql", include_str!("../../../migrations/0024_limit_outcomes.sql")),
     ("0025_queue.sql", include_str!("../../../migrations/0025_queue.sql")),
+    ("0026_notifications.sql", include_str!("../../../migrations/0026_notifications.sql")),
 ];
 
 #[derive(Debug)]

@@ -19,6 +19,7 @@ mod mark;
 mod migrations;
 mod models;
 mod notes;
+mod notifications;
 mod open;
 mod order;
 pub mod pyramid;
@@ -46,8 +47,8 @@ pub use keeper::Loss;
 pub use order::Order;
 pub use records::{
     AutopilotRecord, CalibrationRecord, DiagnosisRecord, EffectUse, EventRecord, ModelRecord, NewModel, NewQueueEntry,
-    NewRun, NoteRecord, QueueRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord, UnitRecord, UnitRunRecord,
-    UserEffectRecord, VersionRecord, Window, WindowColumn,
+    NewRun, NoteRecord, NotificationRecord, NotifyCounts, QueueRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord,
+    UnitRecord, UnitRunRecord, UserEffectRecord, VersionRecord, Window, WindowColumn,
 };
 pub use result_cache::{Subject, packed, unpacked};
 pub use search::Search;

@@ -269,6 +269,31 @@ pub struct QueueRecord {
     pub ended_at: Option<String>,
 }
 
+/// A message of the outbox.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NotificationRecord {
+    pub id: i64,
+    /// Name of the message for its target, unique among all stores.
+    pub key: String,
+    pub event: String,
+    pub bench: String,
+    pub run: Option<RunId>,
+    pub reason: Option<String>,
+    pub created_at: String,
+    /// The text, after the first attempt.
+    pub body: Option<String>,
+    pub attempts: u32,
+}
+
+/// The messages of a target.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NotifyCounts {
+    pub pending: u64,
+    pub failed: u64,
+    pub last_delivery: Option<String>,
+    pub last_error: Option<String>,
+}
+
 /// Entry of the safety record of a bench.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SafetyRecord {

@@ -1,6 +1,6 @@
 //! A daemon for one test, with a free port and a temporary folder, and a client for it.
 
-use jointbench::config::BenchDescription;
+use jointbench::config::{BenchDescription, Notify};
 use jointbench::daemon::{Daemon, DaemonSettings, Network};
 use jointbench::job::Limits;
 use jointbench::lab::LabError;
@@ -35,6 +35,7 @@ pub fn settings(data: &Path, pace: Option<f64>) -> DaemonSettings {
         read_token: None,
         network: Network::default(),
         benches: vec![BenchDescription::mock(BENCH, mock)],
+        notify: Notify::default(),
         program: env!("CARGO_BIN_EXE_jointbench").into(),
         analysis: Limits::default(),
     }

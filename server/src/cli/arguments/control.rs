@@ -69,3 +69,15 @@ pub struct Reset {
     #[command(flatten)]
     pub reach: Reach,
 }
+
+#[derive(Debug, Args)]
+pub struct Notify {
+    /// Send a test message to each target; exit code 1 if one does not get it
+    #[arg(long)]
+    pub test: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub reach: Reach,
+}

@@ -9,7 +9,7 @@ mod runs;
 mod units;
 
 pub use columns::Columns;
-pub use control::{Control, Reset, ServoMemory, Stop};
+pub use control::{Control, Notify, Reset, ServoMemory, Stop};
 pub use model::{Model, ModelCommand};
 pub use place::{Place, Reach, ServedTokens};
 pub use run::{Queue, QueueCommand, Run};
@@ -85,6 +85,8 @@ pub enum Command {
     /// List the runs that wait for a bench, queue a test plan, or pause and resume a queue
     #[command(after_help = run::QUEUE)]
     Queue(Queue),
+    /// List the targets of notifications with their waiting messages, or send each of them a test message
+    Notify(Notify),
     /// List the runs of a daemon or of a folder
     Runs(Runs),
     /// List the units under test with their verdicts, and first-pass yield by part, revision and batch
