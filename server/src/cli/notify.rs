@@ -22,7 +22,7 @@ fn list(targets: &[NotificationTarget], json: bool) -> Done {
         return json_out(&targets);
     }
     if targets.is_empty() {
-        println!("no targets: add [[notify]] to the bench description (docs/notifications.md)");
+        println!("no targets: add [[notify]] to the bench description (docs/network.md)");
         return Ok(());
     }
     print_rows(&HEAD, targets.iter().map(cells));

@@ -3,6 +3,7 @@
 use super::error::Collector;
 use super::raw::RawNotify;
 use super::secret::{Secret, read_secret};
+use super::values::choice;
 use axum::http::Uri;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -32,7 +33,12 @@ pub enum NotifyEvent {
     NeedsHand,
 }
 
-const ALL: [NotifyEvent; 4] = [NotifyEvent::Finished, NotifyEvent::Failed, NotifyEvent::Unsafe, NotifyEvent::NeedsHand];
+const EVENTS: [(&str, NotifyEvent); 4] = [
+    ("finished", NotifyEvent::Finished),
+    ("failed", NotifyEvent::Failed),
+    ("unsafe", NotifyEvent::Unsafe),
+    ("needs_hand", NotifyEvent::NeedsHand),
+];
 
 /// The notifications of a bench description.
 #[derive(Debug, Clone, Default)]
@@ -116,9 +122,7 @@ fn check_target(
 ) -> Option<NotifyTarget> {
     let (raw, place) = (given.get_ref(), given.span());
     let secret = secret(file, raw, wrong);
-    if raw.events.as_ref().is_some_and(Vec::is_empty) {
-        wrong.add(place.clone(), "events is empty: name at least one, or remove it for all events");
-    }
+    let events = events(raw, &place, wrong);
     foreign_keys(raw, wrong);
     let (address, channel) = match (&raw.webhook, &raw.mail, &raw.mqtt) {
         (Some(webhook), None, None) => check_webhook(webhook, secret?, wrong)?,
@@ -140,7 +144,19 @@ fn check_target(
         return None;
     }
     names.push(name.clone());
-    Some(NotifyTarget { name, events: raw.events.clone().unwrap_or_else(|| ALL.to_vec()), channel })
+    Some(NotifyTarget { name, events: events?, channel })
+}
+
+/// Each event once; all events if none are given.
+fn events(raw: &RawNotify, place: &Range<usize>, wrong: &mut Collector) -> Option<Vec<NotifyEvent>> {
+    let all = EVENTS.map(|(_, event)| event);
+    let Some(given) = &raw.events else { return Some(all.into()) };
+    if given.is_empty() {
+        wrong.add(place.clone(), "events is empty: name at least one, or remove it for all events");
+    }
+    let chosen: Vec<_> = given.iter().map(|event| choice(event, "event", &EVENTS, wrong)).collect();
+    let chosen: Vec<NotifyEvent> = chosen.into_iter().collect::<Option<_>>()?;
+    Some(all.into_iter().filter(|event| chosen.contains(event)).collect())
 }
 
 /// Reports keys that belong to another kind of target.

@@ -1,6 +1,5 @@
 //! The bench description before the checks. Values keep their position in the file for messages.
 
-use super::notify::NotifyEvent;
 use jointbench_devices::PumaGains;
 use jointbench_devices::sim::PlannedTrouble;
 use serde::Deserialize;
@@ -22,7 +21,7 @@ pub struct RawFile {
 #[serde(deny_unknown_fields)]
 pub struct RawNotify {
     pub name: Option<Spanned<String>>,
-    pub events: Option<Vec<NotifyEvent>>,
+    pub events: Option<Vec<Spanned<String>>>,
     pub webhook: Option<Spanned<String>>,
     pub mail: Option<Spanned<String>>,
     pub smtp: Option<Spanned<String>>,

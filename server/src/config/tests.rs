@@ -231,3 +231,64 @@ fn a_run_carries_the_description_of_its_own_bench() {
     let alone = format!("# Only one.\n{one}");
     assert_eq!(parse("bench.toml", &alone).unwrap()[0].text, alone);
 }
+
+#[test]
+fn targets_of_notifications_are_checked_and_hide_their_secrets() {
+    let bench = "[[bench]]\nname = \"a\"\nmock.joint = \"a\"\n";
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("bench.toml").display().to_string();
+    std::fs::write(folder.path().join("key"), "correct horse\n").unwrap();
+    let text = format!(
+        "{bench}[[notify]]\nwebhook = \"https://hooks.example.org/T0/hidden\"\nsecret_file = \"key\"\n\
+         [[notify]]\nevents = [\"unsafe\"]\nmail = \"lab@example.org\"\nfrom = \"Bench <bench@example.org>\"\n\
+         smtp = \"smtps://bench%40example.org@mail.example.org\"\nsecret_file = \"key\"\n\
+         [[notify]]\nname = \"broker\"\nmqtt = \"mqtt://broker.lab\"\ntopic = \"lab/bench\"\n"
+    );
+    let description = super::parse(&file, &text).unwrap();
+    let targets = &description.notify.targets;
+    let names: Vec<&str> = targets.iter().map(|target| target.name.as_str()).collect();
+    assert_eq!(names, ["https://hooks.example.org", "lab@example.org", "broker"]);
+    assert_eq!((targets[0].events.len(), &targets[1].events[..]), (4, &[NotifyEvent::Unsafe][..]));
+    let Channel::Mail { server, .. } = &targets[1].channel else { panic!("{targets:?}") };
+    let login = server.login.as_ref().map(|(user, password)| (user.as_str(), password.reveal()));
+    assert_eq!((server.port, server.tls, login), (465, true, Some(("bench@example.org", "correct horse"))));
+    let shown = format!("{targets:?} {}", description.benches[0].text);
+    assert!(!shown.contains("hidden") && !shown.contains("horse"), "{shown}");
+    assert_eq!(description.benches[0].text, bench, "a run carries no targets");
+}
+
+#[test]
+fn mistakes_of_targets_are_named_at_their_lines() {
+    let bench = "[[bench]]\nname = \"a\"\nmock.joint = \"a\"\n[[notify]]\n";
+    for (lines, expected) in [
+        ("", "line 4: [[notify]] has one target: give webhook, mail or mqtt"),
+        ("webhook = \"hooks.example.org\"", "line 5: webhook is not an address: write https://host/path"),
+        ("webhook = \"https://u:p@example.org\"", "line 5: webhook contains a user"),
+        ("webhook = \"https://example.org\"\ntopic = \"a\"", "line 6: topic belongs to mqtt: remove it"),
+        ("webhook = \"https://example.org\"\nevents = []", "line 4: events is empty"),
+        (
+            "webhook = \"https://example.org\"\nevents = [\"finised\"]",
+            "line 6: unknown event \"finised\": write \"finished\" or",
+        ),
+        ("webhook = \"https://example.org\"\nsecret_file = \"none\"", "line 6: secret_file none: cannot be read"),
+        (
+            "webhook = \"https://example.org\"\nsecret_env = \"NO_SUCH_KEY\"",
+            "line 6: secret_env NO_SUCH_KEY is not set",
+        ),
+        ("mail = \"lab\"", "line 5: mail \"lab\": write a mail address"),
+        ("mail = \"a@b.c\"", "line 4: mail needs smtp, such as smtps://user@host: add it"),
+        ("mqtt = \"mqtt://u:p@lab\"\ntopic = \"a\"", "line 5: mqtt contains a password: remove it"),
+        ("mqtt = \"mqtt://u@lab\"\ntopic = \"a\"", "line 5: mqtt has a user without a password"),
+        ("mqtt = \"mqtt://lab\"\ntopic = \"a/#\"", "line 6: topic \"a/#\": write the name of one topic"),
+    ] {
+        let message = parse("bench.toml", &format!("{bench}{lines}\n")).unwrap_err().to_string();
+        assert!(message.contains(expected), "{expected} in\n{message}");
+        assert!(!message.contains("u:p"), "{message}");
+    }
+    let twice = format!("{bench}webhook = \"https://a.b/1\"\n[[notify]]\nwebhook = \"https://a.b/2\"\n");
+    let message = parse("bench.toml", &twice).unwrap_err().to_string();
+    assert!(message.contains("line 6: target \"https://a.b\" exists twice"), "{message}");
+    let hidden = "notify = [{ webhook = \"https://a.b\" }]\n[[bench]]\nname = \"a\"\nmock.joint = \"a\"\n";
+    let message = parse("bench.toml", hidden).unwrap_err().to_string();
+    assert!(message.contains("line 1: write each target of notifications as a table [[notify]]"), "{message}");
+}

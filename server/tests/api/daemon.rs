@@ -68,8 +68,14 @@ impl TestDaemon {
 
     /// Ends the daemon and starts another one with the same data.
     pub fn restart(&mut self, pace: Option<f64>) {
+        self.restart_with(pace, |_| {});
+    }
+
+    pub fn restart_with(&mut self, pace: Option<f64>, change: impl FnOnce(&mut DaemonSettings)) {
         self.stop();
-        self.daemon = Some(self.runtime.block_on(Daemon::start(settings(self.data.path(), pace))).unwrap());
+        let mut settings = settings(self.data.path(), pace);
+        change(&mut settings);
+        self.daemon = Some(self.runtime.block_on(Daemon::start(settings)).unwrap());
     }
 
     pub fn get(&self, path: &str) -> (u16, Value) {

@@ -14,6 +14,7 @@ mod live;
 mod log;
 mod metrics;
 mod names;
+mod notifications;
 mod presses;
 mod problems;
 mod process_list;

@@ -4,6 +4,7 @@ mod crash;
 mod damage;
 mod keeping;
 mod losing;
+mod notifying;
 mod opening;
 mod verifying;
 mod viewing;

@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Folders and files whose strings are messages for users.
-const SPOKEN: [&str; 14] = [
+const SPOKEN: [&str; 15] = [
     "procedures/procedure/src",
     "procedures/model/src",
     "drivers/files/src",
@@ -27,6 +27,7 @@ const SPOKEN: [&str; 14] = [
     "server/src/error.rs",
     "server/src/job",
     "server/src/lab",
+    "server/src/notify",
     "server/src/report",
     "server/src/view",
 ];
