@@ -98,8 +98,7 @@ impl Lab {
         notify: Notify,
     ) -> Answer<Lab> {
         let store = Store::open(data).await?;
-        let notifications = Notifications::new(notify);
-        notifications.set_targets(&store).await?;
+        let notifications = Notifications::open(notify, &store).await?;
         store.block_where_missing(descriptions.iter().map(|description| description.name.as_str())).await?;
         wait_for_workers(data).await;
         store_leftovers(data, &store).await?;

@@ -28,21 +28,18 @@ pub(super) struct Notifications {
 }
 
 impl Notifications {
-    pub fn new(notify: Notify) -> Self {
-        Self { dashboard: notify.dashboard, targets: notify.targets, tasks: Mutex::default() }
-    }
-
     /// From now on the store writes a message for each event that a target wants.
-    pub async fn set_targets(&self, store: &Store) -> Answer<()> {
+    pub async fn open(notify: Notify, store: &Store) -> Answer<Self> {
+        let Notify { dashboard, targets } = notify;
         let mut wanted = Vec::new();
-        for NotifyTarget { name, events, .. } in &self.targets {
+        for NotifyTarget { name, events, .. } in &targets {
             wanted.extend(events.iter().map(|event| (name.clone(), word(event))));
         }
         let removed = store.set_notify_targets(&wanted).await?;
         if removed > 0 {
             tracing::warn!(removed, "waiting notifications of targets that the bench description no longer has");
         }
-        Ok(())
+        Ok(Self { dashboard, targets, tasks: Mutex::default() })
     }
 
     /// Ends all deliveries; the messages are kept.

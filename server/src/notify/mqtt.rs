@@ -1,7 +1,7 @@
 //! MQTT 3.1.1: one connection for each message, which is delivered when the broker has acknowledged it (QoS 1).
 
 use crate::config::Server;
-use rumqttc::{AsyncClient, Event, MqttOptions, Outgoing, Packet, QoS};
+use rumqttc::{AsyncClient, Event, MqttOptions, Packet, QoS};
 
 /// Larger than any message.
 const MOST_BYTES: usize = 1 << 18;
@@ -15,11 +15,9 @@ pub async fn publish(server: &Server, topic: &str, body: &str) -> Result<(), Str
     }
     let (client, mut events) = AsyncClient::new(options, 2);
     client.publish(topic, QoS::AtLeastOnce, false, body).await.map_err(|fault| fault.to_string())?;
-    loop {
-        match events.poll().await.map_err(|fault| fault.to_string())? {
-            Event::Incoming(Packet::PubAck(_)) => client.try_disconnect().map_err(|fault| fault.to_string())?,
-            Event::Outgoing(Outgoing::Disconnect) => return Ok(()),
-            _ => {}
-        }
-    }
+    while !matches!(events.poll().await.map_err(|fault| fault.to_string())?, Event::Incoming(Packet::PubAck(_))) {}
+    // The message is delivered, with or without an orderly end of the connection.
+    drop(client.disconnect().await);
+    drop(events.poll().await);
+    Ok(())
 }
