@@ -12,7 +12,8 @@ const SCPI: [f64; 2] = [9.9e37, 9.91e37];
 const SINGLE: f64 = 1e-6;
 /// The distance of a code from all other values, in multiples of their range.
 const FAR: f64 = 10.0;
-/// Largest fraction of cells with a code. A code not of nines must also occur more than once and fit into 32 bits.
+/// Largest fraction of cells with a code. A code not of nines must also be a whole number that occurs more than once and fits into
+/// 32 bits.
 const SHARE: f64 = 0.1;
 const LARGEST: f64 = 4_294_967_296.0;
 
@@ -58,8 +59,11 @@ fn code_of(column: &Column) -> Option<f64> {
         let (low, high) = (others().fold(f64::INFINITY, f64::min), others().fold(f64::NEG_INFINITY, f64::max));
         let distance = (code - low).abs().min((code - high).abs());
         let count = finite().filter(|value| value == code).count();
-        let is_repeated =
-            low < high && code.abs() <= LARGEST && count > 1 && count as f64 <= SHARE * column.values.len() as f64;
+        let is_repeated = low < high
+            && code.fract() == 0.0
+            && code.abs() <= LARGEST
+            && count > 1
+            && count as f64 <= SHARE * column.values.len() as f64;
         low <= high && (is_of_scpi(*code) || (is_of_nines(*code) || is_repeated) && distance > FAR * (high - low))
     })
 }
@@ -87,6 +91,8 @@ mod tests {
         assert_eq!(code(&[0.1, 99999.99, f64::NAN, 0.3]), Some(99999.99));
         assert_eq!(code(&[0.0, 999.0, 1.0, 500.0]), None, "in the range of the others");
         assert_eq!(code(&[0.1, 9.0, 0.3]), None);
+        let twice: Vec<f64> = (0..40).map(|i| if i < 2 { -6.124 } else { 1e-3 * f64::from(i % 7) }).collect();
+        assert_eq!(code(&twice), None, "codes are whole numbers");
         let often: Vec<f64> = (0..40).map(|i| if i % 13 == 0 { -2_147_483_648.0 } else { f64::from(i) }).collect();
         assert_eq!(code(&often), Some(-2_147_483_648.0));
         let levels: Vec<f64> = (0..40).map(|i| f64::from(i / 39)).collect();

@@ -113,6 +113,19 @@ fn numbers_that_nothing_can_be_computed_with_are_refused_by_their_column() {
 }
 
 #[test]
+fn a_column_that_no_model_uses_does_not_block_a_run() {
+    let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 1 }.run_at(&[2.0], |m| 0.03 * m.velocity.signum());
+    let (meta, trace) = run.clone().into_parts();
+    let (mut channels, mut columns) = (trace.channels().to_vec(), trace.columns().to_vec());
+    channels.push(Channel::new("observer_state"));
+    columns.push(vec![2.3e200; run.len()]);
+    let more = RunTable::new(meta, Trace::from_columns(channels, columns)).unwrap();
+    let summary =
+        |run: &RunTable| diagnose(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap().summary;
+    assert_eq!(summary(&more), summary(&run));
+}
+
+#[test]
 fn a_load_that_never_changes_is_reported_first() {
     let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 1 }.run_at(&[0.0], |m| 0.03 * m.velocity.signum());
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();

@@ -291,11 +291,12 @@ impl Survey {
         cells.iter().enumerate().map(text).collect()
     }
 
-    /// Whether every cell holds a unit or is empty.
+    /// Whether most cells hold a unit or are empty. A unit that is not known is reported with its column.
     fn are_units(&self, cells: &[Vec<u8>]) -> bool {
         let texts: Vec<String> = self.words(cells).iter().map(|text| bare_unit(text)).collect();
         let known = texts.iter().filter(|text| Unit::parse(text).is_some()).count();
-        known > 0 && texts.iter().all(|text| is_unit_word(text) || Unit::parse(text).is_some())
+        let foreign = texts.iter().filter(|text| !is_unit_word(text) && Unit::parse(text).is_none()).count();
+        known > foreign
     }
 
     /// Columns from the rows `after` the names, and names without a column.

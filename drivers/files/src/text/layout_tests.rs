@@ -58,6 +58,9 @@ fn a_line_of_units_is_no_line_of_names() {
     assert_eq!((names(&layout), layout.columns[2].unit.as_deref()), (vec!["x-axis", "1", "2"], Some("A")));
     let layout = of("# t x\n# [s] [rad]\n0 1\n");
     assert_eq!((names(&layout), layout.columns[1].unit.as_deref()), (vec!["t", "x"], Some("rad")));
+    let layout = of("Time,Current,Torque,Speed\ns,mA,N.mm,rad.s\n0,1,2,3\n1,2,3,4\n2,3,4,5\n");
+    assert_eq!((names(&layout)[3], layout.columns[2].unit.as_deref()), ("Speed", Some("N.mm")), "one unknown unit");
+    assert_eq!(layout.columns[3].unit.as_deref(), Some("rad.s"));
     assert_eq!(names(&of("s,V\n0,1\n")), ["s", "V"], "where nothing else names them");
 }
 

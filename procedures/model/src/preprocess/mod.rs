@@ -253,7 +253,7 @@ pub(crate) fn prepare_with(
         return Err(ModelError::TooFewSamples { usable: run.len(), needed: SHORTEST, what: "samples" });
     }
     let columns = run.trace().channels().iter().zip(run.trace().columns());
-    for (channel, values) in columns {
+    for (channel, values) in columns.filter(|(channel, _)| unknown_columns::is_known(run.kind(), &channel.name)) {
         if let Some(value) = values.iter().find(|v| v.abs() > LARGEST) {
             return Err(ModelError::TooLarge { column: channel.name.clone(), value: *value });
         }

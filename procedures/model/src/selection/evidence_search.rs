@@ -105,7 +105,7 @@ impl<'p> Search<'_, 'p> {
             }
             let Some((best, after)) = named else {
                 let large = all.iter().filter(|e| e.gain > LEFT_SHARE);
-                return Ok(large.map(|e| Refused::of(e, self.options.alpha)).collect());
+                return Ok(large.map(|e| Refused::of(e, self.options.alpha, added >= most)).collect());
             };
             let id = best.best.id();
             let mut ties = Vec::new();

@@ -22,10 +22,12 @@ pub struct Refused<'p> {
     pub errors: f64,
     /// Error reduction that would be required.
     pub least: f64,
+    /// Whether the model already has the largest number of added effects.
+    pub is_full: bool,
 }
 
 impl<'p> Refused<'p> {
-    pub fn of(evidence: &Evidence<'_, 'p>, alpha: f64) -> Self {
+    pub fn of(evidence: &Evidence<'_, 'p>, alpha: f64, is_full: bool) -> Self {
         Self {
             effect: evidence.best.id(),
             gain: evidence.gain,
@@ -33,6 +35,7 @@ impl<'p> Refused<'p> {
             alpha,
             errors: evidence.errors,
             least: evidence.least_share(),
+            is_full,
         }
     }
 
@@ -48,6 +51,7 @@ impl<'p> Refused<'p> {
                 "{reduces}, but form error of the model could explain the same; at least {} is required",
                 percent(self.least)
             ),
+            () if !self.is_full => format!("{reduces}, but form error of the model explains as much"),
             () => format!("{reduces}, but the largest number of added effects is reached"),
         }
     }

@@ -37,7 +37,8 @@ pub fn beyond(run: &RunTable) -> Option<String> {
                  unit (mA?)"
             ),
             None => format!(
-                "brake_current_a reaches {largest:.0} A, and hysteresis brakes take about one: it has another unit (mA?)"
+                "brake_current_a reaches {largest:.0} A, and hysteresis brakes take about one: either it has another unit (mA?), \
+                 or it is a brake of another kind, whose rated_current_a the meta file has to state"
             ),
         });
     }

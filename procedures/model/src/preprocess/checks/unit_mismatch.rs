@@ -21,6 +21,8 @@ const WAY: f64 = 0.1;
 /// Least common share of the variance to compare two columns.
 const SAME: f64 = 0.9;
 
+/// Agreement of a computed column with its source, relative, from the digits of a text file.
+const DIGITS: f64 = 1e-5;
 /// Share of the work done against the motion from which on the sign is wrong.
 const DRIVEN: f64 = 0.5;
 
@@ -81,6 +83,7 @@ pub fn data_errors(run: &RunTable) -> DataErrors {
             .chain(driven(run, &blocks))
             .chain(crate::preprocess::checks::unsigned_current::unsigned(run, &blocks))
             .chain(noise(run, &blocks))
+            .chain(computed_load(run))
             .chain(too_fast(run))
             .collect(),
         others: text(gears)
@@ -89,6 +92,23 @@ pub fn data_errors(run: &RunTable) -> DataErrors {
             .chain(crate::preprocess::checks::sensor_faults::failed(run))
             .collect(),
     }
+}
+
+/// A load torque that is a straight line of the motor current to the digits of the file was computed from it. Every
+/// sensor has more noise, and every joint has friction.
+fn computed_load(run: &RunTable) -> Option<String> {
+    let load = run.column("link_torque_nm").filter(|_| run.kind() == Kind::Friction)?;
+    let current = run.column("motor_current_a")?;
+    let (load_mean, current_mean) = (mean(load), mean(current));
+    let sum = |f: fn(f64, f64) -> f64| -> f64 {
+        load.iter().zip(current).map(|(load, current)| f(load - load_mean, current - current_mean)).sum()
+    };
+    let (of_load, of_both, of_current) = (sum(|l, _| l * l), sum(|l, c| l * c), sum(|_, c| c * c));
+    let rest = of_load - of_both * of_both / of_current;
+    (of_load > 0.0 && of_current > 0.0 && rest < DIGITS * DIGITS * of_load).then(|| {
+        "link_torque_nm is a multiple of motor_current_a: it was computed from the current, not measured; remove the column"
+            .to_owned()
+    })
 }
 
 /// Without a measured load nothing drives the motor in both directions: a torque that brakes it in both has the wrong
@@ -293,6 +313,26 @@ mod tests {
         let held = |way: f64| reported(Kind::Stiffness, stiffness, &|t| [way * t.sin(), 0.7, (3.0 * t).sin()]);
         assert_eq!(held(0.2), Vec::<String>::new(), "the link was held fast, and the joint gives way");
         assert!(held(30.0)[0].starts_with("link_position_rad never changes"), "{:?}", held(30.0));
+    }
+
+    #[test]
+    fn a_load_that_was_computed_from_the_current_is_reported() {
+        let reported = |friction_nm: f64, digits: f64| {
+            let names = ["time_s", "motor_position_rad", "motor_current_a", "link_torque_nm"];
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            for i in 0..4000 {
+                let t = 0.004 * f64::from(i);
+                let (q, current) = (30.0 * (0.5 * t).sin(), (0.5 * t).cos().signum() + 0.3 * (0.5 * t).cos());
+                let load = 0.0458 * current - friction_nm * (0.5 * t).cos().signum();
+                trace.push_row(&[t, q, current, (load / digits).round() * digits]);
+            }
+            let meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(1.0), ..Meta::default() };
+            messages(&RunTable::new(meta, trace).unwrap())
+        };
+        let computed = |found: Vec<String>| found.iter().any(|text| text.contains("was computed from the current"));
+        assert!(computed(reported(0.0, 1e-9)));
+        assert!(!computed(reported(0.0, 1e-4)), "an ideal sensor of 500 steps");
+        assert!(!computed(reported(1e-3, 1e-9)), "friction of 2 %");
     }
 
     #[test]
