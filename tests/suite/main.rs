@@ -6,6 +6,7 @@ mod demo;
 mod faults;
 mod house;
 mod offline;
+mod python;
 mod shared;
 
 use jointbench_tests::program;

@@ -17,7 +17,9 @@ fn sources(suffixes: &[&str]) -> Option<Vec<(String, String)>> {
 
 #[test]
 fn the_median_source_file_is_under_150_lines() {
-    let Some(sources) = sources(&["*.rs", "*.ts", "*.svelte"]) else { return };
+    // The models of the Python client are generated.
+    let files = ["*.rs", "*.ts", "*.svelte", "*.py", ":!python/src/jointbench/models.py"];
+    let Some(sources) = sources(&files) else { return };
     let mut lines: Vec<(usize, String)> =
         sources.into_iter().map(|(file, text)| (text.lines().count(), file)).collect();
     lines.sort();
