@@ -5,7 +5,7 @@ use crate::program::Daemon;
 use std::path::Path;
 use std::process::Command;
 
-fn has(program: &str) -> bool {
+pub fn has(program: &str) -> bool {
     Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success())
 }
 

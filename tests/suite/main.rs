@@ -6,6 +6,7 @@ mod demo;
 mod faults;
 mod house;
 mod offline;
+mod package;
 mod python;
 mod shared;
 
