@@ -28,6 +28,10 @@ pub struct JointConstants {
     /// Permitted rotation of the link to either side of the zero of its encoder. `None`: unlimited.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link_range_rad: Option<f64>,
+    /// Turns of the brake for each turn of the link, with a load gear between torque sensor and brake. `None`: the
+    /// brake is on the link.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_gear_ratio: Option<f64>,
 }
 
 /// The instruments of a bench. A missing instrument is an empty slot, never a dummy.

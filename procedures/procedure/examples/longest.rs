@@ -108,6 +108,7 @@ fn facts() -> BenchFacts {
             brake_rated_current_a: 0.6,
             brake_rated_torque_nm: 13.0,
             link_range_rad: None,
+            load_gear_ratio: None,
         },
         has_torque_sensor: true,
         has_two_ranges: true,

@@ -102,9 +102,20 @@ impl Guard {
         if !self.is_turning() && to_a < (1.0 - STANDSTILL_DECREASE) * self.magnetised_a {
             return Err(Refusal::BrakeAtStandstill { from_a: self.magnetised_a, to_a });
         }
+        self.brake_follows(to_a);
+        Ok(())
+    }
+
+    /// Called before a brake current is sent that may fall at standstill, because its step magnetises the rotor.
+    pub fn check_magnetising_brake(&mut self, to_a: f64) -> Result<(), Refusal> {
+        self.limits.check(Limited::BrakeCurrent, to_a)?;
+        self.brake_follows(to_a);
+        Ok(())
+    }
+
+    fn brake_follows(&mut self, to_a: f64) {
         self.brake_a = to_a;
         self.magnetised_a = if self.is_turning() { to_a } else { self.magnetised_a.max(to_a) };
-        Ok(())
     }
 
     /// Called with every sample.
@@ -193,6 +204,7 @@ mod tests {
         brake_rated_current_a: 0.6,
         brake_rated_torque_nm: 13.0,
         link_range_rad: Some(30.0),
+        load_gear_ratio: None,
     };
     const QUIET: Sample = Sample {
         at_s: 0.0,
@@ -245,6 +257,14 @@ mod tests {
         assert!(guard().check_velocity(f64::NAN).is_err());
         assert!(guard().check_brake(0.61).is_err());
         assert!(guard().check_brake(f64::NAN).is_err());
+    }
+
+    #[test]
+    fn a_magnetising_brake_falls_at_standstill_within_its_limit() {
+        let mut guard = guard();
+        assert!(guard.check_magnetising_brake(0.61).is_err());
+        assert!(guard.check_magnetising_brake(0.5).is_ok() && guard.check_magnetising_brake(0.0).is_ok());
+        assert!(guard.check_brake(0.1).is_err(), "other steps remain protected");
     }
 
     /// Torque and link speed give 17.5 Nm · 40 rad/s = 700 W: twice the continuous rating, allowed for five seconds.

@@ -100,6 +100,17 @@ impl Feedforward {
     }
 }
 
+/// Command of the brake current in a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum BrakeControl {
+    /// The current of the profile. The guard refuses a fall at standstill, which would leave poles in the rotor.
+    #[default]
+    Current,
+    /// The current of the profile, which falls at standstill because the poles are to be measured. A later step
+    /// demagnetises the brake.
+    Magnetise,
+}
+
 /// End of a section with current alone: the velocity loop takes over after a breakaway.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EndCondition {
@@ -126,6 +137,8 @@ pub struct Step {
     pub velocity: Profile,
     /// Brake current (A) over the time of the step.
     pub brake: Profile,
+    /// How this current is commanded.
+    pub brake_control: BrakeControl,
     /// Pose of the stage during the step.
     pub place: StagePose,
     /// Command of the drive.
@@ -271,6 +284,7 @@ pub(crate) mod testing {
             before: InitialState::AsLeft,
             velocity: Profile::plateau(if index % 2 == 0 { 20.0 } else { -20.0 }, 200.0, duration_s - 0.2),
             brake: Profile::constant(0.0),
+            brake_control: BrakeControl::Current,
             place: StagePose::AsLeft,
             drive: Drive::Velocity,
         };

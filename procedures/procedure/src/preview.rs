@@ -3,7 +3,7 @@
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::procedure;
 use crate::parameter::{Parameter, ParameterKind};
-use crate::plan::{Drive, Plan};
+use crate::plan::{BrakeControl, Drive, Plan, Step};
 use jointbench_instrument::limits::Limited;
 use serde::Serialize;
 
@@ -230,8 +230,25 @@ impl Plan {
             },
         ];
         checks.retain(|check| check.name != "brake" || facts.has_brake || needs_brake);
+        checks.extend(self.magnetisation_check());
         checks.extend(facts.setpoint_interval.map(|interval| self.setpoint_check(interval.duration_s())));
         checks
+    }
+
+    /// A brake that a step magnetises at standstill is demagnetised by a later step.
+    fn magnetisation_check(&self) -> Option<Check> {
+        let at = self.steps.iter().rposition(|step| step.brake_control == BrakeControl::Magnetise)?;
+        let top_a = self.steps[at].brake.largest();
+        let demagnetises =
+            |step: &Step| step.brake.largest() >= top_a && step.brake.end() == 0.0 && step.velocity.largest() > 0.0;
+        let ok = self.steps[at + 1..].iter().any(demagnetises);
+        let after = if ok { "demagnetised while turning afterwards" } else { "not demagnetised afterwards" };
+        Some(Check {
+            name: "magnetisation",
+            ok,
+            detail: format!("the brake is magnetised at standstill with {top_a:.3} A and {after}"),
+            cure: (!ok).then(|| "end the plan with the steps of demagnetise".into()),
+        })
     }
 
     /// A position servo stops where it has reached its set-point before the next command.

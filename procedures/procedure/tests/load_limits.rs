@@ -5,11 +5,15 @@ use jointbench_devices::sim::{Load, MockInstrument};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::Bench;
 use jointbench_procedure::in_memory_run::run_in_memory;
-use jointbench_procedure::{BenchFacts, Plan, procedure};
+use jointbench_procedure::{BenchFacts, Plan, catalogue, procedure};
 use serde_json::json;
 
 fn behind_the_gear() -> (MockBench, Bench) {
-    let settings = MockSettings { load: Load::GearAndBrakeB, ..MockSettings::new(Joint::JointA, 1) };
+    of_joint(Joint::JointA)
+}
+
+fn of_joint(joint: Joint) -> (MockBench, Bench) {
+    let settings = MockSettings { load: Load::GearAndBrakeB, ..MockSettings::new(joint, 1) };
     let mock = MockBench::start(settings).expect("a mock bench");
     let bench = mock.open_bench("mock").expect("its instruments answer");
     (mock, bench)
@@ -48,6 +52,21 @@ fn a_refused_load_comes_with_one_that_leaves_room_for_friction() {
             current.value / current.limit.expect("a limit")
         };
         assert!(current(share) <= 0.9 && current(share + 0.01) > 0.9, "{id}: {share}");
+    }
+}
+
+#[test]
+fn every_refused_load_behind_the_gear_comes_with_one_that_passes() {
+    for joint in [Joint::JointA, Joint::JointB] {
+        let (_mock, bench) = of_joint(joint);
+        let facts = BenchFacts::of(&bench);
+        for procedure in catalogue() {
+            // Planning itself names what is missing.
+            let Ok(plan) = procedure.plan(&Default::default(), &facts) else { continue };
+            let refused = refusal(&plan, &facts);
+            let is_named = refused.as_ref().is_none_or(|message| message.contains("(set top_"));
+            assert!(is_named, "{} of {joint:?}: {refused:?}", procedure.id());
+        }
     }
 }
 

@@ -38,6 +38,7 @@ pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Benc
             brake_rated_current_a: constants.brake_rated_current_a,
             brake_rated_torque_nm: constants.brake_rated_torque_nm,
             link_range_rad: constants.link_range_rad,
+            load_gear_ratio: constants.load_gear_ratio,
         },
     }
 }

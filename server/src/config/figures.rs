@@ -69,6 +69,8 @@ impl Sheet {
         let given = raw.constants.as_ref();
         let range = given.and_then(|given| given.link_range_rad.as_ref());
         let range = range.map(|range| positive(range, "constants.link_range_rad", wrong));
+        let load_gear = given.and_then(|given| given.load_gear_ratio.as_ref());
+        let load_gear = load_gear.map(|ratio| positive(ratio, "constants.load_gear_ratio", wrong));
         let mut take = |name: &str, of: fn(&RawConstants) -> Option<&Spanned<f64>>, sheet: Option<f64>| {
             either(given.and_then(of), sheet, &format!("constants.{name}"), raw, wrong)
         };
@@ -92,6 +94,8 @@ impl Sheet {
             brake_rated_current_a: current?,
             brake_rated_torque_nm: torque?,
             link_range_rad: flip(range)?.or(self.known.as_ref().and_then(|(_, constants)| constants.link_range_rad)),
+            load_gear_ratio: flip(load_gear)?
+                .or(self.known.as_ref().and_then(|(_, constants)| constants.load_gear_ratio)),
         })
     }
 }

@@ -177,4 +177,5 @@ pub struct RawConstants {
     pub brake_rated_current_a: Option<Spanned<f64>>,
     pub brake_rated_torque_nm: Option<Spanned<f64>>,
     pub link_range_rad: Option<Spanned<f64>>,
+    pub load_gear_ratio: Option<Spanned<f64>>,
 }

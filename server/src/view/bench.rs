@@ -148,6 +148,8 @@ pub struct Constants {
     pub brake_rated_torque_nm: f64,
     /// Range of the link to either side; `null` if unlimited.
     pub link_range_rad: Option<f64>,
+    /// Turns of the brake for each turn of the link; `null` without a load gear.
+    pub load_gear_ratio: Option<f64>,
 }
 
 /// Confirmation by a person that the bench was inspected and is safe.

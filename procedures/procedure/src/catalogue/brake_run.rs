@@ -2,8 +2,12 @@
 
 use crate::bench_facts::BenchFacts;
 use crate::plan::PlanFault;
-use jointbench_instrument::{Kind, Meta};
+use jointbench_instrument::{Kind, Meta, RunTable};
+use serde_json::Value;
 
+/// Names of facts of the bench that a brake run stores.
+const RATED_TORQUE: &str = "rated_torque_nm";
+const LOAD_GEAR_RATIO: &str = "load_gear_ratio";
 /// Largest share of the link's range that one step may use.
 const RANGE_SHARE: f64 = 0.9;
 
@@ -26,8 +30,25 @@ pub(super) fn meta(bench: &BenchFacts, rate_hz: f64) -> Meta {
         rated_current_a: Some(bench.constants.brake_rated_current_a),
         ..Meta::default()
     };
-    meta.other.insert("rated_torque_nm".into(), bench.constants.brake_rated_torque_nm.into());
+    meta.other.insert(RATED_TORQUE.into(), bench.constants.brake_rated_torque_nm.into());
+    if let Some(ratio) = bench.constants.load_gear_ratio {
+        meta.other.insert(LOAD_GEAR_RATIO.into(), ratio.into());
+    }
     meta
+}
+
+fn fact(run: &RunTable, name: &str) -> Option<f64> {
+    run.meta().other.get(name).and_then(Value::as_f64)
+}
+
+/// Torque of the brake at rated current, from the bench description.
+pub(super) fn rated_nm(run: &RunTable) -> Option<f64> {
+    fact(run, RATED_TORQUE)
+}
+
+/// Turns of the brake for each turn of the link.
+pub(super) fn load_gear_ratio(run: &RunTable) -> f64 {
+    fact(run, LOAD_GEAR_RATIO).unwrap_or(1.0)
 }
 
 /// The desired motor speed, or the highest one at which a step of `duration_s` stays within the link's range.

@@ -5,8 +5,7 @@
 //! passes torques that are drawn uniformly from the brake's range. The inverse model gives the current for each
 //! torque, depending on the history of the current. The measured torque is compared with the commanded one.
 
-use super::brake_run;
-use super::demagnetise::rated_nm;
+use super::brake_run::{self, rated_nm};
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
 use crate::bench_facts::BenchFacts;

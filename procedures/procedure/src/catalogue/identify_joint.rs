@@ -94,7 +94,7 @@ fn parts(values: &Values, bench: &BenchFacts) -> Vec<(&'static dyn Procedure, Va
             }),
         ),
         (&BrakeSpeedIndependence, json!({"top_speed_rad_s": link_rad_s, "top_current": load, "sample_rate_hz": rate})),
-        (&BrakeHysteresis, json!({"top_current": load.as_f64().map(|load| load.max(0.2)), "sample_rate_hz": rate})),
+        (&BrakeHysteresis, json!({"top_current": load, "sample_rate_hz": rate})),
         (
             &Stiffness,
             json!({

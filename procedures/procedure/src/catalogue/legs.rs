@@ -3,7 +3,7 @@
 use super::Procedure;
 use crate::bench_facts::BenchFacts;
 use crate::parameter::{Parameter, Values};
-use crate::plan::{Drive, InitialState, Phase, Plan, Step};
+use crate::plan::{BrakeControl, Drive, InitialState, Phase, Plan, Step};
 use crate::profile::Profile;
 use crate::stage_pose::StagePose;
 use jointbench_instrument::{Kind, Meta};
@@ -19,8 +19,8 @@ const RANGE_SHARE: f64 = 0.9;
 
 /// A rise of the brake current: its ramp, and the delay of supply and coil (118 ms and 80 ms; bench-physics, section
 /// 2).
-const RAISE_S: f64 = 0.8;
-const LAG_S: f64 = 0.6;
+pub(super) const RAISE_S: f64 = 0.8;
+pub(super) const LAG_S: f64 = 0.6;
 /// A fall of the brake current takes at least this time and a whole link turn (bench-physics, section 3).
 const UNLOAD_S: f64 = 2.0;
 
@@ -158,6 +158,7 @@ impl Legs {
             before,
             velocity,
             brake,
+            brake_control: BrakeControl::Current,
             drive: Drive::Velocity,
             place: StagePose::AsLeft,
         });
@@ -230,6 +231,7 @@ pub(super) mod testing {
                 brake_rated_current_a: 0.6,
                 brake_rated_torque_nm: 13.0,
                 link_range_rad: Some(5.0 * TAU),
+                load_gear_ratio: None,
             },
             has_torque_sensor: true,
             has_two_ranges: true,

@@ -1,6 +1,7 @@
 //! The procedures of the product.
 
 mod brake_hysteresis;
+mod brake_poles;
 mod brake_run;
 mod brake_speed_independence;
 mod brake_torque;
@@ -17,9 +18,11 @@ mod legs;
 mod presliding;
 mod puma_friction;
 mod remaining;
+mod remanence;
 mod stiffness;
 mod strokes;
 mod torque_sensor_zero;
+mod transmission_breakaway;
 mod warm_up;
 
 pub use brake_hysteresis::brake_model;
@@ -116,9 +119,11 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &brake_hysteresis::BrakeHysteresis,
         &brake_torque::BrakeTorque,
         &demagnetise::Demagnetise,
+        &brake_poles::BrakePoles,
         &torque_sensor_zero::TorqueSensorZero,
         &stiffness::Stiffness,
         &breakaway::Breakaway,
+        &transmission_breakaway::TransmissionBreakaway,
         &presliding::Presliding,
         &compensation::Compensation,
         &strokes::Strokes,

@@ -155,7 +155,7 @@ impl Session<'_> {
                     break;
                 }
                 let command = DriveCommand::Velocity { rad_s: speed_rad_s, feedforward_a: 0.0 };
-                self.tick_with(now_s, command, self.commanded.brake_a, Some((segment, step.repeat)))?;
+                self.tick_with(now_s, command, self.commanded.brake_a.into(), Some((segment, step.repeat)))?;
             }
             self.period.next_s -= self.period.duration_s;
             if self.pending_request.take() == Some(PendingRequest::Pause) {

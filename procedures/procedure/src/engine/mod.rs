@@ -90,6 +90,9 @@ impl Session<'_> {
         }
         let notes = [self.skews.and_then(SkewRange::note), self.pose_deviation.map(PoseDeviation::note)];
         notes.into_iter().flatten().for_each(|note| self.note(note));
+        if self.magnetised && !matches!(ending, Ending::Completed) {
+            self.warn("the run magnetised the brake and ended early: demagnetise the brake before the next run");
+        }
         let safe = self.make_safe(&ending);
         std::mem::take(&mut self.shaft).notes().into_iter().for_each(|note| self.note(note));
         let _stopped = self.caught(Session::stop_torque_stream);

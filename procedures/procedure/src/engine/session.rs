@@ -46,6 +46,8 @@ pub(super) struct Session<'a> {
     pub pending_request: Option<PendingRequest>,
     /// Whether the drive may apply torque, so that securing has to ramp it down.
     pub armed: bool,
+    /// A step has magnetised the brake at standstill, for a later one to demagnetise it.
+    pub magnetised: bool,
     /// Latest reading of the joint.
     pub joint: Option<JointReading>,
     /// Motor position at the start of the warm-up.
@@ -89,6 +91,21 @@ pub(super) enum DriveCommand {
     Velocity { rad_s: f64, feedforward_a: f64 },
     /// A motor current alone.
     Current { a: f64 },
+}
+
+/// Command to the brake in one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct BrakeCommand {
+    pub a: f64,
+    /// The current may fall at standstill.
+    pub magnetises: bool,
+}
+
+impl From<f64> for BrakeCommand {
+    /// A current that the guard protects from a fall at standstill.
+    fn from(a: f64) -> Self {
+        Self { a, magnetises: false }
+    }
 }
 
 /// The brake current with the time of its measurement.
@@ -165,6 +182,7 @@ impl<'a> Session<'a> {
             period: Period { duration_s: 1.0 / plan.rate_hz, next_s: now_s, late_ticks: 0 },
             pending_request: None,
             armed: false,
+            magnetised: false,
             joint: None,
             warm_from_rad: None,
             link_torque_nm: None,

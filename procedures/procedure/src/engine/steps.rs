@@ -2,9 +2,9 @@
 
 use super::drive::{BreakawayDetector, MeasuredFriction};
 use super::ending::Ending;
-use super::session::{DriveCommand, PendingRequest, Session};
+use super::session::{BrakeCommand, DriveCommand, PendingRequest, Session};
 use crate::event::EventKind;
-use crate::plan::{Drive, InitialState, Phase, Step};
+use crate::plan::{BrakeControl, Drive, InitialState, Phase, Step};
 use crate::stage_pose::StagePose;
 
 /// How a step ended.
@@ -71,6 +71,8 @@ impl Session<'_> {
                 paused => Ok(paused),
             };
         }
+        let magnetises = step.brake_control == BrakeControl::Magnetise;
+        self.magnetised |= magnetises;
         let (duration_s, plateau_rad_s) = (step.duration_s(), step.velocity.largest());
         let (mut friction, mut breakaway) = (MeasuredFriction::default(), BreakawayDetector::default());
         loop {
@@ -83,7 +85,8 @@ impl Session<'_> {
             least_brake_a = if planned_a >= least_brake_a { 0.0 } else { least_brake_a };
             let velocity_rad_s = step.velocity.at(t_s);
             let command = self.drive_command(step, t_s, &mut friction);
-            self.tick_with(now_s, command, planned_a.max(least_brake_a), Some((segment, step.repeat)))?;
+            let brake = BrakeCommand { a: planned_a.max(least_brake_a), magnetises };
+            self.tick_with(now_s, command, brake, Some((segment, step.repeat)))?;
             if let (Drive::Current { until, .. }, DriveCommand::Current { a }) = (&step.drive, command)
                 && breakaway.is_detected(*until, a, self.joint)
             {

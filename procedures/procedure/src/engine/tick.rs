@@ -2,7 +2,9 @@
 
 use super::arm::link_position_rad;
 use super::ending::Ending;
-use super::session::{BrakeCurrent, DriveCommand, PendingRequest, RECOVERIES_PER_STEP, Session, reported};
+use super::session::{
+    BrakeCommand, BrakeCurrent, DriveCommand, PendingRequest, RECOVERIES_PER_STEP, Session, reported,
+};
 use crate::columns::{TickBrake, TickValues, VELOCITY_STEP_RAD_S, to_time_step};
 use crate::event::{Control, Demand, EventKind};
 use crate::guard::Sample;
@@ -45,7 +47,12 @@ impl Session<'_> {
 
     /// A tick at a velocity, whose row is shown but not kept.
     pub(super) fn tick(&mut self, now_s: f64, velocity_rad_s: f64, brake_a: f64) -> Result<(), Ending> {
-        self.tick_with(now_s, DriveCommand::Velocity { rad_s: velocity_rad_s, feedforward_a: 0.0 }, brake_a, None)
+        self.tick_with(
+            now_s,
+            DriveCommand::Velocity { rad_s: velocity_rad_s, feedforward_a: 0.0 },
+            brake_a.into(),
+            None,
+        )
     }
 
     /// `keep` has segment and repeat of the row; without it the row is shown but not kept.
@@ -53,11 +60,11 @@ impl Session<'_> {
         &mut self,
         now_s: f64,
         command: DriveCommand,
-        brake_a: f64,
+        brake: BrakeCommand,
         keep: Option<(u32, u32)>,
     ) -> Result<(), Ending> {
         self.poll_controls(now_s)?;
-        self.command_brake(now_s, brake_a)?;
+        self.command_brake(now_s, brake)?;
         match command {
             DriveCommand::Velocity { rad_s, feedforward_a } => self.command_velocity(rad_s, feedforward_a)?,
             DriveCommand::Current { a } => self.command_motor_current(a)?,
@@ -127,17 +134,21 @@ impl Session<'_> {
         self.trust_joint(recovered_before)
     }
 
-    fn command_brake(&mut self, now_s: f64, brake_a: f64) -> Result<(), Ending> {
+    fn command_brake(&mut self, now_s: f64, command: BrakeCommand) -> Result<(), Ending> {
         let Some(brake) = self.bench.brake.as_ref().filter(|_| !self.failed.brake) else { return Ok(()) };
         let brake_a = match brake.resolution() {
-            Some(step) => (brake_a / step.0).round() * step.0,
-            None => brake_a,
+            Some(step) => (command.a / step.0).round() * step.0,
+            None => command.a,
         };
         let before = self.commanded;
         if brake_a == before.brake_a || now_s < before.brake_at_s + BRAKE_EVERY_S {
             return Ok(());
         }
-        self.guard.check_brake(brake_a).map_err(Ending::CommandRefused)?;
+        let checked = match command.magnetises {
+            true => self.guard.check_magnetising_brake(brake_a),
+            false => self.guard.check_brake(brake_a),
+        };
+        checked.map_err(Ending::CommandRefused)?;
         self.commanded.brake_a = brake_a;
         self.commanded.brake_at_s = now_s;
         self.ask_brake(|brake| brake.set_current(Amperes(brake_a)))?;

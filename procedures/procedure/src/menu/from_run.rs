@@ -42,6 +42,7 @@ impl BenchFacts {
                 brake_rated_current_a: rated_a,
                 brake_rated_torque_nm: if brake_a > 0.0 { link_nm * rated_a / brake_a } else { 0.0 },
                 link_range_rad: (range_rad.is_finite() && !turns_on).then_some(range_rad),
+                load_gear_ratio: None,
             },
             has_torque_sensor: link_nm > 0.0,
             has_two_ranges: false,

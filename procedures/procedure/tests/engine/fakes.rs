@@ -130,6 +130,7 @@ impl Fakes {
                 brake_rated_current_a: 0.6,
                 brake_rated_torque_nm: 13.0,
                 link_range_rad: Some(30.0),
+                load_gear_ratio: None,
             },
             joint: Box::new(FakeJoint(fakes.clone())),
             torque_sensor: Some(Box::new(FakeTorqueSensor(fakes.clone()))),

@@ -2,7 +2,7 @@
 
 use crate::fakes::{Fakes, World};
 use jointbench_instrument::{Bench, Kind, Meta, RunTable, Trace};
-use jointbench_procedure::plan::{Drive, InitialState, Phase, Step};
+use jointbench_procedure::plan::{BrakeControl, Drive, InitialState, Phase, Step};
 use jointbench_procedure::profile::Profile;
 use jointbench_procedure::stage_pose::StagePose;
 use jointbench_procedure::*;
@@ -102,6 +102,7 @@ pub fn loaded_plan() -> Plan {
         place: StagePose::AsLeft,
         velocity: Profile::plateau(speed, 400.0, dwell_s),
         brake,
+        brake_control: BrakeControl::Current,
         drive: Drive::Velocity,
     };
     Plan {

@@ -2,6 +2,7 @@
 
 mod compensation;
 mod diagnosed;
+mod load;
 mod mock;
 mod next;
 mod pauses;

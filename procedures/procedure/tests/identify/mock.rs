@@ -39,13 +39,6 @@ fn a_warm_up_that_ended_by_itself_is_warm_and_one_that_did_not_says_what_drifts(
 }
 
 #[test]
-fn a_demagnetised_brake_is_clean() {
-    let given = json!({"turns": 1.0, "speed_rad_s": 3.0, "sample_rate_hz": 100.0});
-    let (_, found) = found(MockSettings::new(Joint::JointB, 3), "demagnetise", given);
-    assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
-}
-
-#[test]
 fn a_sensor_of_two_ranges_has_two_zeros_and_one_torque() {
     let mock = MockBench::start(MockSettings::new(Joint::JointB, 3)).unwrap();
     let mut bench = mock.open_bench("mock").unwrap();

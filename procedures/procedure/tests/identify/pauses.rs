@@ -1,5 +1,6 @@
 //! A run that is paused in a step of every kind, or killed and continued, gives the result of an uninterrupted one.
 
+use jointbench_devices::sim::Load;
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
 use jointbench_procedure::catalogue::brake_model;
@@ -127,7 +128,8 @@ fn one_of_each_kind(plan: &Plan) -> Due {
         let way = step.velocity.knots().iter().map(|(_, v)| *v).find(|v| *v != 0.0).map(|v| v > 0.0);
         let (drive, place) = (std::mem::discriminant(&step.drive), std::mem::discriminant(&step.place));
         let braked = step.brake.largest() > 0.0;
-        let kind = format!("{:?} {:?} {drive:?} {place:?} {way:?} {braked}", step.phase, step.before);
+        let (phase, before, control) = (step.phase, step.before, step.brake_control);
+        let kind = format!("{phase:?} {before:?} {control:?} {drive:?} {place:?} {way:?} {braked}");
         // A current ramp ends with the breakaway, an edge search when the edge is found, so that both are left early.
         let within_s = match (&step.drive, step.place) {
             (Drive::Current { from_s, .. }, _) => from_s + 0.8,
@@ -297,11 +299,18 @@ fn a_brake_is_the_same_brake() {
         ("brake_hysteresis", json!({"levels": 5, "loops": 2, "random_turns": 6, "dwell_s": 0.8, "speed_rad_s": 3.0})),
         ("brake_torque", json!({"histories": 2, "torques": 8, "speed_rad_s": 3.0})),
         ("demagnetise", json!({"turns": 1.0, "speed_rad_s": 3.0, "sample_rate_hz": 100.0})),
+        ("brake_poles", json!({"repeats": 2, "speed_rad_s": 1.5, "demagnetise_speed_rad_s": 3.0})),
         ("torque_sensor_zero", json!({"duration_s": 45.0, "loads": 2, "speed_rad_s": 1.0, "dwell_s": 1.2})),
         ("friction_temperature", json!({"heat_s": 40.0, "cool_s": 40.0, "rest_s": 10.0})),
     ] {
         check(&joint, id, given);
     }
+}
+
+#[test]
+fn a_transmission_is_the_same_transmission() {
+    let joint = MockSettings { load: Load::GearAndBrakeB, ..MockSettings::new(Joint::JointA, 1) };
+    check(&joint, "transmission_breakaway", json!({"positions": 3, "ramp_nm_s": 2.0}));
 }
 
 #[test]

@@ -243,10 +243,10 @@ impl DataSheet {
 
     /// The constants that a bench description of this joint and load states.
     pub fn constants(&self, load: Load) -> JointConstants {
-        let (turns, brakes) = match load {
-            Load::BrakeA => (1.0, 1.0),
-            Load::GearAndBrakeB => (LINE_RATIO, 1.0),
-            Load::None => (0.0, 0.0),
+        let (load_gear_ratio, brakes) = match load {
+            Load::BrakeA => (None, 1.0),
+            Load::GearAndBrakeB => (Some(LINE_RATIO), 1.0),
+            Load::None => (None, 0.0),
         };
         JointConstants {
             torque_constant_nm_per_a: self.torque_constant_nm_per_a,
@@ -254,8 +254,9 @@ impl DataSheet {
             rotor_inertia_kg_m2: self.rotor_inertia_kg_m2,
             brake_compliance_v: brakes * COMPLIANCE_V,
             brake_rated_current_a: brakes * brake::RATED_CURRENT_A,
-            brake_rated_torque_nm: turns * self.brake_nm,
+            brake_rated_torque_nm: brakes * load_gear_ratio.unwrap_or(1.0) * self.brake_nm,
             link_range_rad: self.range_rad,
+            load_gear_ratio,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Identification of the model from a run of sweeps, validated on the random history.
 
-use super::super::demagnetise::rated_nm;
+use super::super::brake_run::rated_nm;
 use super::Part;
 use crate::brake_model::{BrakeModel, CurrentHistory};
 use crate::findings::{Hold, Mean, Unusable, holds, quantity, scatter};

@@ -1,7 +1,8 @@
 //! Lines of voltage over speed for each direction, and stiction, in the units of document 000: volts, and degrees in
 //! a second at the link. The same results are also given in newton metres at the motor.
 
-use super::super::breakaway::{Onset, onsets, ramp_step_nm, with_resolution};
+use super::super::breakaway::ramps::{Onset, onsets, ramp_step_nm};
+use super::super::breakaway::torques::with_resolution;
 use super::settling_s;
 use crate::findings::{Hold, Line, Mean, Unusable, combined, curve, directions, holds, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
