@@ -137,7 +137,8 @@ pub struct Step {
     pub velocity: Profile,
     /// Brake current (A) over the time of the step.
     pub brake: Profile,
-    /// How this current is commanded.
+    /// How this current is commanded; plans of earlier versions have no such field.
+    #[serde(default)]
     pub brake_control: BrakeControl,
     /// Pose of the stage during the step.
     pub place: StagePose,
