@@ -160,6 +160,9 @@ class Constants(BaseModel):
     link_range_rad: float | None = None
     """Range of the link to either side; `null` if unlimited."""
 
+    load_gear_ratio: float | None = None
+    """Turns of the brake for each turn of the link; `null` without a load gear."""
+
     rotor_inertia_kg_m2: float
     torque_constant_nm_per_a: float
 
@@ -724,6 +727,20 @@ class Note(BaseModel):
     text: str
 
 
+class NotificationTest(BaseModel):
+    """Outcome of a test message."""
+
+    error: str | None = None
+    """`null`: the message is delivered."""
+
+    kind: str
+    name: str
+
+
+NotifyEvent = TypeAliasType("NotifyEvent", Literal['finished', 'failed', 'unsafe', 'needs_hand'])
+"""What a person or a script may want to know."""
+
+
 ParameterState = TypeAliasType("ParameterState", Literal['ok', 'at_bound', 'impossible', 'unidentified'])
 
 
@@ -809,6 +826,9 @@ class Progress(BaseModel):
 
     elapsed_s: float
     """In wall-clock time, like the remaining time."""
+
+    fraction: float | None = None
+    """Completed fraction of the expected duration, 0 to 1."""
 
     label: str
     """Current step."""
@@ -1686,6 +1706,25 @@ class NewTestPlan(BaseModel):
     proceed_if: ProceedIf | None = None
     runs: list[NewRun]
     """1 to 100 runs of one bench."""
+
+
+class NotificationTarget(BaseModel):
+    """A target of notifications, without its secrets."""
+
+    events: list[NotifyEvent]
+    failed: Annotated[int, Field(ge=0)]
+    """Messages of the last days that were not delivered within a day."""
+
+    kind: str
+    """`webhook`, `mail` or `mqtt`."""
+
+    last_delivery: AwareDatetime | None = None
+    last_error: str | None = None
+    """Error of the last attempt of a message that is not delivered."""
+
+    name: str
+    pending: Annotated[int, Field(ge=0)]
+    """Messages that wait for their delivery."""
 
 
 class ParameterPair(BaseModel):
