@@ -144,3 +144,36 @@ fn lower_case(sentence: &str) -> String {
     let mut letters = sentence.chars();
     letters.next().map(|first| format!("{}{}", first.to_lowercase(), letters.as_str())).unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// Six turns with noise of 1 mNm in every order, and a wave of 5 mNm in each of `orders`.
+    fn turns(random: &mut ChaCha8Rng, orders: &[usize]) -> Vec<Vec<Wave>> {
+        let mut part = |number| {
+            let wave_nm = if orders.contains(&number) { 5e-3 } else { 0.0 };
+            // The sum of 12 uniform numbers is normal with variance 1.
+            wave_nm + 1e-3 * (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>()
+        };
+        let mut turn = |direction| (1..=ORDERS).map(|n| Wave { direction, parts: [part(n), part(n)] }).collect();
+        [1.0, -1.0, 1.0, -1.0, 1.0, -1.0].map(&mut turn).into()
+    }
+
+    #[test]
+    fn only_what_demagnetising_removes_is_a_pole() {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut found = |before: &[usize], after: &[usize]| {
+            let (before, after) = (turns(&mut random, before), turns(&mut random, after));
+            let orders: Vec<_> = (1..=ORDERS).filter_map(|number| Order::of(number, &before, &after)).collect();
+            result(&orders)
+        };
+        let (sentence, quantities) = found(&[1, 21], &[1]);
+        assert_eq!(quantities[0].value, 21.0, "{sentence}");
+        let (sentence, quantities) = found(&[1], &[1]);
+        assert!(sentence.starts_with("No poles found: amplitude less than "), "{sentence}");
+        assert!((1e-3..10e-3).contains(&quantities[0].value), "{sentence}");
+    }
+}
