@@ -5,6 +5,7 @@
 //! parameters and never exceeds it, because over-compensation makes the controller active.
 
 mod cause;
+mod followed;
 mod identify;
 mod method;
 mod reference;
@@ -133,7 +134,7 @@ impl Procedure for Compensation {
     fn finds(&self) -> Vec<Findable> {
         let of_method = |method: Method| {
             let [suffix, _] = method.words();
-            identify::FIGURES.map(|[name, _, _, unit]| Findable { name: format!("{name}_{suffix}"), unit })
+            followed::FIGURES.map(|[name, _, _, unit]| Findable { name: format!("{name}_{suffix}"), unit })
         };
         Method::ALL.into_iter().flat_map(of_method).collect()
     }

@@ -24,10 +24,15 @@ pub(crate) fn combined(a: (f64, [f64; 2]), b: (f64, [f64; 2]), sign: f64) -> (f6
     (value, [value - reach, value + reach])
 }
 
-/// A figure with its interval in the same unit: `0.120 mNm [-0.200 … 0.440]`.
+/// A figure with its interval in the same unit: `0.120 mNm [-0.200 … 0.440]`. An interval that is narrower than the digits of
+/// the figure is given by its half width: `779 mNm ± 20.0 µNm`.
 pub(crate) fn bounded((value, [low, high]): (f64, [f64; 2]), unit: &str) -> String {
     let scale = Scale::of(value.abs().max(low.abs()).max(high.abs()), unit);
-    format!("{} [{} … {}]", scale.figure(value), scale.number(low), scale.number(high))
+    let [from, to] = [low, high].map(|end| scale.number(end));
+    if from == to {
+        return format!("{} ± {}", scale.figure(value), words::figure(0.5 * (high - low), unit));
+    }
+    format!("{} [{from} … {to}]", scale.figure(value))
 }
 
 /// Whether two directions differ at 95 %, with their difference `what` and its interval.
@@ -119,6 +124,12 @@ pub(crate) fn verdict(found: Result<Identification, Unusable>) -> Option<Identif
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_narrow_interval_is_given_by_its_half_width() {
+        assert_eq!(bounded((1.2e-4, [-2e-4, 4.4e-4]), "Nm"), "120 µNm [-200 … 440]");
+        assert_eq!(bounded((0.779_41, [0.779_39, 0.779_43]), "Nm"), "779 mNm ± 20.0 µNm");
+    }
 
     #[test]
     fn a_curve_ends_at_its_given_end() {

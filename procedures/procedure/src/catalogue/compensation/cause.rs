@@ -1,6 +1,6 @@
 //! Why no method reduces the error: the part of the reference to which the error is proportional.
 
-use super::identify::Followed;
+use super::followed::Followed;
 use crate::findings::{Mean, bounded};
 use jointbench_model::words;
 
