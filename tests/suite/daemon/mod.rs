@@ -214,7 +214,7 @@ fn a_run_that_decides_nothing_is_no_success() {
 #[test]
 fn a_test_plan_is_waited_for_to_its_end_and_reported() {
     let folder = tempfile::tempdir().expect("a folder");
-    let config = bench(folder.path(), "b", 200.0);
+    let config = bench(folder.path(), "a", 200.0);
     let daemon = Daemon::serve(&folder.path().join("data"), &config);
     let plan = folder.path().join("plan.toml");
     let junit = folder.path().join("plan.xml");

@@ -223,7 +223,7 @@ impl Survey {
             let mut found = found.into_iter().filter(|(_, c)| words(c) && is_some(c) && (is_wide || fits(c)));
             let last = found.next()?;
             // A line of types below the names repeats its words.
-            let is_of_names = |cells: &[Vec<u8>]| !self.repeats(cells) || self.are_units(cells);
+            let is_of_names = |cells: &[Vec<u8>]| !self.repeats(cells) || self.are_mostly_units(cells);
             let is_named = |cells: &[Vec<u8>]| cells.len() == last.1.len() && self.are_distinct(cells);
             let above = found.find(|(_, c)| !is_of_names(&last.1) && is_named(c));
             Some(above.map_or((last.0, last.1, false), |(at, cells)| (at, cells, true)))
@@ -235,9 +235,12 @@ impl Survey {
                 (begin == lines.len() && !lines.is_empty()).then(|| (0, self.rows[0].clone(), false))
             })?;
         let text = |cells: &[Vec<u8>]| self.words(cells);
-        if at > 0 && self.are_units(&found) {
+        if at > 0 && self.are_mostly_units(&found) {
             let above = plain(at - 1).filter(|cells| fits(cells)).or_else(|| other(at - 1));
-            if let Some(above) = above.filter(|above| is_some(above) && above.len() + 1 >= found.len()) {
+            // Words that are not all units may be names below a line of groups.
+            let are_named = |above: &[Vec<u8>]| self.are_units(&found) || self.are_distinct(above);
+            let are_names = |above: &Vec<Vec<u8>>| is_some(above) && above.len() + 1 >= found.len() && are_named(above);
+            if let Some(above) = above.filter(are_names) {
                 return Some(Names { at: at - 1, units: Some((at, text(&found))), cells: text(&above), heads_block });
             }
         }
@@ -291,12 +294,24 @@ impl Survey {
         cells.iter().enumerate().map(text).collect()
     }
 
-    /// Whether most cells hold a unit or are empty. A unit that is not known is reported with its column.
+    /// Whether every cell holds a unit or is empty.
     fn are_units(&self, cells: &[Vec<u8>]) -> bool {
+        let (known, foreign) = self.units_in(cells);
+        known > 0 && foreign == 0
+    }
+
+    /// Whether more cells hold a unit than another word, which is then an unknown unit.
+    fn are_mostly_units(&self, cells: &[Vec<u8>]) -> bool {
+        let (known, foreign) = self.units_in(cells);
+        known > foreign
+    }
+
+    /// Number of cells with a known unit, and of cells with another word.
+    fn units_in(&self, cells: &[Vec<u8>]) -> (usize, usize) {
         let texts: Vec<String> = self.words(cells).iter().map(|text| bare_unit(text)).collect();
         let known = texts.iter().filter(|text| Unit::parse(text).is_some()).count();
         let foreign = texts.iter().filter(|text| !is_unit_word(text) && Unit::parse(text).is_none()).count();
-        known > foreign
+        (known, foreign)
     }
 
     /// Columns from the rows `after` the names, and names without a column.
