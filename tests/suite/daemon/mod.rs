@@ -229,8 +229,8 @@ fn a_test_plan_is_waited_for_to_its_end_and_reported() {
         let ended = run(&[&arguments[..], more].concat());
         (ended.status.code(), stdout(&ended), stderr(&ended))
     };
-    let (code, text, _) = wait("completed", &["--wait"]);
-    assert_eq!(code, Some(3), "the first result is inconclusive: {text}");
+    let (code, text, fault) = wait("completed", &["--wait"]);
+    assert_eq!(code, Some(3), "the first result is inconclusive: {text} {fault}");
     assert!(text.contains("run 1: inconclusive") && text.contains("run 2: identified"), "{text}");
 
     let (code, text, fault) = wait("identified", &["--junit", &junit.display().to_string()]);

@@ -69,16 +69,16 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 #[derive(Debug, Args)]
 pub struct Reach {
     /// Address of the daemon [default: http://127.0.0.1:8080]
-    #[arg(long, value_name = "URL", env = "JOINTBENCH_URL")]
+    #[arg(long, global = true, value_name = "URL", env = "JOINTBENCH_URL")]
     pub daemon: Option<String>,
     /// Token of a daemon that requires one; prefer a file or the variable, because other users can see arguments
-    #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
+    #[arg(long, global = true, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
     pub token: Option<String>,
     /// File with the token; takes precedence over --token
-    #[arg(long, value_name = "FILE", env = "JOINTBENCH_TOKEN_FILE")]
+    #[arg(long, global = true, value_name = "FILE", env = "JOINTBENCH_TOKEN_FILE")]
     pub token_file: Option<PathBuf>,
     /// Certificate (PEM) to trust for a daemon at https://, its own or that of its authority [default: the public
     /// authorities]
-    #[arg(long, value_name = "FILE", env = "JOINTBENCH_CA_FILE")]
+    #[arg(long, global = true, value_name = "FILE", env = "JOINTBENCH_CA_FILE")]
     pub ca_file: Option<PathBuf>,
 }
