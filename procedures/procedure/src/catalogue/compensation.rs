@@ -189,7 +189,7 @@ pub(super) fn of_friction(found: &Identification) -> Option<FollowUp> {
     Some(FollowUp { procedure: Compensation.id(), parameters, why })
 }
 
-/// The dynamic model beside the static ones, with the presliding stiffness that a run has identified.
+/// Comparison of the dynamic model with the static ones, with the presliding stiffness that a run has identified.
 pub(super) fn of_presliding(found: &Identification) -> Option<FollowUp> {
     let stiffness = found.quantity("sigma_0").filter(|_| found.verdict == Verdict::Identified)?;
     let parameters = Map::from_iter([(STIFFNESS.to_owned(), Value::from(four_digits(stiffness.value)))]);
@@ -198,7 +198,7 @@ pub(super) fn of_presliding(found: &Identification) -> Option<FollowUp> {
     Some(FollowUp { procedure: Compensation.id(), parameters, why })
 }
 
-/// The load term beside the other methods, with the load-dependent friction that a run has identified.
+/// Comparison of the load term with the other methods, with the load-dependent friction that a run has identified.
 pub(super) fn of_load(found: &Identification) -> Option<FollowUp> {
     let grows = found.quantity("mu").filter(|mu| mu.ci95.is_some_and(|[low, _]| low > 0.0))?;
     let mut next = of_friction(found)?;

@@ -78,10 +78,17 @@ mod tests {
 
     /// Four periods of a sinusoid with a given error.
     fn with_error(error_rad: impl Fn(f64) -> f64) -> Followed {
-        let phases: Vec<f64> = (0..4000).map(|i| f64::from(i) / 1000.0).collect();
-        let velocity: Vec<f64> = phases.iter().map(|turns| (TAU * turns).sin()).collect();
-        let error = phases.iter().map(|turns| error_rad(*turns)).collect();
-        Followed::of(Method::Full, phases.clone(), velocity.clone(), phases, error, &[false; 4000], 1.0, 0.0)
+        let time_s: Vec<f64> = (0..4000).map(|i| f64::from(i) / 1000.0).collect();
+        let followed = Followed {
+            method: Method::Full,
+            velocity_rad_s: time_s.iter().map(|turns| (TAU * turns).sin()).collect(),
+            reference_rad: time_s.clone(),
+            error_rad: time_s.iter().map(|turns| error_rad(*turns)).collect(),
+            time_s,
+            rounds: Vec::new(),
+            over_nm: 0.0,
+        };
+        followed.evaluated(&[false; 4000], 1.0)
     }
 
     #[test]

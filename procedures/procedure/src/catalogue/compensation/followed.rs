@@ -41,32 +41,23 @@ pub(super) struct Followed {
 }
 
 impl Followed {
-    /// From whole periods. `changed`: whether the feedforward has changed its sign since the row before.
-    #[allow(clippy::too_many_arguments)]
-    pub fn of(
-        method: Method,
-        time_s: Vec<f64>,
-        velocity_rad_s: Vec<f64>,
-        reference_rad: Vec<f64>,
-        mut error_rad: Vec<f64>,
-        changed: &[bool],
-        period_s: f64,
-        over_nm: f64,
-    ) -> Self {
-        let number = |i: usize| ((time_s[i] - time_s[0]) / period_s) as usize;
+    /// Removes the mean error of each period and adds the figures of this round. `changed`: whether the feed-forward has
+    /// changed its sign since the row before.
+    pub fn evaluated(mut self, changed: &[bool], period_s: f64) -> Self {
+        let number = |t_s: f64| ((t_s - self.time_s[0]) / period_s) as usize;
         let mut periods = Vec::new();
         let mut first = 0;
-        while first < time_s.len() {
-            let end = (first..time_s.len()).find(|i| number(*i) != number(first)).unwrap_or(time_s.len());
-            let (error, velocity) = (&mut error_rad[first..end], &velocity_rad_s[first..end]);
+        for rows in self.time_s.chunk_by(|a, b| number(*a) == number(*b)) {
+            let period = first..first + rows.len();
+            first = period.end;
+            let error = &mut self.error_rad[period.clone()];
             let mean = error.iter().sum::<f64>() / error.len() as f64;
             error.iter_mut().for_each(|e| *e -= mean);
-            periods.push(figures_of_period(error, velocity, &changed[first..end]));
-            first = end;
+            periods.push(figures_of_period(error, &self.velocity_rad_s[period.clone()], &changed[period]));
         }
         let mean = |figure: usize| periods.iter().map(|period| period[figure]).sum::<f64>() / periods.len() as f64;
-        let rounds = vec![std::array::from_fn(mean)];
-        Self { method, time_s, velocity_rad_s, reference_rad, error_rad, rounds, over_nm }
+        self.rounds.push(std::array::from_fn(mean));
+        self
     }
 
     /// All rounds of a method. `None`: it has none.
@@ -184,7 +175,9 @@ fn follow(period_s: f64, run: &RunTable, method: Method, round: u32) -> Option<F
     let time_s = rows.clone().map(|i| time[i] - time[first]).collect();
     let velocity_rad_s = rows.clone().map(|i| setpoint[i] / gear).collect();
     let changed = sign_changes(&fed[start..rows.end]).split_off(first - start);
-    Some(Followed::of(method, time_s, velocity_rad_s, reference_rad, error_rad, &changed, period_s, over_nm))
+    let rounds = Vec::new();
+    let followed = Followed { method, time_s, velocity_rad_s, reference_rad, error_rad, rounds, over_nm };
+    Some(followed.evaluated(&changed, period_s))
 }
 
 /// The largest feedforward in excess of the friction, less its uncertainty (A); 0 without rows in one direction.
