@@ -1,5 +1,6 @@
 //! One integration binary: each folder is one subject, from the view of a user or of a reader of the code.
 
+mod book;
 mod browser;
 mod daemon;
 mod demo;
