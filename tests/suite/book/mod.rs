@@ -1,10 +1,13 @@
-//! The book in `docs/`: its recipes.
+//! The book in `docs/`: its pages, its links, and its recipes.
 
 #[cfg(unix)]
 mod ci;
+mod commands;
+mod links;
 mod rest;
 
 use crate::house::root;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 fn docs() -> PathBuf {
@@ -14,6 +17,13 @@ fn docs() -> PathBuf {
 /// A page of `docs/`.
 fn page(name: &str) -> String {
     std::fs::read_to_string(docs().join(name)).unwrap_or_else(|fault| panic!("docs/{name}: {fault}"))
+}
+
+/// The names of all pages.
+fn pages() -> BTreeSet<String> {
+    let entries = std::fs::read_dir(docs()).expect("docs/").map_while(Result::ok);
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    names.filter(|name| name.ends_with(".md") && name != "SUMMARY.md").collect()
 }
 
 /// The blocks of code of a page, with their languages.
