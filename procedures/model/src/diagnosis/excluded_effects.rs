@@ -8,8 +8,7 @@ use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::refused::Refused;
 use crate::selection::{hysteresis_stage, ramp_stage};
-
-const TOO_LARGE: &str = "its detection limit exceeds the largest measured value";
+use crate::stats::summary::rms;
 
 #[derive(Default)]
 pub struct ExcludedEffects {
@@ -28,7 +27,7 @@ impl ExcludedEffects {
         let around_reversals = hysteresis_stage::detection_limits(end);
         let detection_limits: Vec<&DetectionLimit> =
             detection_limits.iter().chain(&around_reversals).chain(&on_ramps).collect();
-        let largest = end.prepared.main.target.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let signal = rms(&end.prepared.main.target);
         let mut others = Self::default();
         let is_out = |effect: &&dyn Effect| !end.effects.iter().any(|e| e == effect.info().id);
         for effect in end.spec.known().filter(is_out) {
@@ -41,8 +40,9 @@ impl ExcludedEffects {
             let detection_limit = detection_limits.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
             if let Some(why) = tried.or_else(|| given(effect, end).map(String::from)) {
                 others.left_out.push(LeftOut { effect: id.into(), why: tied.unwrap_or(why) });
-            } else if detection_limit.is_some_and(|detection_limit| detection_limit.detectable_rms > largest) {
-                others.invisible.push(Invisible { effect: id.into(), why: TOO_LARGE.into() });
+            } else if detection_limit.is_some_and(|detection_limit| detection_limit.detectable_rms > signal) {
+                // No noise is larger than the signal: only effects of the model can hide so much.
+                others.invisible.push(Invisible { effect: id.into(), why: tied.unwrap_or_else(|| alike(effect)) });
             } else if let Some(detection_limit) = detection_limit {
                 let sought = sought(effect, end);
                 others.silent.push(Silent {
@@ -95,8 +95,14 @@ fn excitation(effect: &dyn Effect) -> &'static str {
     }
 }
 
+fn alike(effect: &dyn Effect) -> String {
+    format!(
+        "in this data it has the shape of effects of the model; to distinguish them, measure {}",
+        excitation(effect)
+    )
+}
+
 fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> String {
-    const ALIKE: &str = "in this data it has the shape of effects of the model";
     const RAMP: &str = "it does not act at steady state. Ramps, where signals of different instruments are not aligned, are \
                         tested for a delay only, with an inertia in the model; add the effect to the model, or record a \
                         trajectory without steps";
@@ -108,9 +114,7 @@ fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> String {
         _ => Some(&prepared.main.view),
     };
     match view {
-        Some(view) => effect
-            .hidden(view)
-            .unwrap_or_else(|| format!("{ALIKE}; to distinguish them, measure {}", excitation(effect))),
+        Some(view) => effect.hidden(view).unwrap_or_else(|| alike(effect)),
         None => "the run has no slow reversals".into(),
     }
 }

@@ -100,9 +100,11 @@ fn at_corner<'p>(model: &LinearModel<'p>, problem: &'p Problem) -> LinearModel<'
     other.offsets.clone_from(&model.offsets);
     let term = |term: &Term<'p>| Term::new(term.effect, term.form.clone(), term.shape.clone(), problem);
     other.terms = model.terms.iter().map(term).collect();
-    let relative =
-        |r: &Relative<'p>| Relative { columns: columns(r.effect, r.form.name, &r.shape, problem), ..r.clone() };
-    other.relatives = Arc::new(model.relatives.par_iter().map(relative).collect());
+    let relative = |r: &Relative<'p>| {
+        let own = other.terms.iter().find(|term| term.id() == r.effect.info().id)?;
+        Some(r.at(own, problem))
+    };
+    other.relatives = Arc::new(model.relatives.par_iter().filter_map(relative).collect());
     other
 }
 

@@ -1,10 +1,12 @@
 //! Results of a fit that is judged sample by sample: presliding, and the nuisance terms of the form error.
 
+use crate::effect::{Effect, Form};
 use crate::effects;
 use crate::regression::linear_model::LinearModel;
-use crate::regression::solution::{PRESLIDING, Solution, rms};
+use crate::regression::solution::{PRESLIDING, Solution};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::{FormErrorTerm, Parameter, ParameterState, Term};
+use crate::stats::summary::rms;
 use crate::words::{figure, percent};
 use jointbench_instrument::Kind;
 
@@ -47,6 +49,10 @@ pub struct Nuisance {
     pub note: String,
 }
 
+fn form_of(effect: &dyn Effect, form: &Form, shape: &[f64], linear: Vec<f64>) -> FormErrorTerm {
+    FormErrorTerm { name: effect.info().id.into(), form: form.name.into(), shape: shape.to_vec(), linear }
+}
+
 /// `None` of a model that is fitted without nuisance terms.
 pub fn nuisance(model: &LinearModel, unit: &str) -> Option<Nuisance> {
     let (solution, form_error) = (Solution::of(model)?, model.problem.form_error.as_deref()?);
@@ -62,18 +68,20 @@ pub fn nuisance(model: &LinearModel, unit: &str) -> Option<Nuisance> {
         });
     }
     let mut coefficients = solution.relatives.iter();
-    for relative in model.relatives.iter() {
-        terms.push(FormErrorTerm {
-            name: relative.effect.info().id.into(),
-            form: relative.form.name.into(),
-            shape: relative.shape.clone(),
-            linear: coefficients.by_ref().take(relative.columns.len()).copied().collect(),
-        });
+    for term in &model.terms {
+        // What the whole columns of the other forms share with the effect counts as its size.
+        let mut own = vec![0.0; term.columns.len()];
+        for relative in model.relatives.iter().filter(|relative| relative.effect.info().id == term.id()) {
+            let linear: Vec<f64> = coefficients.by_ref().take(relative.columns.len()).copied().collect();
+            own.iter_mut().zip(relative.own_part(&linear)).for_each(|(own, part)| *own -= part);
+            terms.push(form_of(relative.effect, &relative.form, &relative.shape, linear));
+        }
+        if own.iter().any(|part| *part != 0.0) {
+            terms.push(form_of(term.effect, &term.form, &term.shape, own));
+        }
     }
-    let sum = solution.form_error(model);
-    let (size, whole) = (rms(&sum), rms(&model.problem.target));
-    let alone: Vec<f64> = solution.residual.iter().zip(&sum).map(|(residual, nuisance)| residual + nuisance).collect();
-    let effects_rms = rms(&alone);
+    let (size, whole) = (rms(&solution.form_error(model)), rms(&model.problem.target));
+    let effects_rms = solution.effects_rms(model);
     let note = format!(
         "nuisance terms (transients and other forms of the effects) explain {} RMS, {} of the torque; an exported model has \
          the effects only, and its error on this run is {} RMS",

@@ -126,6 +126,15 @@ impl Cholesky {
     }
 }
 
+/// Least-squares coefficients of each column in others, with zeros for dependent ones.
+pub fn projections(columns: &[Vec<f64>], on: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let size = on.len();
+    let gram: Vec<f64> = on.iter().flat_map(|a| on.iter().map(move |b| dot(a, b))).collect();
+    let gram = Cholesky::new(&gram, size, 0.0);
+    let of = |column: &Vec<f64>| gram.solve(&on.iter().map(|own| dot(own, column)).collect::<Vec<f64>>());
+    columns.iter().map(of).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

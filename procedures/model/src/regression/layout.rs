@@ -42,7 +42,8 @@ pub fn fit_canonical<'p>(
         model.terms.push(chosen.term(problem));
         let parts = extend(&mut model, chosen, &forms);
         let is_part = |form: &Regressor| parts.iter().any(|part| std::ptr::eq(*part, form));
-        let others = forms.iter().filter(|form| !is_part(form)).map(|form| relative(form));
+        let Some(term) = model.terms.last() else { break };
+        let others = forms.iter().filter(|form| !is_part(form)).map(|form| relative(form, term));
         let relatives = model.relatives.iter().cloned().chain(others).collect();
         model.relatives = Arc::new(relatives);
     }
@@ -96,7 +97,7 @@ fn best_form(solution: &Solution, forms: &[&Regressor]) -> (f64, usize) {
     best.map_or((0.0, 0), |at| (order(&at).1, at))
 }
 
-fn relative<'p>(form: &Regressor<'p>) -> Relative<'p> {
+fn relative<'p>(form: &Regressor<'p>, term: &Term) -> Relative<'p> {
     let columns = form.columns.iter().map(|c| c.iter().map(|v| f64::from(*v)).collect()).collect();
-    Relative { effect: form.effect, form: form.form.clone(), shape: form.shape.clone(), columns }
+    Relative::new(form.effect, form.form.clone(), form.shape.clone(), columns, term)
 }

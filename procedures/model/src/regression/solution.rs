@@ -10,6 +10,7 @@ use crate::regression::evidence::LEAST_VISIBLE;
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
 use crate::regression::weights::weights;
 use crate::stats::jackknife;
+use crate::stats::summary::rms;
 use jointbench_instrument::Kind;
 use std::sync::Arc;
 
@@ -58,13 +59,10 @@ pub fn nuisance<'a>(
     let columns = form_error.columns.iter().enumerate().filter(|(_, c)| is_nuisance(c));
     let error = columns
         .map(|(at, c)| (at, BaseColumn { values: &c.values, scale: c.scale, is_penalised: c.kind.is_penalised() }));
-    let relatives = model.relatives.iter().flat_map(|relative: &Relative| &relative.columns);
-    let relative = |values: &'a Vec<f64>| BaseColumn { values, scale: rms(values), is_penalised: true };
+    let relatives =
+        model.relatives.iter().flat_map(|relative: &Relative| relative.columns.iter().zip(&relative.scales));
+    let relative = |(values, scale): (&'a Vec<f64>, &f64)| BaseColumn { values, scale: *scale, is_penalised: true };
     Nuisance { error: error.collect(), relatives: relatives.map(relative).collect() }
-}
-
-pub fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
 /// The columns of the effects of a model.
@@ -155,6 +153,12 @@ impl Solution {
         let columns = model.relatives.iter().flat_map(|relative| &relative.columns);
         columns.zip(&self.relatives).for_each(|(column, coefficient)| add(column, *coefficient));
         sum
+    }
+
+    /// RMS error of the effects alone, without nuisance terms, as an exported model predicts.
+    pub fn effects_rms(&self, model: &LinearModel) -> f64 {
+        let nuisance = self.form_error(model);
+        rms(&self.residual.iter().zip(nuisance).map(|(residual, nuisance)| residual + nuisance).collect::<Vec<f64>>())
     }
 
     /// The solution as coefficients of the terms, like that of a least-squares model.

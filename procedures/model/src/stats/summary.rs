@@ -10,6 +10,11 @@ pub fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0f64, |most, v| most.max(v.abs()))
 }
 
+/// Root of the mean square. Zero without values.
+pub fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
