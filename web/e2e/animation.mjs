@@ -54,12 +54,13 @@ await runStory(file, async () => {
 	const { browser, page, faults } = await open(where, CONTEXT);
 	const film = new Film(page);
 	await startRun(page, where.base);
-	const toWorkbench = page.getByRole('link', { name: 'Open in the workbench' });
-	for (let i = 0; i < MOST_LIVE_FRAMES && !(await toWorkbench.isVisible()); i++) {
+	const toResult = page.getByRole('button', { name: 'Show the result' });
+	for (let i = 0; i < MOST_LIVE_FRAMES && !(await toResult.isVisible()); i++) {
 		await page.waitForTimeout(LIVE_EVERY_MS);
 		await film.show(LIVE_FRAME_MS);
 	}
-	await toWorkbench.click({ timeout: 180_000 });
+	await toResult.click({ timeout: 180_000 });
+	await page.getByRole('link', { name: 'Open in the workbench' }).click();
 	const first = await readVersion(page);
 	expect(first.verdict === 'missing_effect', `nothing is missing, the verdict is ${first.verdict}: hide an effect (jointbench demo --effect load_linear)`);
 	await film.show(4000);

@@ -55,12 +55,31 @@ export async function makeRun(base, procedure, parameters) {
 	return null;
 }
 
-/** Waits on the live page until the run is complete. */
-export async function watchRun(page) {
-	const open = page.getByRole('link', { name: 'Open in the workbench' });
-	await page.locator('.uplot').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'no live plot was drawn'));
-	await open.waitFor({ timeout: RUN_MS }).catch(async () => {
+/** Waits until the run of the page is complete, and opens its result by key. Returns the link to the workbench. */
+async function openResult(page, before = async () => {}) {
+	await page.getByRole('button', { name: 'Show the result' }).waitFor({ timeout: RUN_MS }).catch(async () => {
 		expect(false, `the run did not end in ${RUN_MS / 1000} s: ${await page.locator('h1').locator('..').innerText()}`);
+	});
+	await page.waitForTimeout(1500);
+	await before();
+	await page.keyboard.press('r');
+	const open = page.getByRole('link', { name: 'Open in the workbench' });
+	await open.waitFor({ timeout: RUN_MS });
+	return open;
+}
+
+/** Waits on the live page until the run is complete, and opens its result. */
+export async function watchRun(page) {
+	await page.locator('.uplot').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'no live plot was drawn'));
+	const shift = await page.evaluateHandle(() => {
+		const seen = { sum: 0 };
+		new PerformanceObserver((list) => list.getEntries().forEach((one) => (seen.sum += one.hadRecentInput ? 0 : one.value))).observe({ type: 'layout-shift' });
+		return seen;
+	});
+	const open = await openResult(page, async () => {
+		const jumps = await shift.evaluate(({ sum }) => sum);
+		expect(jumps < 0.1, `the page jumps during a run or at its end, by ${jumps}`);
+		console.log(`layout shift of a run and its end: ${jumps.toFixed(4)}`);
 	});
 	const head = await page.locator('header:has(h1)').last().innerText();
 	expect(head.includes('DONE'), `the run did not complete: ${head.replaceAll('\n', ' ')}`);
@@ -195,7 +214,7 @@ export async function firstUse(page, base) {
 	await page.getByRole('link', { name: 'Start a demo run' }).click();
 	await page.getByRole('button', { name: 'Start a demo run' }).click();
 	await page.waitForURL(/\/runs\/\d+/, { timeout: 30_000 }).catch(() => expect(false, 'the demo run does not start where it is pressed'));
-	await page.getByRole('link', { name: 'Open in the workbench' }).waitFor({ timeout: RUN_MS });
+	await openResult(page);
 	return { jumps, policy: answer.headers()['content-security-policy'] ?? '' };
 }
 

@@ -1196,6 +1196,9 @@ class TrendRun(BaseModel):
     temperature_c: float | None = None
     """Mean over the run; `null` where no temperature was measured."""
 
+    unit: str | None = None
+    """Serial number of the unit under test."""
+
 
 class Trends(BaseModel):
     """What complete runs have found, the oldest first."""

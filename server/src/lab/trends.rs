@@ -32,6 +32,7 @@ impl Lab {
                 created_at: record.created_at.clone(),
                 bench: record.bench.clone(),
                 procedure: record.procedure.clone(),
+                unit: record.unit.as_ref().map(|unit| unit.serial.clone()),
                 tags: record.tags.clone(),
                 temperature_c,
                 quantities,

@@ -149,6 +149,9 @@ pub struct TrendRun {
     pub created_at: String,
     pub bench: String,
     pub procedure: String,
+    /// Serial number of the unit under test.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
     pub tags: Vec<String>,
     /// Mean over the run; `null` where no temperature was measured.
     pub temperature_c: Option<f64>,

@@ -12,16 +12,17 @@ const SLOW_MS = 400;
 
 /**
  * Preliminary results of an active run, requested repeatedly: the quantities of the procedure, and the comparison with
- * the last model of the bench. `null` requests nothing. Call during component initialization.
+ * the last model of the bench. `null` requests nothing; those of a run that has ended stay as they are. Call during
+ * component initialization.
  */
-export function liveEstimates(running: () => number | null) {
+export function liveEstimates(shown: () => number | null, isRunning: () => boolean) {
 	let identification = $state.raw<Identification | null>(null);
 	let history: EstimateSnapshot[] = $state.raw([]);
 	let comparison = $state.raw<LiveComparison | null>(null);
 	let refused = $state.raw<ApiError | null>(null);
 	let busy = $state(false);
 
-	const activeRun = $derived(running());
+	const activeRun = $derived(shown());
 	$effect(() => {
 		const run = activeRun;
 		identification = null;
@@ -31,6 +32,7 @@ export function liveEstimates(running: () => number | null) {
 		const abort = new AbortController();
 		let timer: ReturnType<typeof setTimeout>;
 		const ask = async () => {
+			if (!isRunning()) return;
 			const start_ms = performance.now();
 			const slow = setTimeout(() => (busy = true), SLOW_MS);
 			try {

@@ -3,7 +3,7 @@ import type { Figure, Series } from '../figure/figure';
 import type { Scale } from '../format/number';
 import { formatDateTime } from '../format/time';
 
-export const AXES = ['run', 'time', 'temperature', 'bench', 'tag'] as const;
+export const AXES = ['run', 'time', 'temperature', 'unit', 'bench', 'tag'] as const;
 export type TrendAxis = (typeof AXES)[number];
 
 type TrendRun = Trends['runs'][number];
@@ -44,6 +44,7 @@ function trendPositions(axis: TrendAxis, runs: readonly TrendRun[]): TrendPositi
 		return { label, unit: '', names, at: (one) => names.indexOf(of(one)) };
 	};
 	if (axis === 'temperature') return { label: 'mean temperature', unit: '°C', at: ({ temperature_c }) => temperature_c ?? null };
+	if (axis === 'unit') return named('unit under test', ({ unit }) => unit ?? 'no unit');
 	if (axis === 'bench') return named('bench', ({ bench }) => bench);
 	if (axis === 'tag') return named('first tag', ({ tags }) => tags[0] ?? 'no tag');
 	if (axis === 'run') return runs.length > NAMED ? { label: 'run', unit: '', at: ({ run }) => run } : { ...named('run', ({ run }) => `#${run}`), at: (_one, i) => i };

@@ -14,6 +14,8 @@ const QUIET_MS = 1500;
 /** After this time without a message the contact is lost. */
 export const STALE_MS = 4000;
 
+const BENCH_KEY = 'jointbench.bench';
+
 const reducedMotion = matchMedia('(prefers-reduced-motion: reduce)');
 
 /** The last state from the daemon, which all pages display. */
@@ -44,8 +46,18 @@ class LabState {
 	/** End time of plots that follow the run [s]. */
 	shown_s: number | null = $state(null);
 
-	/** The bench of the pages: from the address, from the displayed run, or chosen by the user. */
-	chosen: string | null = $state(null);
+	/**
+	 * The bench of the pages: from the address, from the displayed run, or chosen by the user. The tab keeps it over a
+	 * reload, because the software stop acts on it.
+	 */
+	private chosenName: string | null = $state(sessionStorage.getItem(BENCH_KEY));
+	get chosen(): string | null {
+		return this.chosenName;
+	}
+	set chosen(name: string) {
+		this.chosenName = name;
+		sessionStorage.setItem(BENCH_KEY, name);
+	}
 	bench: Bench | null = $derived(this.benches?.find((bench) => bench.name === this.chosen) ?? this.benches?.[0] ?? null);
 	/** Milliseconds since the last message of the daemon. */
 	silence_ms = $derived(Math.max(0, this.now_ms - this.lastMessage_ms));
@@ -95,6 +107,10 @@ class LabState {
 			this.noteMessage();
 			for (const bench of benches) this.reported_ms.set(bench, this.lastMessage_ms);
 			this.benches = benches;
+			if (!benches.some(({ name }) => name === this.chosen)) {
+				const first = benches.find(({ run }) => run !== null) ?? benches[0];
+				if (first) this.chosen = first.name;
+			}
 		} catch (failure) {
 			// The age of the data shows a missing answer.
 			tokenRequest.isOpen ||= toApiError(failure).status === 401;

@@ -269,7 +269,7 @@ export function openWorkbench(id: number) {
 		undo,
 		redo,
 		get similarRuns() {
-			return (similarRuns.data?.runs ?? []).filter((one) => one.rows > 0 && isFinal(one.state));
+			return (similarRuns.data?.runs ?? []).filter((one) => one.rows > 0 && one.is_modelled && isFinal(one.state));
 		},
 		get versions() {
 			return versions;

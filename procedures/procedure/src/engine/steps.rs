@@ -119,13 +119,18 @@ impl Session<'_> {
     fn note_warm_up(&mut self, index: usize) {
         let Some(watch) = &mut self.warm else { return };
         watch.step_done();
-        let Some(drift) = watch.drift() else { return };
+        let last = self.plan.steps.get(index + 1).is_none_or(|next| next.phase != Phase::WarmUp);
+        let Some(drift) = watch.drift() else {
+            if last {
+                self.note("The warm-up is too short to show whether the joint is warm: it needs three strokes in each direction");
+            }
+            return;
+        };
         let drift = format!(
             "temperature drift {:.2} K/min, current drift {:.1} %/min",
             drift.temperature_c_per_min,
             100.0 * drift.current_share_per_min
         );
-        let last = self.plan.steps.get(index + 1).is_none_or(|next| next.phase != Phase::WarmUp);
         match (watch.is_steady(), last) {
             (true, _) => self.note(format!("Steady state reached: {drift}")),
             (false, true) => self.warn(format!("not warmed up: {drift} at the end of the warm-up")),
