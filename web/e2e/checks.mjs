@@ -74,7 +74,9 @@ export async function zoomWhileFollowing(page, base) {
 	await health.locator('tbody tr', { hasText: 'motor velocity' }).waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'the channels of a run that is on are not told'));
 	await page.goto(`${base}/runs/${id}`);
 	for (const name of [/^Abort/, 'Yes, abort']) await page.getByRole('button', { name }).press('Enter');
-	await page.locator('h1:focus').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the end of a run that is aborted loses the focus'));
+	await page.locator('#end-of-run:focus').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the end of a run that is aborted loses the focus'));
+	await page.keyboard.press('Enter');
+	await page.locator('h1:focus').waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'the opened result has no focus'));
 }
 
 /** Zooms a plot and selects a cell of the residual map by keyboard. Returns the text of the cell. */
