@@ -1,6 +1,12 @@
 //! `jointbench reproduce`: repeats the measurements of the source documents on the mock bench and compares the tables.
 
+mod benches;
+mod coverage;
 mod documents;
+mod evidence;
+mod figure;
+mod performed;
+mod row;
 
 use super::arguments::Reproduce;
 use super::exit::{Done, Exit};

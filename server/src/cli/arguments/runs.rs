@@ -135,7 +135,8 @@ pub struct Reproduce {
     /// Random seed of the simulated joints
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Use a bench with exactly the values of the documents, and count the intervals that contain them
+    /// Use a bench with exactly the values of the documents, count the intervals that contain them, and list every row
+    /// of the documents with its state
     #[arg(long)]
     pub documents: bool,
     /// Number of seeds, from --seed on
