@@ -9,7 +9,7 @@ use tokio::sync::broadcast::{self, Receiver, Sender};
 const CAPACITY: usize = 1024;
 
 /// The newest rows of a run.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Rows {
     pub bench: String,
     pub run: i64,

@@ -18,7 +18,8 @@ pub enum Frame {
 #[derive(Default)]
 pub struct Outbox {
     texts: Vec<String>,
-    waiting: Option<Trace>,
+    /// Waiting rows of each active run.
+    waiting: Vec<Rows>,
     /// Run and channels of the last channel message to the client.
     sent_channels: Option<(i64, Vec<Channel>)>,
     sequence: u32,
@@ -41,46 +42,46 @@ impl Outbox {
     pub fn text(&mut self, message: &LiveMessage) {
         // Messages that are dropped here are still available over REST.
         if self.texts.len() < LARGEST_QUEUE {
-            self.texts.push(serde_json::to_string(message).expect("a live message is plain JSON"));
+            self.texts.push(json(message));
         } else {
             self.lost(1);
         }
     }
 
     fn rows(&mut self, piece: &Rows) {
-        let channels = piece.rows.channels();
-        let same = self.sent_channels.as_ref().is_some_and(|(run, sent)| *run == piece.run && sent == channels);
-        if !same {
-            // The client would read rows of the previous run with the wrong columns.
-            if self.waiting.take().is_some() {
-                self.lost(1);
-            }
-            self.sent_channels = Some((piece.run, channels.to_vec()));
-            let channels = channels.iter().map(ChannelInfo::from).collect();
-            self.text(&LiveMessage::Channels { bench: piece.bench.clone(), run: piece.run, channels });
-        }
-        match &mut self.waiting {
-            Some(waiting) => waiting.append(piece.rows.clone()),
-            None => self.waiting = Some(piece.rows.clone()),
-        }
-        if let Some(waiting) = &mut self.waiting
-            && waiting.len() > LARGEST_FRAME_ROWS
-        {
-            let newest = waiting.columns().iter().map(|c| c[c.len() - LARGEST_FRAME_ROWS..].to_vec()).collect();
-            *waiting = Trace::from_columns(waiting.channels().to_vec(), newest);
+        let same = |waiting: &&mut Rows| waiting.run == piece.run && waiting.rows.channels() == piece.rows.channels();
+        let Some(waiting) = self.waiting.iter_mut().find(same) else {
+            self.waiting.push(piece.clone());
+            return;
+        };
+        waiting.rows.append(piece.rows.clone());
+        let rows = &mut waiting.rows;
+        if rows.len() > LARGEST_FRAME_ROWS {
+            let newest = rows.columns().iter().map(|c| c[c.len() - LARGEST_FRAME_ROWS..].to_vec()).collect();
+            *rows = Trace::from_columns(rows.channels().to_vec(), newest);
             self.dropped = self.dropped.saturating_add(1);
         }
     }
 
-    /// All waiting data as frames: text first.
+    /// All waiting data as frames: text first, then the rows of each run behind its channels.
     pub fn take(&mut self) -> Vec<Frame> {
         let mut frames: Vec<Frame> = self.texts.drain(..).map(Frame::Text).collect();
-        if let Some(rows) = self.waiting.take().filter(|rows| !rows.is_empty()) {
+        for Rows { bench, run, rows } in self.waiting.drain(..).filter(|waiting| !waiting.rows.is_empty()) {
+            let channels = rows.channels();
+            if !self.sent_channels.as_ref().is_some_and(|(sent, known)| *sent == run && known == channels) {
+                self.sent_channels = Some((run, channels.to_vec()));
+                let channels = channels.iter().map(ChannelInfo::from).collect();
+                frames.push(Frame::Text(json(&LiveMessage::Channels { bench, run, channels })));
+            }
             frames.push(Frame::Binary(frame::encode(self.sequence, self.dropped, &rows)));
             self.sequence = self.sequence.wrapping_add(1);
         }
         frames
     }
+}
+
+fn json(message: &LiveMessage) -> String {
+    serde_json::to_string(message).expect("a live message is plain JSON")
 }
 
 #[cfg(test)]
@@ -130,6 +131,11 @@ mod tests {
         outbox.put(&rows(1, 0, 10));
         outbox.put(&rows(2, 0, 3));
         let frames = outbox.take();
-        assert_eq!(header(frames.last().unwrap()), [0, 1, 3, 1]);
+        assert!(matches!(&frames[2], Frame::Text(text) if text.contains("\"run\":2")), "{frames:?}");
+        assert_eq!([&frames[1], &frames[3]].map(header), [[0, 0, 10, 1], [1, 0, 3, 1]]);
+        outbox.put(&rows(1, 10, 5));
+        let frames = outbox.take();
+        assert!(matches!(&frames[0], Frame::Text(text) if text.contains("\"run\":1")), "{frames:?}");
+        assert_eq!(header(&frames[1]), [2, 0, 5, 1]);
     }
 }

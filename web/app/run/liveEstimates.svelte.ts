@@ -40,7 +40,7 @@ export function liveEstimates(shown: () => number | null, isRunning: () => boole
 				if ((await api.run(run, abort.signal)).rows > 0) {
 					identification = await api.identification(run, abort.signal);
 					comparison = await api.liveComparison(run, abort.signal);
-					history = [...history, { at_s: lab.samples?.last_s ?? history.length, quantities: identification.quantities }];
+					history = [...history, { at_s: lab.feeds.get(run)?.samples?.last_s ?? history.length, quantities: identification.quantities }];
 				}
 				refused = null;
 			} catch (failure) {

@@ -26,7 +26,7 @@ export function runSteps(run: () => Run | undefined, live: () => boolean) {
 	const events = $derived.by(() => {
 		const before = storedEvents.data ?? [];
 		const last = before.at(-1)?.sequence ?? 0;
-		return [...before, ...(id !== null && lab.liveRun === id ? lab.events.filter(({ sequence }) => sequence > last) : [])];
+		return [...before, ...((id !== null && lab.feeds.get(id)?.events) || []).filter(({ sequence }) => sequence > last)];
 	});
 	const executed = $derived(executedSteps(events, events.at(-1)?.at_s ?? 0));
 	return {

@@ -18,10 +18,11 @@ const MIN_GAP_S = 0.1;
  * component initialization.
  */
 export function sampleRange(run: () => Run, live: () => boolean, look: () => PlotRange) {
-	const isLive = $derived(live() && lab.liveRun === run().id && lab.samples !== null);
-	const view: View | null = $derived(rangeView(look(), (isLive && look().follow ? lab.shown_s : null) ?? 0));
+	const feed = $derived(lab.feeds.get(run().id));
+	const isLive = $derived(live() && feed?.samples != null);
+	const view: View | null = $derived(rangeView(look(), (isLive && look().follow ? feed?.shown_s : null) ?? 0));
 	/** A range that is no longer in memory, or a finished run, is read from the store. */
-	const stored = $derived(!isLive || (!look().follow && (lab.samples?.first_s ?? Infinity) > (view?.[0] ?? -Infinity) + 0.05));
+	const stored = $derived(!isLive || (!look().follow && (feed?.samples?.first_s ?? Infinity) > (view?.[0] ?? -Infinity) + 0.05));
 	const request = debounced(() => (stored ? JSON.stringify([run().id, look(), live()]) : null), 90);
 	const load = async (from_s: number | undefined, to_s: number | undefined, signal: AbortSignal) => {
 		const samples = await api.samples(run().id, { from_s, to_s, px: PIXELS }, signal);
@@ -34,7 +35,7 @@ export function sampleRange(run: () => Run, live: () => boolean, look: () => Plo
 	/** Samples before the page connected. The store has the last of them two seconds later. */
 	const missingRange = $derived.by(() => {
 		const now = look();
-		const first_s = isLive && now.follow ? (lab.samples?.first_s ?? 0) : 0;
+		const first_s = isLive && now.follow ? (feed?.samples?.first_s ?? 0) : 0;
 		const from_s = now.follow ? Math.max(0, first_s - now.width_s) : 0;
 		return first_s > Math.max(0, view?.[0] ?? 0) + MIN_GAP_S ? `${from_s}:${first_s}` : null;
 	});
@@ -57,7 +58,7 @@ export function sampleRange(run: () => Run, live: () => boolean, look: () => Plo
 		get visible(): View | null {
 			if (view) return view;
 			void lab.frames;
-			const [first, last] = stored ? [history.data?.time[0], history.data?.time.at(-1)] : [lab.samples?.first_s, lab.samples?.last_s];
+			const [first, last] = stored ? [history.data?.time[0], history.data?.time.at(-1)] : [feed?.samples?.first_s, feed?.samples?.last_s];
 			return first != null && last != null && first < last ? [first, last] : null;
 		},
 		/** Why there is nothing to show. */
@@ -66,17 +67,17 @@ export function sampleRange(run: () => Run, live: () => boolean, look: () => Plo
 		},
 		get gaps() {
 			if (stored) return history.data?.gaps ?? [];
-			const [first_s, last_s] = [lab.samples?.first_s, before.data?.time.at(-1)];
+			const [first_s, last_s] = [feed?.samples?.first_s, before.data?.time.at(-1)];
 			const hole: [number, number][] = first_s != null && last_s !== undefined && first_s - last_s > MIN_GAP_S ? [[last_s, first_s]] : [];
-			return [...(before.data?.gaps ?? []), ...hole, ...(lab.samples?.gaps ?? [])];
+			return [...(before.data?.gaps ?? []), ...hole, ...(feed?.samples?.gaps ?? [])];
 		},
 		reload: history.reload,
 		/** Time, then one column per name. */
 		columns(names: readonly string[]): ArrayLike<number | null>[] {
 			void lab.frames;
-			if (!stored && lab.samples) {
-				const { time, columns } = lab.samples.window(...(view ?? ([-Infinity, Infinity] as const)));
-				const seen = [time, ...names.map((name) => columns[lab.samples!.names.indexOf(name)] ?? [])];
+			if (!stored && feed?.samples) {
+				const { time, columns } = feed.samples.window(...(view ?? ([-Infinity, Infinity] as const)));
+				const seen = [time, ...names.map((name) => columns[feed!.samples!.names.indexOf(name)] ?? [])];
 				return before.data ? joinColumns(named(before.data, names), seen) : seen;
 			}
 			return named(history.data, names);

@@ -1,11 +1,11 @@
 import { api } from '../api/client';
 import { connectLive } from '../api/live';
 import { toApiError } from '../api/apiError';
-import type { Bench, Channel, LiveMessage, Progress, RunEvent, RunState } from '../api/types';
+import type { Bench, LiveMessage, Progress, RunState } from '../api/types';
 import type { Frame } from '../api/frame';
-import { smoothFollow } from '../plot/smoothFollow';
-import { SampleBuffer } from '../plot/sampleBuffer';
+import { SvelteMap } from 'svelte/reactivity';
 import { withBench } from './benches';
+import { LiveFeed } from './liveFeed.svelte';
 import { tokenRequest } from './tokenRequest.svelte';
 import { role } from './role.svelte';
 
@@ -14,6 +14,8 @@ const QUIET_MS = 1500;
 /** After this time without a message the contact is lost. */
 export const STALE_MS = 4000;
 
+/** Runs beyond one for each bench whose feed stays in memory. */
+const MOST_FEEDS = 2;
 const BENCH_KEY = 'jointbench.bench';
 
 const reducedMotion = matchMedia('(prefers-reduced-motion: reduce)');
@@ -23,13 +25,12 @@ class LabState {
 	benches: Bench[] | null = $state.raw(null);
 	progress: Record<number, Progress> = $state({});
 	runStates: Record<number, RunState> = $state({});
-	events: RunEvent[] = $state.raw([]);
-	/** The run of `events` and `samples`. */
-	liveRun: number | null = $state(null);
-	channels: Channel[] = $state.raw([]);
+	/** Events, channels and samples of the last runs, by run. */
+	readonly feeds = new SvelteMap<number, LiveFeed>();
+	/** Incremented with every event of a run. */
+	events = $state(0);
 	/** Incremented with every frame, so that plots redraw. */
 	frames = $state(0);
-	dropped = $state(0);
 	/** Incremented when any model version or verdict of a run changes. */
 	models = $state(0);
 	/** Incremented when a user's effect changes, so that diagnoses that may suggest it are requested again. */
@@ -41,11 +42,6 @@ class LabState {
 	connected = $state(false);
 	lastMessage_ms = $state(performance.now());
 	now_ms = $state(performance.now());
-	/** Samples of the active run. The columns grow in place; `frames` signals changes. */
-	samples: SampleBuffer | null = $state.raw(null);
-	/** End time of plots that follow the run [s]. */
-	shown_s: number | null = $state(null);
-
 	/**
 	 * The bench of the pages: from the address, from the displayed run, or chosen by the user. The tab keeps it over a
 	 * reload, because the software stop acts on it.
@@ -63,12 +59,8 @@ class LabState {
 	silence_ms = $derived(Math.max(0, this.now_ms - this.lastMessage_ms));
 	contactLost = $derived(!this.connected || this.silence_ms > STALE_MS);
 
-	/**
-	 * Times of the last report on a bench and of the last samples. They give the age of the displayed data, on every
-	 * page.
-	 */
+	/** Time of the last report on a bench: it gives the age of the displayed data, on every page. */
 	readonly reported_ms = new WeakMap<Bench, number>();
-	lastFrame_ms = 0;
 
 	/** Stores a bench from a message of the daemon. */
 	updateBench(bench: Bench): void {
@@ -147,16 +139,12 @@ class LabState {
 				this.progress[message.run] = message.progress;
 				break;
 			case 'event':
-				this.resetForRun(message.run);
-				if (this.events.some((event) => event.sequence === message.event.sequence)) break;
-				this.events = [...this.events, message.event];
+				this.feedOf(message.run).add(message.event);
+				this.events += 1;
 				break;
 			case 'channels':
-				this.resetForRun(message.run);
-				this.channels = message.channels;
-				if (this.samples?.names.join() !== message.channels.map((c) => c.name).join()) {
-					this.samples = new SampleBuffer(message.channels.map((channel) => channel.name));
-				}
+				this.streamed = this.feedOf(message.run);
+				this.streamed.setChannels(message.channels);
 				break;
 			case 'model':
 			case 'verdict':
@@ -174,13 +162,17 @@ class LabState {
 		}
 	}
 
-	private resetForRun(run: number): void {
-		if (run === this.liveRun) return;
-		this.liveRun = run;
-		this.events = [];
-		this.samples = null;
-		this.shown_s = null;
-		this.dropped = 0;
+	/** The feed of the next frames: that of the last message about channels. */
+	private streamed: LiveFeed | null = null;
+
+	private feedOf(run: number): LiveFeed {
+		const known = this.feeds.get(run);
+		if (known) return known;
+		const feed = new LiveFeed();
+		this.feeds.set(run, feed);
+		const [oldest] = this.feeds.keys();
+		if (this.feeds.size > MOST_FEEDS + (this.benches?.length ?? 0)) this.feeds.delete(oldest!);
+		return feed;
 	}
 
 	private drawing = false;
@@ -190,9 +182,7 @@ class LabState {
 	/** Plots are drawn once per image of the screen, at any rate of frames, and never in a hidden tab. */
 	private handleFrame(frame: Frame): void {
 		this.noteMessage();
-		this.lastFrame_ms = this.lastMessage_ms;
-		this.samples?.push(frame);
-		this.dropped = frame.dropped;
+		this.streamed?.push(frame, this.lastMessage_ms);
 		this.hasNewFrame = true;
 		if (this.drawing) return;
 		this.drawing = true;
@@ -205,13 +195,12 @@ class LabState {
 	 * frames.
 	 */
 	private readonly draw = (now_ms: number): void => {
-		const newest_s = this.samples?.last_s ?? null;
 		const passed_ms = reducedMotion.matches ? Infinity : Math.max(0, now_ms - this.drawn_ms);
-		this.shown_s = newest_s === null ? null : smoothFollow(this.shown_s, newest_s, passed_ms);
+		this.drawing = false;
+		for (const feed of this.feeds.values()) this.drawing = feed.follow(passed_ms) || this.drawing;
 		this.drawn_ms = now_ms;
 		if (this.hasNewFrame) this.frames += 1;
 		this.hasNewFrame = false;
-		this.drawing = this.shown_s !== newest_s;
 		if (this.drawing) requestAnimationFrame(this.draw);
 	};
 }
