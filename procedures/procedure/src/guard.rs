@@ -7,13 +7,13 @@ use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 /// Ratio of trip to set limit for a measured current or speed, so that noise at the set limit does not trip: 0.62 A
-/// over 0.60 A (bench-physics, section 5).
+/// over 0.60 A (Magtrol 2025).
 const TRIP_OVER_SET: f64 = 0.62 / 0.60;
-/// Ratio of peak to continuous power of the brake: 1200 W over 350 W (HB-1750M, bench-physics, section 1).
+/// Ratio of peak to continuous power of the brake: 1200 W over 350 W (HB-1750M, Magtrol 2025).
 const PEAK_OVER_CONTINUOUS: f64 = 1200.0 / 350.0;
-/// Averaging time of the continuous power (bench-physics, section 5).
+/// Averaging time of the continuous power.
 const POWER_WINDOW_S: f64 = 10.0;
-/// Below this link speed a falling brake current leaves poles in the rotor: 1 rpm (bench-physics, section 3).
+/// Below this link speed a falling brake current leaves poles in the rotor: 1 rpm.
 pub const STANDSTILL_LINK_RAD_S: f64 = TAU / 60.0;
 /// Largest share by which the brake current may fall at standstill.
 const STANDSTILL_DECREASE: f64 = 0.2;

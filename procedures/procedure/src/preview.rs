@@ -331,7 +331,7 @@ impl Plan {
 /// An upper bound of the braking torque at a current (Nm).
 ///
 /// The torque curve of a hysteresis brake is up to 4.4 % above the straight line to its rating, at 0.9 of the rated
-/// current. Its descending branch is up to 8 % higher (bench-physics, section 2). The factor 1.15 covers both.
+/// current. Its descending branch is up to 8 % higher. The factor 1.15 covers both.
 fn brake_torque_bound_nm(current_a: f64, facts: &BenchFacts) -> f64 {
     let constants = &facts.constants;
     if current_a == 0.0 {

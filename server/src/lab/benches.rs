@@ -1,7 +1,7 @@
 //! Benches and requests to them.
 
+use super::blocking::blocking;
 use super::calibrations::BRAKE_MODEL;
-use super::models::blocking;
 use super::{Answer, Lab, LabError};
 use crate::bench::{BenchHandle, bench_view};
 use crate::job::Job;

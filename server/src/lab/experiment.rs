@@ -61,7 +61,7 @@ impl Lab {
         check_same_joint(&table, &offer.bench)?;
         let found: jointbench_model::Diagnosis = reread(&record.diagnosis)?;
         let open = Open { own: found.own.clone(), ..Open::from(&found) };
-        let next = super::models::blocking(move || Ok(next_run(&table, &open, &offer, &Options::default()))).await?;
+        let next = super::blocking::blocking(move || Ok(next_run(&table, &open, &offer, &Options::default()))).await?;
         Ok(next.experiment.map(|next| reread(&next)).transpose()?)
     }
 }

@@ -3,6 +3,7 @@
 mod autopilot;
 mod autopilot_task;
 mod benches;
+mod blocking;
 mod calibrations;
 mod computation;
 mod control_chart;

@@ -1,6 +1,7 @@
 //! Compares a run, also an active one, with the last model of its bench: does the model still explain the run?
 
-use super::{Answer, Lab, models::blocking};
+use super::blocking::blocking;
+use super::{Answer, Lab};
 use crate::job::Job;
 use crate::view::{Figure, FigureAxis, FigureForm, FigureSeries, Mark, ModelOverlay, reread};
 use jointbench_model::{Fit, Options, ResidualSet, residuals};

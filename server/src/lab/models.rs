@@ -1,5 +1,6 @@
 //! Effects, model versions and diagnoses.
 
+use super::blocking::blocking;
 use super::computation::{Subject as Turn, json, parsed};
 use super::exclusions;
 use super::{Answer, Lab, LabError, Offer, next_run};
@@ -339,16 +340,6 @@ fn fit_and_diagnose(
     match diagnose(table, spec, options, offer) {
         Ok(diagnosis) => Ok((diagnosis.fit.clone(), Some(diagnosis))),
         Err(_) => Ok((jointbench_model::fit(table, spec, options)?, None)),
-    }
-}
-
-/// Runs long computations outside of the threads that answer requests.
-pub(super) async fn blocking<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, ModelError> + Send + 'static,
-) -> Answer<T> {
-    match tokio::task::spawn_blocking(work).await {
-        Ok(result) => Ok(result?),
-        Err(fault) => Err(LabError::Internal(format!("the computation failed: {fault}"))),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Report of a run: one page, and an appendix.
 
-use super::models::blocking;
+use super::blocking::blocking;
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
 use crate::report::{Report, ResidualMap};

@@ -1,7 +1,7 @@
 //! Model versions: comparison, evaluation on other runs, export and import.
 
+use super::blocking::blocking;
 use super::computation::Subject as Turn;
-use super::models::blocking;
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
 use crate::store::{NewModel, Subject};

@@ -1,7 +1,8 @@
 //! Effects that users write: checked, stored, and available to every model of their kind. A diagnosis suggests one only on
 //! runs that use it: the run in whose workbench it was written, and those that a user chose.
 
-use super::models::{blocking, effect_view, find_kind};
+use super::blocking::blocking;
+use super::models::{effect_view, find_kind};
 use super::{Answer, Lab, LabError, exclusions, names};
 use crate::job::Job;
 use crate::store::{EffectUse, StoreError, UserEffectRecord};

@@ -13,6 +13,7 @@ mod ends;
 mod error;
 mod faults;
 mod full_disk;
+mod health;
 mod keeper;
 mod lock;
 mod mark;
@@ -43,6 +44,7 @@ mod window;
 pub use backup::{backup, restore};
 pub use commit::RunCommit;
 pub use error::StoreError;
+pub use health::{DamagedRecord, StoreHealth};
 pub use keeper::Loss;
 pub use order::Order;
 pub use records::{
@@ -52,7 +54,7 @@ pub use records::{
 };
 pub use result_cache::{Subject, packed, unpacked};
 pub use search::Search;
-pub use verify::{DamagedRecord, Readable, StoreHealth, VerifyReport, verify};
+pub use verify::{Readable, VerifyReport, verify};
 
 use keeper::Keeper;
 use lock::FolderLock;

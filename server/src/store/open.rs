@@ -1,10 +1,11 @@
 //! Opening: one daemon for each data folder, one schema, durable commits.
 
 use super::full_disk::{limit, release_pages};
+use super::health::StoreHealth;
 use super::keeper::{Keeper, PATIENCE, Signal, Signals, find_loss, losses};
 use super::lock::FolderLock;
 use super::migrations::Migrations;
-use super::{Store, StoreError, StoreHealth};
+use super::{Store, StoreError};
 use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 use sqlx::{ConnectOptions, Connection, SqliteConnection, SqlitePool};

@@ -11,7 +11,7 @@ pub enum BenchState {
     Paused,
     /// Drive torque goes off and the brake current to zero.
     Securing,
-    /// By the software stop, until somebody resets it.
+    /// By the software stop, until a person resets it.
     Stopped,
     /// An instrument does not do what it should.
     Fault,

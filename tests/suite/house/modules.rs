@@ -86,16 +86,24 @@ fn sources(folder: &Path) -> BTreeMap<ModulePath, String> {
 }
 
 fn code(source: &str) -> String {
-    // A declaration of a file with tests is followed by other code, a module of tests is not.
-    let source = source.replace("#[cfg(test)]\nmod tests;\n", "");
-    let source = source.split("#[cfg(test)]\n").next().unwrap_or_default();
-    source.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+    // A declaration of a file for tests is followed by other code, a module of tests is not.
+    let mut lines = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default().lines();
+    let mut kept = Vec::new();
+    while let Some(line) = lines.next() {
+        if line == "#[cfg(test)]" {
+            lines.next();
+        } else {
+            kept.push(line);
+        }
+    }
+    kept.into_iter().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
 }
 
 /// Dependencies between the modules of each folder; the content of a subfolder counts for it.
 fn arrows_of(sources: &BTreeMap<ModulePath, String>) -> BTreeMap<ModulePath, Arrows> {
-    let root = &sources[&Vec::new()];
-    let exported: Vec<ModulePath> = statements(root, "pub use ").flat_map(|tree| leaves(&tree)).collect();
+    let exported: BTreeMap<&ModulePath, Vec<ModulePath>> = (sources.iter())
+        .map(|(module, text)| (module, statements(text, "pub use ").flat_map(|tree| leaves(&tree)).collect()))
+        .collect();
     let mut all: BTreeMap<ModulePath, Arrows> = BTreeMap::new();
     for (from, text) in sources.iter().filter(|(from, _)| !from.is_empty()) {
         for path in references(from, text) {
@@ -161,13 +169,25 @@ fn leaves(tree: &str) -> Vec<ModulePath> {
     closed.flat_map(|part| leaves(&part)).map(|leaf| [before.clone(), leaf].concat()).collect()
 }
 
-/// The module of a path: the longest existing module path, or the module that the root exports the name from.
-fn module_of(path: &[String], sources: &BTreeMap<ModulePath, String>, exported: &[ModulePath]) -> ModulePath {
-    let longest = (1..=path.len()).rev().map(|n| path[..n].to_vec()).find(|module| sources.contains_key(module));
-    longest.unwrap_or_else(|| {
-        let from = exported.iter().find(|leaf| leaf.last() == path.first());
-        // A root exports the rest with `report::*`, or not at all.
-        let rest = || exported.iter().find(|leaf| leaf.last().is_some_and(|name| name == "*"));
-        from.or_else(rest).map_or_else(Vec::new, |leaf| leaf[..leaf.len() - 1].to_vec())
-    })
+/// The module of a path: the longest existing module path, or the module from which that one exports the name.
+fn module_of(
+    path: &[String],
+    sources: &BTreeMap<ModulePath, String>,
+    exported: &BTreeMap<&ModulePath, Vec<ModulePath>>,
+) -> ModulePath {
+    let longest = (0..=path.len()).rev().map(|n| path[..n].to_vec()).find(|module| sources.contains_key(module));
+    let module = longest.unwrap_or_default();
+    let Some(name) = path.get(module.len()) else { return module };
+    let leaves = || exported[&module].iter();
+    let from = leaves().find(|leaf| leaf.last() == Some(name));
+    // A module exports the rest with `report::*`, or not at all.
+    let rest = || leaves().find(|leaf| leaf.last().is_some_and(|name| name == "*"));
+    match from.or_else(rest) {
+        Some(leaf) if leaf[0] == "crate" => module_of(&leaf[1..], sources, exported),
+        Some(leaf) => {
+            let whole = [&module[..], leaf.strip_suffix(&["*".to_owned()]).unwrap_or(leaf)].concat();
+            module_of(&whole, sources, exported)
+        }
+        None => module,
+    }
 }

@@ -59,7 +59,7 @@ fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, 
 }
 
 /// Reselects the form or the order of each effect, given all other effects of the model. Returns whether a form
-/// changed. A form was chosen with fewer effects in the model and may not be the best any more.
+/// changed. A form was chosen with fewer effects in the model and may no longer be the best.
 pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p>) -> bool {
     let mut changed = false;
     for i in 0..terms.terms.len() {

@@ -36,7 +36,7 @@ const SCHEMA: &[Parameter] = &[
 const TURNS: f64 = 1.2;
 
 /// Time at the magnetising current: 0.1 % of the last step of the ramp is left after 0.12 s of supply and 7 · 0.08 s of
-/// coil (bench-physics, section 2), and as much again for slower coils.
+/// coil, and as much again for slower coils.
 const MAGNETISE_S: f64 = 1.5;
 
 /// Purpose of a leg, stored in the column `repeat`.

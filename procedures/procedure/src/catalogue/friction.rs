@@ -1,4 +1,4 @@
-//! Friction over velocity, load, link angle and temperature (seed-facts, section 4).
+//! Friction over velocity, load, link angle and temperature.
 //!
 //! A repeat passes the loads from zero to the highest, so that the brake is always on its ascending branch. At its
 //! end the brake is demagnetised during rotation. At each load the joint makes one *tour*: fast legs out in shuffled
@@ -50,7 +50,7 @@ const SCHEMA: &[Parameter] = &[
 const SLOW_SHARES: [f64; 4] = [0.15, 0.3, 0.5, 0.75];
 /// The lowest of the speeds above it, as a share.
 const FAST_FROM: f64 = 1.3;
-/// The torque of the brake grows slowly at first (bench-physics, section 2), so that even torques need uneven
+/// The torque of the brake grows slowly at first, so that even torques need uneven
 /// currents.
 const LOAD_EXPONENT: f64 = 0.7;
 

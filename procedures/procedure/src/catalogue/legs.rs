@@ -17,11 +17,10 @@ const SHORTEST_LEG_S: f64 = 0.5;
 /// Largest share of the link's range in one leg.
 const RANGE_SHARE: f64 = 0.9;
 
-/// A rise of the brake current: its ramp, and the delay of supply and coil (118 ms and 80 ms; bench-physics, section
-/// 2).
+/// A rise of the brake current: its ramp, and the delay of supply and coil (118 ms and 80 ms).
 pub(super) const RAISE_S: f64 = 0.8;
 pub(super) const LAG_S: f64 = 0.6;
-/// A fall of the brake current takes at least this time and a whole link turn (bench-physics, section 3).
+/// A fall of the brake current takes at least this time and a whole link turn.
 const UNLOAD_S: f64 = 2.0;
 
 /// The torque sensor sends 1000 samples a second if that gives at least two samples in every row.
@@ -210,7 +209,7 @@ pub(super) mod testing {
     use jointbench_instrument::bench::JointConstants;
     use std::f64::consts::TAU;
 
-    /// Joint A of the thesis (seed-facts, section 2) with brake A.
+    /// Joint A of the thesis with brake A.
     pub fn joint_a() -> BenchFacts {
         BenchFacts {
             name: "a".into(),

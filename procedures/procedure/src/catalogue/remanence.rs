@@ -9,7 +9,7 @@ use jointbench_instrument::RunTable;
 use jointbench_model::words;
 use std::f64::consts::TAU;
 
-/// Largest remaining torque ripple, peak to peak, as a share of the rated torque (bench-physics, section 3).
+/// Largest remaining torque ripple, peak to peak, as a share of the rated torque.
 const LEFT_SHARE: f64 = 0.005;
 /// Angles of a turn at which the torque is averaged: several for each of up to 25 poles.
 const PLACES: usize = 120;

@@ -54,7 +54,7 @@ pub struct RunEnd {
 /// Runs a plan to its end. Never panics, and never returns before securing was attempted.
 ///
 /// The caller owns the bench on this thread. A dropped sender of `controls` is an orderly stop, because the run could
-/// not be stopped any more. The recorder receives every state from `arming` to the final one; if it fails, the run
+/// not be stopped otherwise. The recorder receives every state from `arming` to the final one; if it fails, the run
 /// fails.
 pub fn run(
     bench: &mut Bench,

@@ -16,7 +16,7 @@ const RETURN_GRACE_S: f64 = 5.0;
 impl Session<'_> {
     /// Returns when the step may begin again, with the brake current at the start of the pause (A).
     pub(super) fn pause(&mut self, step: &Step, start_rad: Option<f64>) -> Result<f64, Ending> {
-        // A constant current through standstill and restart causes no cogging (bench-physics, section 3).
+        // A constant current through standstill and restart causes no cogging.
         let mut brake_a = self.commanded.brake_a;
         let mut rested_s = 0.0;
         loop {

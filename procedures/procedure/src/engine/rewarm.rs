@@ -6,7 +6,7 @@ use crate::plan::{Phase, Step};
 use crate::profile::Profile;
 use crate::steady::{COOLING_S, SteadyDetector};
 
-/// Ramp of a rising brake current, and the delay of supply and coil (bench-physics, section 2).
+/// Ramp of a rising brake current, and the delay of supply and coil.
 const RAISE_S: f64 = 0.8;
 const LAG_S: f64 = 0.6;
 

@@ -10,12 +10,11 @@ use jointbench_instrument::Fault;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Least duration of unloading the brake, and one link turn, so that every pole is reached (bench-physics, section
-/// 3).
+/// Least duration of unloading the brake, and one link turn, so that every pole is reached.
 const UNLOAD_S: f64 = 2.0;
 /// Longest duration: a plan that only creeps does not get a whole turn.
 const LONGEST_UNLOAD_S: f64 = 15.0;
-/// Fastest link speed of unloading: 60 rpm (bench-physics, section 3).
+/// Fastest link speed of unloading: 60 rpm.
 const UNLOAD_LINK_RAD_S: f64 = TAU;
 /// Dead time of the supply and delay of the coil, before the shaft may stop after a falling current.
 const BRAKE_LAG_S: f64 = 0.5;

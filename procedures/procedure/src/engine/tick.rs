@@ -29,8 +29,8 @@ const CHANGES_FOR_S: f64 = 1.0;
 /// Reading period of the thermometer: a resistance thermometer in a housing has a time constant of 10 to 30 s, and
 /// its reply takes several ticks.
 const THERMOMETER_EVERY_S: f64 = 2.0;
-/// Longest time without regulation of the supply. CV for more than 0.5 s at a commanded CC is a fault (bench-physics,
-/// section 5). A rising current needs the full voltage for a moment.
+/// Longest time without regulation of the supply. CV for more than 0.5 s at a commanded CC is a fault. A rising
+/// current needs the full voltage for a moment.
 const UNREGULATED_S: f64 = 1.0;
 
 impl Session<'_> {

@@ -1,28 +1,15 @@
 //! The periodic check of a running daemon.
 
-use super::super::{Loss, Store};
-use super::DamagedRecord;
-use serde::{Deserialize, Serialize};
+use super::super::Store;
+use super::super::health::StoreHealth;
 use std::sync::PoisonError;
 use std::time::Duration;
-use utoipa::ToSchema;
 
 /// Delay of the first check after a start.
 const FIRST: Duration = Duration::from_secs(60);
 const DAY: Duration = Duration::from_secs(24 * 3600);
 /// Pause between two runs.
 const PACE: Duration = Duration::from_secs(1);
-
-/// Result of the latest integrity check of the store.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
-pub struct StoreHealth {
-    /// `null` until the first check is complete; one check per day.
-    #[schema(format = DateTime)]
-    pub checked_at: Option<String>,
-    pub damaged: Vec<DamagedRecord>,
-    /// Acknowledged changes that were missing when the store was opened.
-    pub lost: Vec<Loss>,
-}
 
 impl Store {
     pub fn health(&self) -> StoreHealth {

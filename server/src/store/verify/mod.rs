@@ -7,8 +7,7 @@ mod records;
 mod report;
 mod samples;
 
-pub use daily::StoreHealth;
-pub use report::{DamagedRecord, Readable, VerifyReport};
+pub use report::{Readable, VerifyReport};
 
 use super::keeper::{losses, missing};
 use super::mark::Mark;

@@ -1,6 +1,7 @@
 //! Results of a check.
 
-use super::super::Loss;
+use super::super::health::DamagedRecord;
+use super::super::keeper::Loss;
 use super::super::seal::Sealed;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -22,15 +23,6 @@ pub struct VerifyReport {
     pub readable: Vec<Readable>,
     /// Acknowledged changes that are missing.
     pub lost: Vec<Loss>,
-}
-
-/// One damaged record.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct DamagedRecord {
-    pub run: Option<i64>,
-    /// `file` if found by the integrity check of SQLite.
-    pub table: String,
-    pub what: String,
 }
 
 /// The readable part of a table, for one run or, if `run` is `null`, for all.

@@ -5,8 +5,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// Highest order that is tested: the second harmonic of 25 poles (one tooth every 17° is 21 poles; bench-physics,
-/// section 3).
+/// Highest order that is tested: the second harmonic of 25 poles (one tooth every 17° is 21 poles; Magtrol 2025).
 pub const ORDERS: usize = 50;
 
 /// One order in one turn.
