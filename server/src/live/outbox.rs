@@ -49,13 +49,13 @@ impl Outbox {
     }
 
     fn rows(&mut self, piece: &Rows) {
-        let same = |waiting: &&mut Rows| waiting.run == piece.run && waiting.rows.channels() == piece.rows.channels();
-        let Some(waiting) = self.waiting.iter_mut().find(same) else {
-            self.waiting.push(piece.clone());
-            return;
-        };
-        waiting.rows.append(piece.rows.clone());
-        let rows = &mut waiting.rows;
+        let same = |waiting: &Rows| waiting.run == piece.run && waiting.rows.channels() == piece.rows.channels();
+        let at = self.waiting.iter().position(same).unwrap_or(self.waiting.len());
+        match self.waiting.get_mut(at) {
+            Some(waiting) => waiting.rows.append(piece.rows.clone()),
+            None => self.waiting.push(piece.clone()),
+        }
+        let rows = &mut self.waiting[at].rows;
         if rows.len() > LARGEST_FRAME_ROWS {
             let newest = rows.columns().iter().map(|c| c[c.len() - LARGEST_FRAME_ROWS..].to_vec()).collect();
             *rows = Trace::from_columns(rows.channels().to_vec(), newest);

@@ -5,7 +5,7 @@ use crate::house::root;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Documents beside the book.
+/// Documents outside of the book.
 const OTHERS: [&str; 4] = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "python/README.md"];
 
 /// The text without code, in which brackets are no links.

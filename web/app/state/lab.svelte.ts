@@ -14,7 +14,7 @@ const QUIET_MS = 1500;
 /** After this time without a message the contact is lost. */
 export const STALE_MS = 4000;
 
-/** Runs beyond one for each bench whose feed stays in memory. */
+/** Feeds of ended runs that stay in memory. */
 const MOST_FEEDS = 2;
 const BENCH_KEY = 'jointbench.bench';
 
@@ -170,8 +170,9 @@ class LabState {
 		if (known) return known;
 		const feed = new LiveFeed();
 		this.feeds.set(run, feed);
-		const [oldest] = this.feeds.keys();
-		if (this.feeds.size > MOST_FEEDS + (this.benches?.length ?? 0)) this.feeds.delete(oldest!);
+		const isOver = (one: number) => one !== run && !this.benches?.some((bench) => bench.run === one);
+		const oldest = [...this.feeds.keys()].find(isOver);
+		if (this.feeds.size > MOST_FEEDS + (this.benches?.length ?? 0) && oldest !== undefined) this.feeds.delete(oldest);
 		return feed;
 	}
 

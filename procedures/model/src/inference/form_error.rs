@@ -49,7 +49,7 @@ pub struct Nuisance {
     pub note: String,
 }
 
-fn form_of(effect: &dyn Effect, form: &Form, shape: &[f64], linear: Vec<f64>) -> FormErrorTerm {
+fn form_error_term(effect: &dyn Effect, form: &Form, shape: &[f64], linear: Vec<f64>) -> FormErrorTerm {
     FormErrorTerm { name: effect.info().id.into(), form: form.name.into(), shape: shape.to_vec(), linear }
 }
 
@@ -68,20 +68,22 @@ pub fn nuisance(model: &LinearModel, unit: &str) -> Option<Nuisance> {
         });
     }
     let mut coefficients = solution.relatives.iter();
-    for term in &model.terms {
-        // What the whole columns of the other forms share with the effect counts as its size.
-        let mut own = vec![0.0; term.columns.len()];
-        for relative in model.relatives.iter().filter(|relative| relative.effect.info().id == term.id()) {
-            let linear: Vec<f64> = coefficients.by_ref().take(relative.columns.len()).copied().collect();
-            own.iter_mut().zip(relative.own_part(&linear)).for_each(|(own, part)| *own -= part);
-            terms.push(form_of(relative.effect, &relative.form, &relative.shape, linear));
+    // The part of the other forms that has the effect's own shape counts as its size.
+    let mut own: Vec<Vec<f64>> = model.terms.iter().map(|term| vec![0.0; term.columns.len()]).collect();
+    for relative in model.relatives.iter() {
+        let linear: Vec<f64> = coefficients.by_ref().take(relative.columns.len()).copied().collect();
+        if let Some(at) = model.terms.iter().position(|term| term.id() == relative.effect.info().id) {
+            own[at].iter_mut().zip(relative.own_part(&linear)).for_each(|(own, part)| *own -= part);
         }
-        if own.iter().any(|part| *part != 0.0) {
-            terms.push(form_of(term.effect, &term.form, &term.shape, own));
-        }
+        terms.push(form_error_term(relative.effect, &relative.form, &relative.shape, linear));
     }
-    let (size, whole) = (rms(&solution.form_error(model)), rms(&model.problem.target));
-    let effects_rms = solution.effects_rms(model);
+    for (term, own) in model.terms.iter().zip(own).filter(|(_, own)| own.iter().any(|part| *part != 0.0)) {
+        terms.push(form_error_term(term.effect, &term.form, &term.shape, own));
+    }
+    let sum = solution.form_error(model);
+    let (size, whole) = (rms(&sum), rms(&model.problem.target));
+    let alone: Vec<f64> = solution.residual.iter().zip(&sum).map(|(residual, nuisance)| residual + nuisance).collect();
+    let effects_rms = rms(&alone);
     let note = format!(
         "nuisance terms (transients and other forms of the effects) explain {} RMS, {} of the torque; an exported model has \
          the effects only, and its error on this run is {} RMS",

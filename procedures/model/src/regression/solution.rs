@@ -155,12 +155,6 @@ impl Solution {
         sum
     }
 
-    /// RMS error of the effects alone, without nuisance terms, as an exported model predicts.
-    pub fn effects_rms(&self, model: &LinearModel) -> f64 {
-        let nuisance = self.form_error(model);
-        rms(&self.residual.iter().zip(nuisance).map(|(residual, nuisance)| residual + nuisance).collect::<Vec<f64>>())
-    }
-
     /// The solution as coefficients of the terms, like that of a least-squares model.
     pub fn linear(&self, model: &LinearModel) -> Linear {
         let mut next = self.coefficients.iter().copied();
