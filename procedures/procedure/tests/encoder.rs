@@ -296,6 +296,8 @@ fn offset_and_delay_are_those_that_the_mock_was_given() {
         let [low, high] = disparity.ci95.unwrap();
         assert!((low..=high).contains(&truth_rad), "{low:e} … {high:e} for {truth_rad:e} at {speed} rad/s");
         assert_eq!(figure("delay").value, -disparity.value / speed);
+        assert!((figure("disparity_points").value - disparity.value / POINT_RAD).abs() < 1e-9);
+        check(&delay, &format!("delay_difference_{i}"), 0.0, 0.3e-6);
     }
 
     let without_s = delay.quantity("delay").unwrap().value;
@@ -303,6 +305,10 @@ fn offset_and_delay_are_those_that_the_mock_was_given() {
     let delay = run(&mut bench, "encoder_delay", json!({"delay_without_filter_s": without_s}));
     check(&delay, "delay", truth.delay_s, 1e-6);
     assert!((delay.quantity("filter_delay").unwrap().value - 10.99e-6).abs() < 0.3e-6);
+    // Table 4.3: the filter delays by more than the 10 µs of its data sheet.
+    for i in 1..=6 {
+        check(&delay, &format!("missing_delay_{i}"), truth.filter_delay_s - 10e-6, 0.3e-6);
+    }
 }
 
 #[test]
@@ -317,6 +323,10 @@ fn fifteen_bits_are_usable_behind_the_table() {
     let [low, high] = before.ci95.unwrap();
     assert!(low < before.value && before.value < high && high - low < 0.2, "{low} {high}");
     assert!(bits("bits_velocity") >= 15.0 || found.summary.contains("require the direction term"), "{}", found.summary);
+    // Section 4.1.5: a table of 2^10 entries differs from the smoothed error by less than 1 bit in the mean.
+    let [low, high] = found.quantity("table_error_mean_points").unwrap().ci95.unwrap();
+    assert!(0.0 < low && high < 1.0, "{low} {high}");
+    assert!(bits("table_error_max_points") > high);
     check(&found, "harmonic_1", truth.eccentricity_rad, 2.0 * POINT_RAD);
     check(&found, "harmonic_2", truth.tilt_rad, 2.0 * POINT_RAD);
     assert_eq!(found.quantity("pole_period_order").unwrap().value, truth.pole_pairs);
@@ -355,9 +365,21 @@ fn every_edge_is_within_a_step_of_the_stage_and_the_best_place_is_found() {
     assert!(found.quantity("vertical_negative").is_none() && found.quantity("vertical_positive").is_none());
     check(&found, "best_radial_shift", truth.best_radial_m, 2e-6);
     assert!(found.summary.starts_with("PASS"), "{}", found.summary);
-    let [bars, unlost, line] = &found.figures[0].series[..] else { panic!("{:?}", found.figures[0]) };
+    let [bars, unlost, tested, line] = &found.figures[0].series[..] else { panic!("{:?}", found.figures[0]) };
     assert!(bars.y.iter().all(|share| *share >= line.y[0]), "{bars:?}");
     assert_eq!((unlost.x.len(), &unlost.mark), (2, &Mark::Points), "vertically, both ways: {unlost:?}");
+    assert!(tested.y[0] == tested.y[1] && tested.y[1] < bars.y[1], "the nearer radial limit: {tested:?}");
+    // Table 4.4: the axis is consistent over the tested tolerance of the document, and lost at the nearer limit.
+    check(&found, "tested_radial", -truth.radial_m[0], 2e-6);
+    check(&found, "tested_axial", truth.axial_m, 4e-6);
+    check(&found, "tested_rotation", truth.rotation_rad, 2e-4);
+    check(&found, "tested_tilt", truth.lost_tilt_rad, 2e-4);
+    let degree = std::f64::consts::TAU / 360.0;
+    let shifts = [("radial", 0.2e-3), ("axial", 0.25e-3), ("vertical", 1e-3)];
+    for (axis, at) in shifts.into_iter().chain([("rotation", 0.7 * degree), ("tilt", 0.1 * degree)]) {
+        assert!(found.quantity(&format!("tested_{axis}")).unwrap().value >= at - 1e-9, "{axis}");
+    }
+    assert!(found.quantity("tested_vertical").unwrap().ci95.is_none(), "no limit within the travel");
     assert!((bars.band[0][0]..=bars.band[0][1]).contains(&(truth.radial_m[0].abs() / 0.15e-3)), "{bars:?}");
 
     let drawn = &found.figures[1].series;

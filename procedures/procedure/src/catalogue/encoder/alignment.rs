@@ -3,6 +3,7 @@
 use super::edges::{DIRECTIONS, Direction, Found, found};
 use super::quantities::{insufficient_data, quantity};
 use super::sweeps::sweeps;
+use super::tested;
 use super::tolerance::{self, Judgement};
 use super::{ACCELERATION, EncoderLinearity, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::bench_facts::BenchFacts;
@@ -38,7 +39,7 @@ impl Procedure for EncoderAlignment {
 
     fn summary(&self) -> &'static str {
         "Moves the sensor along each axis of the stage until the encoder reports inconsistent periods (bisection from \
-         the consistent side). Then measures the error over the radial shift and finds its minimum. Align the stage \
+         the consistent side), which gives the tested tolerance of each axis. Then measures the error over the radial shift and finds its minimum. Align the stage \
          zero with the sensor position first."
     }
 
@@ -106,9 +107,14 @@ impl Procedure for EncoderAlignment {
         findable(&[
             (
                 "m",
-                "radial_negative radial_positive axial_positive vertical_negative vertical_positive best_radial_shift",
+                "radial_negative radial_positive axial_positive vertical_negative vertical_positive best_radial_shift \
+                 tested_radial tested_axial tested_vertical",
             ),
-            ("rad", "rotation_negative rotation_positive tilt_negative tilt_positive best_harmonic_1"),
+            (
+                "rad",
+                "rotation_negative rotation_positive tilt_negative tilt_positive best_harmonic_1 tested_rotation \
+                 tested_tilt",
+            ),
         ])
     }
 
@@ -121,6 +127,7 @@ impl Procedure for EncoderAlignment {
         }
         let mut quantities: Vec<Quantity> =
             found.iter().filter_map(|(direction, found)| direction.quantity(found)).collect();
+        quantities.extend(tested::quantities(&found));
         let map = Map::of(run);
         let judged = Judgement::of(&found);
         let mut lead = format!("{} {}", judged.text, description(&found));

@@ -64,13 +64,19 @@ impl Direction {
         pose
     }
 
-    fn unit(&self) -> &'static str {
+    pub fn unit(&self) -> &'static str {
         if self.axis < 3 { "m" } else { "rad" }
     }
 
     /// A position in words, without its sign, which the direction already defines.
     pub fn length(&self, at: f64) -> String {
         words::figure(at.abs(), self.unit())
+    }
+
+    /// Name and title of the axis, without the direction.
+    pub fn axis(&self) -> (&'static str, &'static str) {
+        let name = self.name.split_once('_').map_or(self.name, |(axis, _)| axis);
+        (name, self.title.trim_end_matches([' ', '−', '+']))
     }
 
     pub fn is_opposite(&self, other: &Self) -> bool {

@@ -2,10 +2,11 @@
 
 use super::before_after::{Left, Stage, figures};
 use super::quantities::{insufficient_data, quantity};
+use super::reduction::Reduction;
 use super::spectrum::PolePairs;
 use super::sweeps::{Sweep, sweeps};
 use super::table::{Class, Table, Terms, means};
-use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
+use super::{ACCELERATION, both_ways, counts, meta, point_rad, radial, sample_rate, stage};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
@@ -82,10 +83,15 @@ impl Procedure for EncoderLinearity {
 
     fn finds(&self) -> Vec<Findable> {
         findable(&[
-            ("", "bits_before bits_table bits_velocity bits_direction pole_period_order"),
+            (
+                "",
+                "bits_before bits_table bits_velocity bits_direction pole_period_order table_error_mean_points \
+                 table_error_max_points",
+            ),
             (
                 "rad",
-                "repeatability peak_before peak_table peak_velocity peak_direction harmonic_1 harmonic_2 pole_period",
+                "repeatability peak_before peak_table peak_velocity peak_direction harmonic_1 harmonic_2 pole_period \
+                 table_error_mean table_error_max",
             ),
         ])
     }
@@ -120,6 +126,7 @@ impl Procedure for EncoderLinearity {
         quantities.extend(repeatability(&known, &unseen));
         quantities.extend(harmonics(&known, &terms));
         quantities.extend(pole_period(&poles));
+        quantities.extend(Reduction::of(&table, &known, &terms).quantities(point_rad(run)));
         Some(Identification {
             verdict: Verdict::Identified,
             summary: summary(peaks.map(|peak| bits(peak.rad)), table.len(), &poles),

@@ -2,15 +2,18 @@
 
 mod alignment;
 mod before_after;
+mod by_speed;
 mod delay;
 mod edges;
 mod linearity;
 mod offset;
 mod quantities;
+mod reduction;
 mod spectrum;
 mod startup;
 mod sweeps;
 mod table;
+mod tested;
 mod tolerance;
 
 pub(super) use alignment::EncoderAlignment;
@@ -25,7 +28,7 @@ use crate::plan::PlanFault;
 use crate::profile::Profile;
 use crate::stage_pose::StagePose;
 use jointbench_instrument::roles::Pose;
-use jointbench_instrument::{Kind, Meta};
+use jointbench_instrument::{Kind, Meta, RunTable};
 use std::f64::consts::TAU;
 
 /// Settling time of the velocity loop.
@@ -58,6 +61,11 @@ fn meta(counts: [f64; 2], rate_hz: f64) -> Meta {
         test_bits: bits(counts[1]),
         ..Meta::default()
     }
+}
+
+/// Step of the encoder under test; `None` if the run does not state it.
+fn point_rad(run: &RunTable) -> Option<f64> {
+    run.meta().test_bits.map(|bits| TAU / f64::from(bits).exp2())
 }
 
 /// One speed, forwards and backwards, for whole turns each.

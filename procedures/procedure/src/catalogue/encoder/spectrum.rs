@@ -26,7 +26,7 @@ pub struct PolePairs {
 impl PolePairs {
     /// `None` if the table has too few entries.
     pub fn of(table: &Table) -> Option<Self> {
-        let last = ORDERS.min((table.len() as u32).div_ceil(2) - 1);
+        let last = last_order(table);
         let best = |without: Option<u32>| {
             // A wave within the pole pair that is not sinusoidal also has multiples of its order.
             let other = move |order: &u32| without.is_none_or(|best| !order.is_multiple_of(best));
@@ -56,6 +56,11 @@ impl PolePairs {
             (2 * poles, "within the pole pair"),
         ]
     }
+}
+
+/// Highest order that the table has and the spectrum shows.
+pub fn last_order(table: &Table) -> u32 {
+    ORDERS.min((table.len() as u32).div_ceil(2) - 1)
 }
 
 /// The amplitudes of some orders with their 95 % intervals, and the 95 % limit of noise.

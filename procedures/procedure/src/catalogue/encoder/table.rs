@@ -80,13 +80,23 @@ impl Table {
         (1.0 - share) * self.entries_rad[left] + share * self.entries_rad[right]
     }
 
+    pub fn mean(&self) -> f64 {
+        self.entries_rad.iter().sum::<f64>() / self.len() as f64
+    }
+
+    /// Cosine and sine of the harmonic of this order.
+    pub fn wave(&self, order: u32) -> [f64; 2] {
+        let step = TAU * f64::from(order) / self.len() as f64;
+        let part = |wave: fn(f64) -> f64| -> f64 {
+            self.entries_rad.iter().enumerate().map(|(i, entry)| entry * wave(step * (i as f64 + 0.5))).sum()
+        };
+        [f64::cos, f64::sin].map(|wave| 2.0 * part(wave) / self.len() as f64)
+    }
+
     /// Amplitude of the harmonic of this order.
     pub fn harmonic(&self, order: u32) -> f64 {
-        let step = TAU * f64::from(order) / self.len() as f64;
-        let sum = |wave: fn(f64) -> f64| -> f64 {
-            self.entries_rad.iter().enumerate().map(|(i, entry)| entry * wave(step * i as f64)).sum()
-        };
-        2.0 * sum(f64::cos).hypot(sum(f64::sin)) / self.len() as f64
+        let [cos, sin] = self.wave(order);
+        cos.hypot(sin)
     }
 
     pub fn series(&self, label: &str) -> Series {
@@ -127,6 +137,15 @@ impl<'a> Class<'a> {
         let last = self.sweep.angle_rad.len().saturating_sub(1);
         let way_rad = self.sweep.angle_rad.get(last).map_or(0.0, |angle| (angle - self.sweep.angle_rad[0]).abs());
         (way_rad / TAU).round() as usize
+    }
+
+    /// The sweep without the readings of one turn.
+    pub fn without(&self, turn: usize) -> Sweep {
+        let kept = |all: &[f64]| {
+            all.iter().enumerate().filter(|(i, _)| self.turn(*i) != turn).map(|(_, value)| *value).collect()
+        };
+        let [angle_rad, error_rad] = [&self.sweep.angle_rad, &self.sweep.error_rad].map(|all| kept(all));
+        Sweep { angle_rad, error_rad, ..*self.sweep }
     }
 
     /// Number of the turn of a reading, from 0.

@@ -1,6 +1,7 @@
 //! Whether the sensor tolerates the mounting errors of the data sheet, and advice if it does not.
 
 use super::edges::{Direction, Found};
+use super::tested::Tested;
 use crate::identification::{Axis, Figure, Form, Mark, Series, Verdict};
 
 /// The outcome against the data sheet, with the directions that cause it.
@@ -97,13 +98,19 @@ pub fn figure(found: &[(&Direction, Found)]) -> Figure {
         of.y.push(last);
         lost.band.extend(found.bad.map(|bad| [last, share(direction, bad)]));
     }
+    let (at, symmetric) = places
+        .iter()
+        .zip(found)
+        .filter_map(|(place, (direction, _))| Some((*place, share(direction, Tested::of(found, direction)?.good))))
+        .unzip();
+    let tested = Series::new("tested tolerance of the axis", Mark::Points, at, symmetric);
     Figure {
         name: "tolerance".into(),
         title: "Usable range / data sheet tolerance (whisker: period loss)".into(),
         form: Form::Cartesian,
         x: Axis::names("Direction", found.iter().map(|(direction, _)| direction.title)),
         y: Axis::of("Fraction of the manufacturing tolerance", ""),
-        series: [lost, kept]
+        series: [lost, kept, tested]
             .into_iter()
             .filter(|series| !series.x.is_empty())
             .chain([Series::new("data sheet", Mark::Line, places, vec![1.0; found.len()])])
