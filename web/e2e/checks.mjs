@@ -262,8 +262,8 @@ async function readAlignment(page, base, runs) {
 	if (!one) return;
 	const { bench } = await (await fetch(`${base}/api/v1/runs/${one.run}`)).json();
 	await page.goto(`${base}/?bench=${bench}`);
-	await page.getByRole('heading', { name: 'Devices' }).waitFor({ timeout: TIMEOUT_MS });
-	// The serial number of a unit has the focus; Escape leaves it.
+	// The serial number of a unit has the focus as soon as it is there; Escape leaves it.
+	await page.getByLabel('Unit (serial number)').waitFor({ timeout: TIMEOUT_MS });
 	await page.keyboard.press('Escape');
 	await page.keyboard.press('6');
 	for (const { run } of runs) await page.getByRole('link', { name: `run #${run}` }).waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, `run ${run} is not among the encoder results of ${bench}`));
