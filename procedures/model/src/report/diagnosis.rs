@@ -274,19 +274,6 @@ pub enum RemovalReason {
 }
 
 impl RemovalReason {
-    /// In the order in which the pruning rules run.
-    pub const ALL: [RemovalReason; 9] = [
-        RemovalReason::Redundant,
-        RemovalReason::Infeasible,
-        RemovalReason::MutuallyCancelling,
-        RemovalReason::Insignificant,
-        RemovalReason::Swapped,
-        RemovalReason::RandomWalk,
-        RemovalReason::Unidentified,
-        RemovalReason::PartialExplanation,
-        RemovalReason::Spurious,
-    ];
-
     /// The reason in a sentence about the effect.
     pub fn words(self) -> &'static str {
         match self {

@@ -2,12 +2,15 @@
 
 use crate::Options;
 use crate::effect::{Effect, Form};
+use crate::preprocess::Prepared;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::canonical_fit::fit_canonical;
 use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::report::diagnosis::RemovalReason;
+use crate::residual_analysis::maps::Maps;
+use crate::residual_analysis::undersampled_harmonics;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use crate::selection::equivalence::{encompasses, is_tie};
 use crate::selection::forward_step::{ScoredCandidate, step};
@@ -26,9 +29,10 @@ pub enum Move<'p> {
 /// A scored candidate with the effects that are confounded with it.
 pub(crate) type Found<'p> = (ScoredCandidate<'p>, Vec<&'p str>);
 
-/// Adds the best candidate until none passes, and removes effects that became redundant, one move at a time.
+/// State of the search: the model, and the effects that were tried.
 pub struct FloatingSearch<'l, 'p> {
     pub now: LinearModel<'p>,
+    pub(crate) prepared: &'p Prepared,
     pub(crate) library: &'l CandidateSet<'p>,
     pub(crate) options: &'l Options,
     /// Squared error of the model with only the baseline effects and those with an exact formula.
@@ -56,17 +60,18 @@ pub struct FloatingSearch<'l, 'p> {
 }
 
 impl<'l, 'p> FloatingSearch<'l, 'p> {
-    /// `most` limits the number of added effects. `baseline` names the effects that the test conditions of the run
-    /// imply.
+    /// `most` limits the number of added effects.
     pub fn new(
         start: LinearModel<'p>,
         library: &'l CandidateSet<'p>,
-        baseline: &[String],
+        prepared: &'p Prepared,
         most: usize,
         options: &'l Options,
     ) -> Self {
         let initial_terms = start.terms.iter().map(Term::id).collect();
         let mut plain = start.clone();
+        // The effects that the test conditions of the run imply.
+        let baseline = &prepared.baseline;
         plain.terms.retain(|t| baseline.is_empty() || baseline.iter().any(|b| b == t.id()) || t.effect.is_exact());
         let exact = library.candidates.iter().filter(|c| c.effect.is_exact());
         plain.terms.extend(exact.map(|c| c.term(start.problem)));
@@ -74,6 +79,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         let plain = plain.linear().sse;
         Self {
             now: start,
+            prepared,
             library,
             options,
             plain,
@@ -106,7 +112,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     }
 
     /// Removes an effect that is not tried again.
-    fn exclude(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
+    pub fn exclude(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
         self.withdrawn.push(id);
         self.reasons.insert(id, why);
         self.remove(id, why)
@@ -118,7 +124,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         self.add(scored, Vec::new())
     }
 
-    fn add(&mut self, scored: ScoredCandidate<'p>, ties: Vec<&'p str>) -> Move<'p> {
+    pub fn add(&mut self, scored: ScoredCandidate<'p>, ties: Vec<&'p str>) -> Move<'p> {
         self.left -= 1;
         let id = scored.term.id();
         self.now = self.model_with(id);
@@ -131,9 +137,44 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         self.drop(id, why)
     }
 
-    fn drop(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
+    /// Removes an effect; the next step adds the one that replaces it.
+    pub fn exchange(&mut self, id: &'p str, replacement: Option<Found<'p>>, why: RemovalReason) -> Move<'p> {
+        self.pending_swap = replacement;
+        self.remove(id, why)
+    }
+
+    /// Whether one more exchange may be tried. Their number is limited.
+    pub fn may_exchange(&mut self) -> bool {
+        let left = self.exchanges.checked_sub(1);
+        self.exchanges = left.unwrap_or(0);
+        left.is_some()
+    }
+
+    /// Removes an effect that may be tried again, without a place for another one.
+    pub fn drop(&mut self, id: &'p str, why: RemovalReason) -> Move<'p> {
         self.now = self.model_without(id);
         Move::Removed { id, why }
+    }
+
+    /// The candidate to add: the replacement of an exchanged effect, or the best one if there is a place for it. A
+    /// candidate that explains clearly less than a removed effect is only a substitute for it.
+    pub fn candidate(&mut self) -> Option<Found<'p>> {
+        let found = self.pending_swap.take().or_else(|| if self.left > 0 { self.best() } else { None });
+        let stands_in = |scored: &ScoredCandidate| {
+            let clearly = |losses: &Vec<f64>| {
+                let rejected: f64 = losses.iter().sum();
+                rejected < STAND_IN_LOSS * scored.validation_losses
+                    || rejected < scored.validation_losses && !is_tie(losses, &scored.losses)
+            };
+            self.rejected_losses.iter().any(clearly)
+        };
+        found.filter(|(scored, _)| !stands_in(scored))
+    }
+
+    /// Residual maps of a model.
+    pub(crate) fn maps_of(&self, model: &LinearModel) -> Maps {
+        let residual = model.tangent().rest(&model.response());
+        Maps::new(self.prepared, undersampled_harmonics::without_undersampled_harmonics(model, residual), self.options)
     }
 
     /// The next effect to add.
@@ -242,47 +283,5 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     pub fn removals(&self) -> impl Iterator<Item = (&'p str, RemovalReason)> {
         let out = self.withdrawn.iter().copied().filter(|id| !self.now.contains(id));
         out.filter_map(|id| Some((id, *self.reasons.get(id)?)))
-    }
-
-    /// An effect of the last model that a pruning rule rejects. The rules run in this order.
-    fn pruned(&self) -> Option<(&'p str, RemovalReason)> {
-        let infeasible = || Some((self.infeasible(&self.now)?, RemovalReason::Infeasible));
-        let cancelling = || Some((self.mutually_cancelling()?, RemovalReason::MutuallyCancelling));
-        let insignificant = || Some((self.insignificant()?, RemovalReason::Insignificant));
-        infeasible().or_else(cancelling).or_else(insignificant)
-    }
-}
-
-impl<'p> Iterator for FloatingSearch<'_, 'p> {
-    type Item = Move<'p>;
-
-    fn next(&mut self) -> Option<Move<'p>> {
-        if let Some(id) = self.redundant() {
-            return Some(self.drop(id, RemovalReason::Redundant));
-        }
-        if self.unmodelled_structure {
-            return None;
-        }
-        // A candidate that explains clearly less than a removed effect is only a substitute for it.
-        let stands_in = |scored: &ScoredCandidate| {
-            let clearly = |losses: &Vec<f64>| {
-                let rejected: f64 = losses.iter().sum();
-                rejected < STAND_IN_LOSS * scored.validation_losses
-                    || rejected < scored.validation_losses && !is_tie(losses, &scored.losses)
-            };
-            self.rejected_losses.iter().any(clearly)
-        };
-        let found = self.pending_swap.take().or_else(|| if self.left > 0 { self.best() } else { None });
-        let found = found.filter(|(scored, _)| !stands_in(scored));
-        let Some((scored, ties)) = found else {
-            if let Some((id, why)) = self.pruned() {
-                return Some(self.exclude(id, why));
-            }
-            self.exchanges = self.exchanges.checked_sub(1)?;
-            let (id, better) = self.swapped()?;
-            self.pending_swap = Some(better);
-            return Some(self.remove(id, RemovalReason::Swapped));
-        };
-        Some(self.add(scored, ties))
     }
 }

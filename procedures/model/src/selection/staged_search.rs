@@ -3,21 +3,19 @@
 use crate::inference::intervals::intervals;
 use crate::preprocess::Prepared;
 use crate::regression::candidates::CandidateSet;
-use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::linear_model::LinearModel;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::Imitated;
-use crate::report::diagnosis::RemovalReason;
+use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
-use crate::residual_analysis::{lack_of_fit, undersampled_harmonics};
 use crate::selection::advance::{Path, SelectionStep};
 use crate::selection::floating_search::{FloatingSearch, Move};
 use crate::selection::hysteresis_stage::hysteresis_step;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::offset_terms;
 use crate::selection::omitted_variable_bias::{Imitated as Found, moved};
-use crate::selection::pruning::partial_explanation::{bump, partially_explained};
-use crate::selection::pruning::spurious::spurious;
-use crate::selection::pruning::unidentified::{Undetermined, is_identified, unidentified};
+use crate::selection::pruning::unidentified::{Undetermined, is_identified};
+use crate::selection::pruning::{Point, Rejected, Trial};
 use crate::selection::ramp_stage::delay;
 use crate::selection::removal;
 use crate::{ModelError, ModelSpec, Options};
@@ -48,8 +46,8 @@ pub fn search<'p>(
         path.push(offset);
     }
     let left = most.saturating_sub(path.advances.len());
-    let mut search = FloatingSearch::new(path.end().main.clone(), &library, &prepared.baseline, left, options);
-    let SteadyState { maps, residual, open } = steady_state(&mut search, &mut path, prepared, options);
+    let mut search = FloatingSearch::new(path.end().main.clone(), &library, prepared, left, options);
+    let SteadyState { maps, residual, open } = steady_state(&mut search, &mut path);
     if let Some(last) = path.advances.last_mut() {
         last.after = last.after.clone().canonical(options)?;
     }
@@ -81,39 +79,28 @@ pub fn search<'p>(
     })
 }
 
-/// First stage: effects that show in steady-state motion, or in the whole of a trajectory.
-fn steady_state<'p>(
-    search: &mut FloatingSearch<'_, 'p>,
-    path: &mut Path<'_, 'p>,
-    prepared: &'p Prepared,
-    options: &Options,
-) -> SteadyState<'p> {
+/// First stage: effects that show in steady-state motion, or in the whole of a trajectory. Each move adds or removes one
+/// effect.
+fn steady_state<'p>(search: &mut FloatingSearch<'_, 'p>, path: &mut Path<'_, 'p>) -> SteadyState<'p> {
     let mut effects = path.end().effects.clone();
     loop {
-        let made = search.next().or_else(|| {
-            let unidentified = || Some((unidentified(search, prepared)?, RemovalReason::Unidentified));
-            let (id, why) =
-                search.follows_random_walk().map(|id| (id, RemovalReason::RandomWalk)).or_else(unidentified)?;
-            Some(search.withdraw(id, why))
-        });
-        let made = match made {
+        let made = match next_move(search) {
             Some(made) => made,
             None => {
-                let residual = search.now.tangent().rest(&search.now.response());
-                let maps = maps_of(&search.now, residual.clone(), prepared, options);
-                let axis = lack_of_fit::structured(&maps);
-                if let Some((id, why)) = outside_the_library(search, &maps, axis, prepared, options) {
+                let trial = Trial::new(search);
+                if let Some((rejected, why)) = trial.rejected(Point::Structure) {
                     search.unmodelled_structure = true;
-                    search.withdraw(id, why)
+                    search.withdraw(rejected.id, why)
                 } else {
-                    let is_identified = |with: &LinearModel<'p>, term: &Term<'p>| is_identified(with, term, prepared);
-                    let nothing_shows = axis.is_none();
-                    let is_all = |with: &LinearModel| nothing_shows || leaves_nothing(with, prepared, options);
-                    match search.imitated(is_identified) {
+                    let nothing_shows = trial.axis().is_none();
+                    let is_all =
+                        |with: &LinearModel| nothing_shows || lack_of_fit::structured(&search.maps_of(with)).is_none();
+                    match search.imitated(|with, term| is_identified(with, term, search.prepared)) {
                         Some(found) if found.is_clear && is_all(&found.with) => search.retain(found.scored),
                         open => {
+                            let residual = search.now.tangent().rest(&search.now.response());
                             let open = open.filter(|_| nothing_shows);
-                            return SteadyState { maps, residual, open };
+                            return SteadyState { maps: trial.into_maps(), residual, open };
                         }
                     }
                 }
@@ -134,17 +121,37 @@ fn steady_state<'p>(
     }
 }
 
-/// An added effect that only imitates structure from outside the library.
-fn outside_the_library<'p>(
-    search: &FloatingSearch<'_, 'p>,
-    maps: &Maps,
-    axis: Option<&str>,
-    prepared: &Prepared,
-    options: &Options,
-) -> Option<(&'p str, RemovalReason)> {
-    let whole = axis.and_then(|axis| rejected_by_structure(search, maps, axis, prepared, options));
-    let bump = || Some((bump(search, prepared, options)?, RemovalReason::PartialExplanation));
-    whole.or_else(bump)
+/// Adds the best candidate that passes. Before and after, the pruning rules may remove an effect. With structure from
+/// outside the library nothing is added: it would only imitate that structure.
+fn next_move<'p>(search: &mut FloatingSearch<'_, 'p>) -> Option<Move<'p>> {
+    if let Some(made) = pruned(search, Point::EachMove) {
+        return Some(made);
+    }
+    if !search.unmodelled_structure {
+        if let Some((scored, ties)) = search.candidate() {
+            return Some(search.add(scored, ties));
+        }
+        if let Some(made) = pruned(search, Point::NoCandidate) {
+            return Some(made);
+        }
+        if search.may_exchange()
+            && let Some(made) = pruned(search, Point::Exchange)
+        {
+            return Some(made);
+        }
+    }
+    pruned(search, Point::End)
+}
+
+/// Removes the effect that a rule rejects at this point of the search.
+fn pruned<'p>(search: &mut FloatingSearch<'_, 'p>, point: Point) -> Option<Move<'p>> {
+    let (Rejected { id, replacement }, why) = Trial::new(search).rejected(point)?;
+    Some(match point {
+        Point::EachMove => search.drop(id, why),
+        Point::NoCandidate => search.exclude(id, why),
+        Point::Exchange => search.exchange(id, replacement, why),
+        Point::End | Point::Structure => search.withdraw(id, why),
+    })
 }
 
 /// Whether fewer than `most` effects were added.
@@ -183,18 +190,6 @@ fn hysteresis<'p>(
     Ok(())
 }
 
-/// An added effect to remove because structure remains over an axis.
-fn rejected_by_structure<'p>(
-    search: &FloatingSearch<'_, 'p>,
-    maps: &Maps,
-    axis: &str,
-    prepared: &Prepared,
-    options: &Options,
-) -> Option<(&'p str, RemovalReason)> {
-    let half = partially_explained(search, axis, prepared, options).map(|id| (id, RemovalReason::PartialExplanation));
-    half.or_else(|| Some((spurious(search, maps, axis, options)?, RemovalReason::Spurious)))
-}
-
 /// Confounded pairs of the final model: ties from the time of addition that still hold, and new ones.
 fn open_ties<'p>(search: &FloatingSearch<'_, 'p>, advances: &[SelectionStep<'p>]) -> Vec<(&'p str, &'p str)> {
     let mut open = Vec::new();
@@ -214,17 +209,6 @@ fn open_ties<'p>(search: &FloatingSearch<'_, 'p>, advances: &[SelectionStep<'p>]
         open.extend(new);
     }
     open
-}
-
-/// Residual maps of a model.
-fn maps_of(terms: &LinearModel, residual: Vec<f64>, prepared: &Prepared, options: &Options) -> Maps {
-    Maps::new(prepared, undersampled_harmonics::without_undersampled_harmonics(terms, residual), options)
-}
-
-/// Whether no structure remains over any axis.
-fn leaves_nothing(terms: &LinearModel, prepared: &Prepared, options: &Options) -> bool {
-    let residual = terms.tangent().rest(&terms.response());
-    lack_of_fit::structured(&maps_of(terms, residual, prepared, options)).is_none()
 }
 
 /// The effect that another one imitates, with the biased coefficient of the given model.

@@ -140,7 +140,7 @@ impl Tiny {
         rule: impl for<'l, 'p> FnOnce(&FloatingSearch<'l, 'p>) -> Option<&'p str>,
     ) -> Option<String> {
         let library = CandidateSet::new(&self.spec, &self.prepared.main, self.prepared.regimes());
-        let mut search = FloatingSearch::new(self.model(), &library, &[], 4, &self.options);
+        let mut search = FloatingSearch::new(self.model(), &library, &self.prepared, 4, &self.options);
         for id in added {
             search.now = search.model_with(self.spec.find(id).expect("a known effect").info().id);
         }

@@ -1,4 +1,4 @@
-//! Rules that remove an added effect from a model, one file for each rule.
+//! Rules that remove an added effect from a model, one file for each rule, and the list in which they run.
 
 pub(crate) mod infeasible;
 pub(crate) mod insignificant;
@@ -10,9 +10,103 @@ pub(crate) mod spurious;
 pub(crate) mod swapped;
 pub(crate) mod unidentified;
 
+use crate::report::diagnosis::RemovalReason;
+use crate::residual_analysis::{lack_of_fit, maps::Maps};
+use crate::selection::floating_search::{FloatingSearch, Found};
+use std::cell::OnceCell;
+
+/// The point of the search at which a rule runs.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Point {
+    /// Before each addition.
+    EachMove,
+    /// When no candidate passes.
+    NoCandidate,
+    /// When no candidate passes and no other rule rejects an effect, a limited number of times.
+    Exchange,
+    /// When no candidate passes and no effect is exchanged.
+    End,
+    /// At the end, on the structure that remains.
+    Structure,
+}
+
+/// A rejected effect.
+pub(crate) struct Rejected<'p> {
+    pub id: &'p str,
+    /// The effect that replaces it.
+    pub replacement: Option<Found<'p>>,
+}
+
+/// A rule that rejects at most one added effect.
+pub(crate) struct Rule {
+    pub reason: RemovalReason,
+    pub point: Point,
+    rejected: for<'p> fn(&Trial<'_, '_, 'p>) -> Option<Rejected<'p>>,
+}
+
+/// All rules, in the order in which they run.
+pub(crate) const RULES: [Rule; 9] = {
+    use Point::{EachMove, End, Exchange, NoCandidate, Structure};
+    [
+        rule(RemovalReason::Redundant, EachMove, |trial| alone(trial.search.redundant())),
+        rule(RemovalReason::Infeasible, NoCandidate, |trial| alone(trial.search.infeasible(&trial.search.now))),
+        rule(RemovalReason::MutuallyCancelling, NoCandidate, |trial| alone(trial.search.mutually_cancelling())),
+        rule(RemovalReason::Insignificant, NoCandidate, |trial| alone(trial.search.insignificant())),
+        rule(RemovalReason::Swapped, Exchange, |trial| trial.search.swapped()),
+        rule(RemovalReason::RandomWalk, End, |trial| alone(trial.search.follows_random_walk())),
+        rule(RemovalReason::Unidentified, End, |trial| alone(unidentified::unidentified(trial.search))),
+        rule(RemovalReason::PartialExplanation, Structure, |trial| {
+            alone(partial_explanation::partially_explained(trial))
+        }),
+        rule(RemovalReason::Spurious, Structure, |trial| alone(spurious::spurious(trial))),
+    ]
+};
+
+const fn rule(
+    reason: RemovalReason,
+    point: Point,
+    rejected: for<'p> fn(&Trial<'_, '_, 'p>) -> Option<Rejected<'p>>,
+) -> Rule {
+    Rule { reason, point, rejected }
+}
+
+fn alone(id: Option<&str>) -> Option<Rejected<'_>> {
+    id.map(|id| Rejected { id, replacement: None })
+}
+
+/// The search with the residual maps of its model, which most rules do not need.
+pub(crate) struct Trial<'s, 'l, 'p> {
+    pub search: &'s FloatingSearch<'l, 'p>,
+    maps: OnceCell<Maps>,
+}
+
+impl<'s, 'l, 'p> Trial<'s, 'l, 'p> {
+    pub fn new(search: &'s FloatingSearch<'l, 'p>) -> Self {
+        Self { search, maps: OnceCell::new() }
+    }
+
+    /// The first effect that a rule of this point rejects, with the reason.
+    pub fn rejected(&self, point: Point) -> Option<(Rejected<'p>, RemovalReason)> {
+        RULES.iter().filter(|rule| rule.point == point).find_map(|rule| Some(((rule.rejected)(self)?, rule.reason)))
+    }
+
+    pub fn maps(&self) -> &Maps {
+        self.maps.get_or_init(|| self.search.maps_of(&self.search.now))
+    }
+
+    /// The axis over which structure remains.
+    pub fn axis(&self) -> Option<&str> {
+        lack_of_fit::structured(self.maps())
+    }
+
+    pub fn into_maps(self) -> Maps {
+        self.maps.into_inner().unwrap_or_else(|| self.search.maps_of(&self.search.now))
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::report::diagnosis::RemovalReason;
+    use super::RULES;
 
     #[test]
     fn the_docs_list_the_rules_in_the_order_in_which_they_run() {
@@ -23,8 +117,9 @@ mod tests {
             .filter(|name| name != "mod")
             .collect();
         files.sort();
-        let name = |reason: &RemovalReason| serde_json::to_value(reason).unwrap().as_str().unwrap().to_owned();
-        let rules: Vec<String> = RemovalReason::ALL.iter().map(name).collect();
+        assert!(RULES.is_sorted_by_key(|rule| rule.point), "the search passes its points in their order");
+        let name = |rule: &super::Rule| serde_json::to_value(rule.reason).unwrap().as_str().unwrap().to_owned();
+        let rules: Vec<String> = RULES.iter().map(name).collect();
         let mut sorted = rules.clone();
         sorted.sort();
         assert_eq!(sorted, files, "a rule is a file of selection/pruning");

@@ -1,38 +1,34 @@
 //! Removes an added effect that explains only a part of the structure over its axis.
 
-use crate::Options;
 use crate::effect::Regime;
 use crate::linear::basis::dot;
-use crate::preprocess::{Prepared, Problem};
+use crate::preprocess::Problem;
 use crate::regression::linear_model::Term;
 use crate::residual_analysis::maps::Maps;
 use crate::selection::floating_search::FloatingSearch;
+use crate::selection::pruning::Trial;
 use crate::thresholds::{PERIODS_SEEN, WHOLE_CURVE, WHOLE_EXPLANATION};
 
 /// An added effect that only resembles the missing one: structure remains over its axis, and a free function of that
 /// axis would explain much more. Example: a wave over the angle fitted to a bump at one angle.
-pub fn partially_explained<'p>(
-    search: &FloatingSearch<'_, 'p>,
-    axis: &str,
-    prepared: &Prepared,
-    options: &Options,
-) -> Option<&'p str> {
+pub fn partially_explained<'p>(trial: &Trial<'_, '_, 'p>) -> Option<&'p str> {
+    let search = trial.search;
     // Hysteresis is a function of no axis, even if a repeated motion makes it look like one.
     let of_axes = search.added().filter(|term| term.effect.regime() != Regime::Hysteresis);
-    least_whole(search, of_axes, axis, prepared, options)
+    trial.axis().and_then(|axis| least_whole(search, of_axes, axis)).or_else(|| bump(search))
 }
 
 /// A wave with less than two periods in the covered part of a turn, if a free function of the angle would explain
 /// more: the cause is a local bump. A weak bump leaves no significant structure.
-pub fn bump<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared, options: &Options) -> Option<&'p str> {
+fn bump<'p>(search: &FloatingSearch<'_, 'p>) -> Option<&'p str> {
     let view = &search.now.problem.view;
     let is_open = |term: &&Term<'p>| {
         let turns = term.effect.wave().map(|angle| view.turns(angle));
         turns.zip(term.shape.first()).is_some_and(|(turns, order)| turns < 1.0 && order * turns < PERIODS_SEEN)
     };
     let open = search.added().find(is_open)?;
-    let axis = prepared.column_name(open.effect.wave()?);
-    least_whole(search, search.added().filter(is_open), axis, prepared, options)
+    let axis = search.prepared.column_name(open.effect.wave()?);
+    least_whole(search, search.added().filter(is_open), axis)
 }
 
 /// The effect with the smallest share of what a free function of the axis explains, if that share is too small.
@@ -40,10 +36,8 @@ fn least_whole<'s, 'p: 's>(
     search: &'s FloatingSearch<'_, 'p>,
     terms: impl Iterator<Item = &'s Term<'p>>,
     axis: &str,
-    prepared: &Prepared,
-    options: &Options,
 ) -> Option<&'p str> {
-    let now = &search.now;
+    let (now, prepared, options) = (&search.now, search.prepared, search.options);
     let (full, coefficients) = (now.linear().sse, now.linear().coefficients);
     let share = |term: &Term<'p>| {
         let at = now.terms.iter().position(|t| t.id() == term.id())?;
@@ -72,20 +66,23 @@ fn least_share(term: &Term, problem: &Problem) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use crate::selection::pruning::Trial;
     use crate::selection::tiny::Tiny;
     use jointbench_instrument::Kind;
 
     #[test]
     fn a_wave_explains_a_bump_over_the_angle_only_in_part() {
-        let removed = |over_angle: fn(f64) -> f64| {
+        let removed = |over_angle: fn(f64) -> f64, is_bump: bool| {
             let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| {
                 5.0 * row.direction + over_angle(row.angle) + 0.05 * row.scatter
             });
             tiny.removed(&["gravity"], |search| {
-                super::partially_explained(search, "link_position_rad", &tiny.prepared, &tiny.options)
+                let trial = Trial::new(search);
+                assert_eq!(trial.axis().is_some(), is_bump, "structure over the angle");
+                super::partially_explained(&trial)
             })
         };
-        assert_eq!(removed(|angle| f64::from(u8::from((1.0..2.0).contains(&angle)))).as_deref(), Some("gravity"));
-        assert_eq!(removed(f64::cos), None);
+        assert_eq!(removed(|angle| f64::from(u8::from((1.0..2.0).contains(&angle))), true).as_deref(), Some("gravity"));
+        assert_eq!(removed(f64::cos, false), None);
     }
 }

@@ -1,19 +1,18 @@
 //! Removes an added effect that explains nothing beyond a free function of the axis with structure.
 
-use crate::Options;
 use crate::effect::Regime;
 use crate::regression::linear_model::Term;
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::alone;
-use crate::residual_analysis::maps::Maps;
-use crate::selection::floating_search::FloatingSearch;
+use crate::selection::pruning::Trial;
 use crate::thresholds::BIAS_TOLERANCE;
 
 /// An added effect that only follows structure over an axis that is not its own: together with a free function of
 /// that axis it explains nothing. Example: a wave whose mean changes from step to step follows any curve over speed a
 /// little.
-pub fn spurious<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str, options: &Options) -> Option<&'p str> {
-    let functions = maps.functions(axis);
+pub fn spurious<'p>(trial: &Trial<'_, '_, 'p>) -> Option<&'p str> {
+    let (search, options) = (trial.search, trial.search.options);
+    let functions = trial.maps().functions(trial.axis()?);
     let is_spurious = |term: &&Term<'p>| {
         let without = search.now.without(term.id());
         let mut basis = without.tangent();
@@ -31,7 +30,7 @@ pub fn spurious<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str, op
 
 #[cfg(test)]
 mod tests {
-    use crate::residual_analysis::maps::Maps;
+    use crate::selection::pruning::Trial;
     use crate::selection::tiny::Tiny;
     use jointbench_instrument::Kind;
 
@@ -49,10 +48,7 @@ mod tests {
                     (5.0 + size) * row.direction + 0.1 * row.scatter
                 },
             );
-            tiny.removed(&["temperature_coulomb"], |search| {
-                let maps = Maps::new(&tiny.prepared, search.now.linear().residual, &tiny.options);
-                super::spurious(search, &maps, "motor_velocity_rad_s", &tiny.options)
-            })
+            tiny.removed(&["temperature_coulomb"], |search| super::spurious(&Trial::new(search)))
         };
         assert_eq!(removed(4.0, 0.0).as_deref(), Some("temperature_coulomb"));
         assert_eq!(removed(0.0, 1.0), None);

@@ -3,13 +3,14 @@
 use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::Term;
 use crate::selection::equivalence::is_tie;
-use crate::selection::floating_search::{FloatingSearch, Found};
+use crate::selection::floating_search::FloatingSearch;
+use crate::selection::pruning::Rejected;
 use rayon::prelude::*;
 
 impl<'p> FloatingSearch<'_, 'p> {
     /// An added effect that another one replaces with a clearly smaller validation error, and the replacement. Such
     /// an effect entered first because it resembles two missing ones. Confounded effects do not replace each other.
-    pub(crate) fn swapped(&self) -> Option<(&'p str, Found<'p>)> {
+    pub(crate) fn swapped(&self) -> Option<Rejected<'p>> {
         let losses = validation_losses(&self.now);
         let present: f64 = losses.iter().sum();
         let ids: Vec<&'p str> = self.added().map(Term::id).collect();
@@ -21,7 +22,9 @@ impl<'p> FloatingSearch<'_, 'p> {
                 let clearly = scored.validation_losses < (1.0 - self.options.practical_share) * present;
                 scored.term.id() != id && clearly && !is_tie(&scored.losses, &losses)
             });
-            plain.or_else(|| self.masked_by(&rest, Some(id), &losses)).map(|found| (id, found))
+            plain
+                .or_else(|| self.masked_by(&rest, Some(id), &losses))
+                .map(|found| Rejected { id, replacement: Some(found) })
         };
         ids.into_par_iter().find_map_first(better)
     }
@@ -39,9 +42,9 @@ mod tests {
                 3.0 + 5.0 * row.direction + drag(row.velocity) + 0.1 * row.scatter
             });
             tiny.removed(&["viscous", "direction_offset"], |search| {
-                let (removed, found) = search.swapped()?;
-                assert_eq!(removed, "viscous");
-                Some(found.0.term.id())
+                let swapped = search.swapped()?;
+                assert_eq!(swapped.id, "viscous");
+                Some(swapped.replacement?.0.term.id())
             })
         };
         assert_eq!(replacement(|v| 0.1 * v * v.abs()).as_deref(), Some("viscous_quadratic"));

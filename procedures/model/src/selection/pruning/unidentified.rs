@@ -54,7 +54,8 @@ pub fn is_identified<'p>(with: &LinearModel<'p>, term: &Term<'p>, prepared: &Pre
 /// error. If both are open, another cause is possible: then the effect has to be worth half of the error. If its size
 /// can be zero for any shape, it has to be worth a third. With structure from outside the library no size counts as
 /// identified, because a part of that structure can be in it.
-pub fn unidentified<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
+pub fn unidentified<'p>(search: &FloatingSearch<'_, 'p>) -> Option<&'p str> {
+    let prepared = search.prepared;
     let parameters = intervals(&search.now, prepared.motion).parameters;
     let present: f64 = validation_losses(&search.now).iter().sum();
     let open = search.added().filter_map(|term| {
@@ -80,7 +81,7 @@ mod tests {
     fn an_effect_whose_size_may_be_zero_is_unidentified() {
         let removed = |offset: f64| {
             let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| offset + 5.0 * row.direction + row.scatter);
-            tiny.removed(&["direction_offset"], |search| super::unidentified(search, &tiny.prepared))
+            tiny.removed(&["direction_offset"], |search| super::unidentified(search))
         };
         assert_eq!(removed(0.0).as_deref(), Some("direction_offset"));
         assert_eq!(removed(2.0), None);
