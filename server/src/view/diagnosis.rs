@@ -220,11 +220,65 @@ pub struct Silent {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LeftOut {
     pub effect: String,
+    pub reason: RejectionReason,
+    /// The reason in words, with the figures.
     pub why: String,
+}
+
+/// Why an effect was tested and rejected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RejectionReason {
+    /// An effect of the model explains the same.
+    Confounded,
+    /// It would reduce the validation error, but not significantly.
+    NotSignificant,
+    /// It would reduce the validation error in a few blocks only.
+    FewBlocks,
+    /// Form error of the model may explain the same.
+    FormError,
+    /// The model has the largest number of added effects.
+    ModelFull,
+    /// Its size is known, and with it the error is not smaller.
+    NoReduction,
+    /// Removed again: the model fits equally well without it.
+    Redundant,
+    /// Removed again: its size would be physically impossible.
+    Infeasible,
+    /// Removed again: with it, a coefficient of the given model would be negative.
+    MutuallyCancelling,
+    /// Removed again: it adds nothing to the other effects.
+    Insignificant,
+    /// Removed again: another effect predicts better in its place.
+    Swapped,
+    /// Removed again: a zero that drifts over time explains as much.
+    RandomWalk,
+    /// Removed again: this run does not determine its size.
+    Unidentified,
+    /// Removed again: it explains only part of the structure over its axis.
+    PartialExplanation,
+    /// Removed again: it explains nothing beyond the remaining structure.
+    Spurious,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Invisible {
     pub effect: String,
+    pub reason: InvisibleReason,
+    /// The reason in words: the missing signal or excitation.
     pub why: String,
+}
+
+/// Why data cannot show an effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum InvisibleReason {
+    /// The run lacks a signal or an excitation that the effect needs.
+    NotExcited,
+    /// In this data it has the shape of effects of the model.
+    Confounded,
+    /// It acts on ramps only, which are tested for a delay only.
+    RampsOnly,
+    /// Its detection limit exceeds a share of the measured signal.
+    DetectionLimit,
 }

@@ -3,10 +3,9 @@
 
 use crate::effect::{Effect, Form, Regime, ShapeSearch};
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::diagnosis::{Invisible, LeftOut, Silent};
+use crate::report::diagnosis::{Invisible, InvisibleReason, LeftOut, RejectionReason, Silent};
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::model_selection::ModelSelection;
-use crate::selection::refused::Refused;
 use crate::selection::{hysteresis_stage, ramp_stage};
 use crate::stats::summary::rms;
 
@@ -34,26 +33,32 @@ impl ExcludedEffects {
             let id = effect.info().id;
             let tied = ties.iter().find(|(_, scored)| *scored == id);
             let tied = tied.map(|(named, _)| format!("{named} is in the model, and this run cannot distinguish them"));
-            let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words().to_owned());
-            let refused = selected.decided.iter().flat_map(|decided| &decided.refused).find(|r| r.effect == id);
-            let tried = tried.or_else(|| refused.map(Refused::why));
+            let tried = withdrawn.iter().find(|w| w.effect == id);
+            let tried = tried.map(|w| (RejectionReason::Removed(w.why), w.why.words().to_owned()));
+            let refused = || selected.decided.iter().flat_map(|decided| &decided.refused).find(|r| r.effect == id);
+            let refused = || refused().map(|refused| (refused.reason(), refused.why()));
+            let rejected = tried.or_else(refused).or_else(|| given(effect, end));
             let detection_limit = detection_limits.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
-            if let Some(why) = tried.or_else(|| given(effect, end).map(String::from)) {
-                others.left_out.push(LeftOut { effect: id.into(), why: tied.unwrap_or(why) });
-            } else if detection_limit.is_some_and(|detection_limit| detection_limit.detectable_rms > signal) {
+            match (rejected, detection_limit) {
+                (Some((reason, why)), _) => {
+                    let reason = if tied.is_some() { RejectionReason::Confounded } else { reason };
+                    others.left_out.push(LeftOut { effect: id.into(), reason, why: tied.unwrap_or(why) });
+                }
                 // No noise is larger than the signal: only effects of the model can hide so much.
-                others.invisible.push(Invisible { effect: id.into(), why: tied.unwrap_or_else(|| alike(effect)) });
-            } else if let Some(detection_limit) = detection_limit {
-                let sought = sought(effect, end);
-                others.silent.push(Silent {
+                (None, Some(limit)) if limit.detectable_rms <= signal => others.silent.push(Silent {
                     effect: id.into(),
-                    minimum_detectable_rms: detection_limit.detectable_rms,
+                    minimum_detectable_rms: limit.detectable_rms,
                     upper_rms: None,
-                    sought,
-                });
-            } else {
-                let why = tied.unwrap_or_else(|| invisible(effect, end));
-                others.invisible.push(Invisible { effect: id.into(), why });
+                    sought: sought(effect, end),
+                }),
+                (None, limit) => {
+                    let (reason, why) = match (tied, limit) {
+                        (Some(tied), _) => (InvisibleReason::Confounded, tied),
+                        (None, Some(_)) => alike(effect),
+                        (None, None) => invisible(effect, end),
+                    };
+                    others.invisible.push(Invisible { effect: id.into(), reason, why });
+                }
             }
         }
         others
@@ -61,9 +66,10 @@ impl ExcludedEffects {
 }
 
 /// An offset term has a fixed size, so that it has no detection limit.
-fn given(effect: &dyn Effect, end: &TwoStageModel) -> Option<&'static str> {
+fn given(effect: &dyn Effect, end: &TwoStageModel) -> Option<(RejectionReason, String)> {
     let is_tried = effect.is_offset() && effect.hidden(&end.prepared.main.view).is_none();
-    is_tried.then_some("it is used as measured, and does not clearly reduce the error")
+    is_tried
+        .then(|| (RejectionReason::NoReduction, "it is used as measured, and does not clearly reduce the error".into()))
 }
 
 /// The tested numbers of waves.
@@ -95,26 +101,28 @@ fn excitation(effect: &dyn Effect) -> &'static str {
     }
 }
 
-fn alike(effect: &dyn Effect) -> String {
-    format!(
+fn alike(effect: &dyn Effect) -> (InvisibleReason, String) {
+    let why = format!(
         "in this data it has the shape of effects of the model; to distinguish them, measure {}",
         excitation(effect)
-    )
+    );
+    (InvisibleReason::Confounded, why)
 }
 
-fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> String {
+fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> (InvisibleReason, String) {
     const RAMP: &str = "it does not act at steady state. Ramps, where signals of different instruments are not aligned, are \
                         tested for a delay only, with an inertia in the model; add the effect to the model, or record a \
                         trajectory without steps";
     let prepared = end.prepared;
-    let remembered = prepared.memory.as_ref().map(|problem| &problem.view);
-    let view = match (end.is_apart(effect), effect.regime()) {
-        (true, Regime::Hysteresis) => remembered,
-        (true, _) => return effect.hidden(&prepared.main.view).unwrap_or_else(|| RAMP.into()),
-        _ => Some(&prepared.main.view),
-    };
-    match view {
-        Some(view) => effect.hidden(view).unwrap_or_else(|| alike(effect)),
-        None => "the run has no slow reversals".into(),
-    }
+    let not_excited = |why: String| (InvisibleReason::NotExcited, why);
+    let (view, otherwise): (_, fn(&dyn Effect) -> (InvisibleReason, String)) =
+        match (end.is_apart(effect), effect.regime()) {
+            (true, Regime::Hysteresis) => match &prepared.memory {
+                Some(problem) => (&problem.view, alike),
+                None => return not_excited("the run has no slow reversals".into()),
+            },
+            (true, _) => (&prepared.main.view, |_| (InvisibleReason::RampsOnly, RAMP.into())),
+            _ => (&prepared.main.view, alike),
+        };
+    effect.hidden(view).map_or_else(|| otherwise(effect), not_excited)
 }

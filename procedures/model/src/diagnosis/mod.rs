@@ -167,6 +167,7 @@ fn step(model: &TwoStageModel, advance: Option<&SelectionStep>) -> Step {
     let n = residual.len() as f64;
     Step {
         added: advance.and_then(|a| a.added.as_ref()).map(|r| r.term.id().into()),
+        addition_reason: advance.and_then(|a| a.added.as_ref()).map(|r| r.reason),
         removed: advance.and_then(|a| a.removed).map(|(id, _)| id.into()),
         removal_reason: advance.and_then(|a| a.removed).map(|(_, why)| why),
         confounded_with: advance.map_or_else(Vec::new, |a| a.ties.iter().map(|t| (*t).into()).collect()),

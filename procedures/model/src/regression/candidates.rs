@@ -67,7 +67,7 @@ impl<'e> CandidateSet<'e> {
                 continue;
             }
             if let Some(why) = effect.hidden(&problem.view) {
-                library.invisible.push(Invisible { effect: effect.info().id.into(), why });
+                library.invisible.push(Invisible::not_excited(effect.info().id, why));
                 continue;
             }
             for form in effect.forms(&problem.view).into_iter().map(Arc::new) {

@@ -62,7 +62,7 @@ impl<'p> TwoStageModel<'p> {
                 own.check(&prepared.main.view)?;
             }
             if let Some(why) = effect.hidden(&prepared.main.view) {
-                assembly.hidden.push(Invisible { effect: id.clone(), why });
+                assembly.hidden.push(Invisible::not_excited(id, why));
             } else if effect.is_offset() {
                 let given = columns(effect, "linear", &[], assembly.main.problem);
                 add(&mut assembly.main.given, &given, &[1.0]);
@@ -97,7 +97,7 @@ impl<'p> TwoStageModel<'p> {
                 own.check(view)?;
             }
             if let Some(why) = effect.hidden(view) {
-                assembly.hidden.push(Invisible { effect: id.clone(), why });
+                assembly.hidden.push(Invisible::not_excited(id, why));
             } else if effect.is_offset() {
                 let given = columns(effect, "linear", &[], assembly.main.problem);
                 add(&mut assembly.main.given, &given, &[1.0]);
@@ -160,7 +160,7 @@ impl<'p> TwoStageModel<'p> {
         if self.moving.is_none() {
             let why = "the run has no ramps or reversals that could show it".to_owned();
             let apart = ramps.iter().chain(&remembering);
-            self.hidden.extend(apart.map(|e| Invisible { effect: e.info().id.into(), why: why.clone() }));
+            self.hidden.extend(apart.map(|e| Invisible::not_excited(e.info().id, why.clone())));
             return;
         }
         self.offset_moving();

@@ -236,8 +236,31 @@ pub struct Silent {
 pub struct LeftOut {
     /// Id of the effect.
     pub effect: String,
-    /// Why it was rejected, in words.
+    /// Why it was rejected.
+    pub reason: RejectionReason,
+    /// The same in words, with the figures.
     pub why: String,
+}
+
+/// Why an effect was tested and rejected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RejectionReason {
+    /// An effect of the model explains the same.
+    Confounded,
+    /// It would reduce the validation error, but not significantly.
+    NotSignificant,
+    /// It would reduce the validation error in a few blocks only.
+    FewBlocks,
+    /// Form error of the model may explain the same.
+    FormError,
+    /// The model has the largest number of added effects.
+    ModelFull,
+    /// Its size is known, and with it the error is not smaller.
+    NoReduction,
+    /// It was added and removed again.
+    #[serde(untagged)]
+    Removed(RemovalReason),
 }
 
 /// An effect that this data cannot show.
@@ -245,8 +268,50 @@ pub struct LeftOut {
 pub struct Invisible {
     /// Id of the effect.
     pub effect: String,
-    /// The missing signal or excitation, in words.
+    /// Why this data cannot show it.
+    pub reason: InvisibleReason,
+    /// The same in words: the missing signal or excitation.
     pub why: String,
+}
+
+impl Invisible {
+    pub(crate) fn not_excited(effect: &str, why: String) -> Self {
+        Self { effect: effect.into(), reason: InvisibleReason::NotExcited, why }
+    }
+}
+
+/// Why data cannot show an effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InvisibleReason {
+    /// The run lacks a signal or an excitation that the effect needs.
+    NotExcited,
+    /// In this data it has the shape of effects of the model.
+    Confounded,
+    /// It acts on ramps only, which are tested for a delay only.
+    RampsOnly,
+    /// Its detection limit exceeds a share of the measured signal.
+    DetectionLimit,
+}
+
+/// Why an effect was added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AdditionReason {
+    /// It reduces the validation error most.
+    ErrorReduction,
+    /// A given effect had absorbed it: the model with both predicts better.
+    Masked,
+    /// It predicts better in the place of an effect that was removed.
+    Exchange,
+    /// Without it, coefficients of the model are biased.
+    OmittedVariableBias,
+    /// Its size is known, and with it the error is smaller.
+    KnownSize,
+    /// It explains the residual on ramps.
+    Ramps,
+    /// It explains the residual around reversals.
+    Reversals,
 }
 
 /// Why an added effect was removed again.
@@ -295,6 +360,9 @@ impl RemovalReason {
 pub struct Step {
     /// Effect that this step added. `None` for the given model and for a removal.
     pub added: Option<String>,
+    /// Why `added` was added. `None` if nothing was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub addition_reason: Option<AdditionReason>,
     /// An added effect that is removed again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub removed: Option<String>,

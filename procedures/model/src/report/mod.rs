@@ -10,8 +10,8 @@ pub(crate) mod upper_limits;
 
 pub use crate::report::comparison::{Comparison, ParameterPair, WiderInterval};
 pub use crate::report::diagnosis::{
-    Diagnosis, Discovery, Evidence, Experiment, Imitated, Invisible, LeftOut, NoiseFloor, RemovalReason, Silent, Step,
-    Suggestion, UndecidedReason, Verdict,
+    AdditionReason, Diagnosis, Discovery, Evidence, Experiment, Imitated, Invisible, InvisibleReason, LeftOut,
+    NoiseFloor, RejectionReason, RemovalReason, Silent, Step, Suggestion, UndecidedReason, Verdict,
 };
 pub use crate::report::fit::{
     Bristles, Evaluation, Fit, FormErrorTerm, GivenConstant, MeanCurve, Parameter, ParameterState, Preparation,

@@ -1,6 +1,6 @@
 //! Upper limits of effects that were not found, and effects that a run could hardly show.
 
-use crate::report::diagnosis::{Diagnosis, Discovery, Invisible, Silent};
+use crate::report::diagnosis::{Diagnosis, Discovery, Invisible, InvisibleReason, Silent};
 use crate::report::fit::Fit;
 use crate::thresholds::{DETECTION_POWER, WORTH_SEEING};
 use crate::words::percent;
@@ -46,7 +46,7 @@ fn bounded(fit: &Fit, silent: Vec<Silent>, mut not_visible: Vec<Invisible>) -> (
             percent(share),
             percent(WORTH_SEEING)
         );
-        Invisible { effect: one.effect, why }
+        Invisible { effect: one.effect, reason: InvisibleReason::DetectionLimit, why }
     }));
     (tested, not_visible)
 }

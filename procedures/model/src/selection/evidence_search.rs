@@ -13,7 +13,7 @@ use crate::regression::evidence::{Evidence, chance, errors, evidence};
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_coefficient, effect_columns, nuisance, without};
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::diagnosis::RemovalReason;
+use crate::report::diagnosis::{AdditionReason, RemovalReason};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::{self, Unexplained};
 use crate::selection::advance::{Path, SelectionStep};
@@ -119,6 +119,7 @@ impl<'p> Search<'_, 'p> {
                 share: best.gain,
                 validation_losses: best.losses.iter().sum(),
                 p_value: best.p_value,
+                reason: AdditionReason::ErrorReduction,
                 losses: best.losses.clone(),
             };
             self.path.push(SelectionStep { added: Some(scored), removed: None, ties, after });
@@ -333,6 +334,7 @@ fn offset<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionS
         return None;
     }
     let validation_losses = is.iter().sum();
-    let scored = ScoredCandidate { term, share: gain, validation_losses, p_value, losses: is };
+    let reason = AdditionReason::KnownSize;
+    let scored = ScoredCandidate { term, share: gain, validation_losses, p_value, reason, losses: is };
     Some(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after })
 }

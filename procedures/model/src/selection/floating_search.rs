@@ -8,7 +8,7 @@ use crate::regression::canonical_fit::fit_canonical;
 use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
-use crate::report::diagnosis::RemovalReason;
+use crate::report::diagnosis::{AdditionReason, RemovalReason};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::undersampled_harmonics;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
@@ -139,7 +139,8 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
 
     /// Removes an effect; the next step adds the one that replaces it.
     pub fn exchange(&mut self, id: &'p str, replacement: Option<Found<'p>>, why: RemovalReason) -> Move<'p> {
-        self.pending_swap = replacement;
+        let of_exchange = |scored| ScoredCandidate { reason: AdditionReason::Exchange, ..scored };
+        self.pending_swap = replacement.map(|(scored, ties)| (of_exchange(scored), ties));
         self.remove(id, why)
     }
 
@@ -195,10 +196,11 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     pub(crate) fn masked_by(&self, now: &LinearModel<'p>, but: Option<&'p str>, than: &[f64]) -> Option<Found<'p>> {
         now.terms.iter().filter(|term| self.can_absorb(term)).find_map(|given| {
             let out: Vec<&str> = self.withdrawn.iter().copied().chain([given.id()]).chain(but).collect();
-            let found = step(&now.without(given.id()), self.library, &out, self.threshold())?;
-            let losses = validation_losses(&self.canonical(now.terms.iter().map(Term::id).chain([found.0.term.id()])));
+            let (scored, ties) = step(&now.without(given.id()), self.library, &out, self.threshold())?;
+            let losses = validation_losses(&self.canonical(now.terms.iter().map(Term::id).chain([scored.term.id()])));
             let less = 1.0 - losses.iter().sum::<f64>() / than.iter().sum::<f64>();
-            (less > self.options.practical_share && !is_tie(&losses, than)).then_some(found)
+            let found = || (ScoredCandidate { reason: AdditionReason::Masked, ..scored }, ties);
+            (less > self.options.practical_share && !is_tie(&losses, than)).then(found)
         })
     }
 

@@ -6,6 +6,7 @@ use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::linear_model::{LinearModel, Term, varpro};
 use crate::regression::partial_regression::{Orthogonalized, PartialRegression};
 use crate::regression::significance::family_wise;
+use crate::report::diagnosis::AdditionReason;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use crate::selection::acceptance::{aliasing, between_leg_variance};
 use crate::selection::equivalence::{encompasses, is_tie};
@@ -24,14 +25,15 @@ pub struct ScoredCandidate<'p> {
     /// Squared validation error of the model with this candidate.
     pub validation_losses: f64,
     pub p_value: f64,
+    pub reason: AdditionReason,
     /// Squared validation error of each fold.
     pub(crate) losses: Vec<f64>,
 }
 
 impl<'p> ScoredCandidate<'p> {
     /// A candidate that was tested alone, without folds.
-    pub fn alone(term: Term<'p>, share: f64, p_value: f64) -> Self {
-        Self { term, share, validation_losses: f64::NAN, p_value, losses: Vec::new() }
+    pub fn alone(term: Term<'p>, share: f64, p_value: f64, reason: AdditionReason) -> Self {
+        Self { term, share, validation_losses: f64::NAN, p_value, reason, losses: Vec::new() }
     }
 }
 
@@ -133,6 +135,7 @@ fn cross_validated<'p>(
                 share: *share,
                 validation_losses: losses.iter().sum(),
                 p_value: 1.0,
+                reason: AdditionReason::ErrorReduction,
                 losses,
             }
         })

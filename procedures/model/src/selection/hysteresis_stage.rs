@@ -9,6 +9,7 @@ use crate::Options;
 use crate::regression::hysteresis_form::Reversals;
 use crate::regression::significance::significance;
 use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::AdditionReason;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::HYSTERESIS_SHARE;
@@ -20,7 +21,9 @@ pub fn hysteresis_step<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option
     let reversals = Reversals::new(problem, now.predict(problem), now.spec, is_out);
     let (term, share) = reversals.best()?;
     let p_value = significance(&term, &reversals.library, &reversals.partial, options);
-    (share >= HYSTERESIS_SHARE && p_value <= options.alpha).then(|| ScoredCandidate::alone(term, share, p_value))
+    let reason = AdditionReason::Reversals;
+    (share >= HYSTERESIS_SHARE && p_value <= options.alpha)
+        .then(|| ScoredCandidate::alone(term, share, p_value, reason))
 }
 
 /// Detection limits of the hysteresis effects that are not in the model, relative to the residual around reversals.

@@ -7,6 +7,7 @@ use crate::regression::linear_model::Term;
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
 use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::AdditionReason;
 use crate::selection::advance::SelectionStep;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
@@ -38,7 +39,7 @@ pub fn advance<'p>(
     let effects = start.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
     let after = start.of(with, effects);
     Some(SelectionStep {
-        added: Some(ScoredCandidate::alone(term, share, p_value)),
+        added: Some(ScoredCandidate::alone(term, share, p_value, AdditionReason::KnownSize)),
         removed: None,
         ties: Vec::new(),
         after,

@@ -7,6 +7,7 @@ use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
+use crate::report::diagnosis::AdditionReason;
 use crate::selection::equivalence::is_tie;
 use crate::selection::floating_search::FloatingSearch;
 use crate::selection::forward_step::ScoredCandidate;
@@ -74,7 +75,8 @@ impl<'p> FloatingSearch<'_, 'p> {
             let losses = validation_losses(&with);
             let validation_losses = losses.iter().sum();
             let is_clear = validation_losses < present.iter().sum() && !is_tie(&losses, &present);
-            let scored = ScoredCandidate { term, share, validation_losses, p_value, losses };
+            let reason = AdditionReason::OmittedVariableBias;
+            let scored = ScoredCandidate { term, share, validation_losses, p_value, reason, losses };
             (p_value <= self.options.alpha).then_some(Imitated { scored, with, is_clear })
         });
         let better = |a: &Imitated, b: &Imitated| a.scored.validation_losses.total_cmp(&b.scored.validation_losses);

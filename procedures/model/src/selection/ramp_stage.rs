@@ -12,6 +12,7 @@ use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::alone;
 use crate::regression::solution::DELAY;
 use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::AdditionReason;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::{DELAY_HALF_WIDTHS, DELAY_POWER, DELAY_ROWS};
@@ -36,7 +37,7 @@ pub fn delay<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCa
         && by_s > DELAY_ROWS * moving.problem.view.sample_s
         && share >= options.practical_share
         && p_value <= options.alpha;
-    is_delayed.then(|| (ScoredCandidate::alone(term, share, p_value), after))
+    is_delayed.then(|| (ScoredCandidate::alone(term, share, p_value, AdditionReason::Ramps), after))
 }
 
 /// The detection limit of the delay, if none was found and one could have been.

@@ -2,6 +2,7 @@
 
 use crate::effect::{Effect, Regime};
 use crate::regression::evidence::{Evidence, ONE_ERROR};
+use crate::report::diagnosis::RejectionReason;
 use crate::residual_analysis::structure::Unexplained;
 use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
 use crate::words::percent;
@@ -39,21 +40,28 @@ impl<'p> Refused<'p> {
         }
     }
 
+    pub fn reason(&self) -> RejectionReason {
+        match () {
+            () if self.p_value >= self.alpha => RejectionReason::NotSignificant,
+            () if self.errors <= ONE_ERROR => RejectionReason::FewBlocks,
+            () if self.gain <= self.least || !self.is_full => RejectionReason::FormError,
+            () => RejectionReason::ModelFull,
+        }
+    }
+
     /// The error reduction of the effect, and why it is rejected.
     pub fn why(&self) -> String {
-        let reduces = format!("it would reduce the squared validation error by {}", percent(self.gain));
-        match () {
-            () if self.p_value >= self.alpha => {
-                format!("{reduces}, which is not significant (p = {:.2})", self.p_value)
-            }
-            () if self.errors <= ONE_ERROR => format!("{reduces}, but only in a few blocks"),
-            () if self.gain <= self.least => format!(
-                "{reduces}, but form error of the model could explain the same; at least {} is required",
+        let but = match self.reason() {
+            RejectionReason::NotSignificant => format!("which is not significant (p = {:.2})", self.p_value),
+            RejectionReason::FewBlocks => "but only in a few blocks".into(),
+            RejectionReason::FormError if self.gain <= self.least => format!(
+                "but form error of the model could explain the same; at least {} is required",
                 percent(self.least)
             ),
-            () if !self.is_full => format!("{reduces}, but form error of the model explains as much"),
-            () => format!("{reduces}, but the largest number of added effects is reached"),
-        }
+            RejectionReason::FormError => "but form error of the model explains as much".into(),
+            _ => "but the largest number of added effects is reached".into(),
+        };
+        format!("it would reduce the squared validation error by {}, {but}", percent(self.gain))
     }
 }
 
