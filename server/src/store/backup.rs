@@ -37,7 +37,7 @@ pub async fn restore(folder: &Path, file: &Path) -> Result<Option<PathBuf>, Stor
     let report = verify_file(file).await?;
     if let Some(first) = report.damaged.first() {
         let (table, what) = (&first.table, &first.what);
-        return Err(StoreError::Damaged(format!("{}: {table}: {what}", file.display())));
+        return Err(StoreError::damaged(what).at(|| format!("{}: {table}", file.display())));
     }
     let lock = FolderLock::take(folder)?;
     let aside = move_aside(folder).and_then(|aside| put_in_place(folder, file).map(|()| aside));

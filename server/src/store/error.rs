@@ -7,8 +7,8 @@ use std::path::PathBuf;
 pub enum StoreError {
     #[error("the data folder {} cannot be written ({what}): choose another with --data, or change its permissions", .folder.display())]
     Unwritable { folder: PathBuf, what: String },
-    #[error("the data folder {} is in use by another jointbench{holder}: stop that one, or choose another folder with --data", .folder.display())]
-    InUse { folder: PathBuf, holder: String },
+    #[error("the data folder {} is in use by another jointbench{}: stop that one, or choose another folder with --data", .folder.display(), .process.map_or_else(String::new, |process| format!(" (process {process})")))]
+    InUse { folder: PathBuf, process: Option<u32> },
     #[error("{} is not a database of jointbench: move it away, or choose another folder with --data", .file.display())]
     Foreign { file: PathBuf },
     #[error("{} was written by a newer jointbench (schema {schema}): update this one, or choose another folder with --data", .file.display())]
@@ -59,18 +59,45 @@ pub enum StoreError {
     #[error("model version {parent} belongs to another run than {run}")]
     OtherRun { parent: i64, run: RunId },
     #[error("the database is damaged ({0}): `jointbench verify` lists all that is damaged; restore it from a backup")]
-    Damaged(String),
+    Damaged(Damage),
     #[error("the database refused: {0}")]
     Database(String),
 }
 
+/// Damage in the database. SQLite itself and decoders do not know its place.
+#[derive(Debug, Clone)]
+pub struct Damage {
+    place: Option<String>,
+    what: String,
+}
+
+impl std::fmt::Display for Damage {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match &self.place {
+            Some(place) => write!(f, "{place}: {}", self.what),
+            None => f.write_str(&self.what),
+        }
+    }
+}
+
 impl StoreError {
-    /// Adds run and table to the damage that SQLite itself found.
-    pub(super) fn within(self, run: RunId, table: &str) -> Self {
+    pub(super) fn damaged(what: impl ToString) -> Self {
+        StoreError::Damaged(Damage { place: None, what: what.to_string() })
+    }
+
+    /// Adds the place to damage without one.
+    pub(super) fn at(self, place: impl FnOnce() -> String) -> Self {
         match self {
-            StoreError::Damaged(what) => StoreError::Damaged(format!("table {table}, run {run}: {what}")),
+            StoreError::Damaged(Damage { place: None, what }) => {
+                StoreError::Damaged(Damage { place: Some(place()), what })
+            }
             other => other,
         }
+    }
+
+    /// Adds run and table to the damage that SQLite itself found.
+    pub(super) fn within(self, run: RunId, table: &str) -> Self {
+        self.at(|| format!("table {table}, run {run}"))
     }
 
     /// Whether the daemon cannot start with this setup.
@@ -123,14 +150,14 @@ impl From<sqlx::Error> for StoreError {
         }
         // A value of another type than its column, or text that is not UTF-8.
         if matches!(fault, sqlx::Error::ColumnDecode { .. } | sqlx::Error::Decode(_)) {
-            return StoreError::Damaged(fault.to_string());
+            return StoreError::damaged(fault);
         }
         let code = fault.as_database_error().and_then(|fault| fault.code()?.parse::<i32>().ok());
         // The low byte of the extended code is the primary code.
         match code.map(|code| code & 0xff) {
             Some(SQLITE_BUSY) => StoreError::Held,
             Some(SQLITE_FULL) => StoreError::DiskFull,
-            Some(SQLITE_CORRUPT | SQLITE_NOTADB) => StoreError::Damaged(fault.to_string()),
+            Some(SQLITE_CORRUPT | SQLITE_NOTADB) => StoreError::damaged(fault),
             _ => StoreError::Database(fault.to_string()),
         }
     }
@@ -138,6 +165,6 @@ impl From<sqlx::Error> for StoreError {
 
 impl From<serde_json::Error> for StoreError {
     fn from(fault: serde_json::Error) -> Self {
-        StoreError::Damaged(fault.to_string())
+        StoreError::damaged(fault)
     }
 }

@@ -34,7 +34,7 @@ impl FolderLock {
             Ok(folder) => folder,
             // The holder's lock file was removed.
             Err(TryLockError::WouldBlock) => {
-                return Err(StoreError::InUse { folder: path.into(), holder: String::new() });
+                return Err(StoreError::InUse { folder: path.into(), process: None });
             }
             Err(TryLockError::Error(fault)) => return Err(unwritable(fault)),
         };
@@ -71,9 +71,6 @@ fn lock_folder(_: &Path) -> Result<Option<File>, TryLockError> {
 
 fn in_use(folder: &Path, file: &mut File) -> StoreError {
     let mut holder = String::new();
-    let holder = match file.read_to_string(&mut holder) {
-        Ok(_) if !holder.trim().is_empty() => format!(" (process {})", holder.trim()),
-        _ => String::new(),
-    };
-    StoreError::InUse { folder: folder.into(), holder }
+    let process = file.read_to_string(&mut holder).ok().and_then(|_| holder.trim().parse().ok());
+    StoreError::InUse { folder: folder.into(), process }
 }

@@ -56,12 +56,12 @@ impl Store {
 
 /// Compresses a result for the cache.
 pub fn packed(json: &[u8]) -> Result<Vec<u8>, StoreError> {
-    zstd::encode_all(json, LEVEL).map_err(|fault| StoreError::Damaged(fault.to_string()))
+    zstd::encode_all(json, LEVEL).map_err(StoreError::damaged)
 }
 
 /// Reverses [`packed`].
 pub fn unpacked(packed: &[u8]) -> Result<Vec<u8>, StoreError> {
-    zstd::decode_all(packed).map_err(|fault| StoreError::Damaged(fault.to_string()))
+    zstd::decode_all(packed).map_err(StoreError::damaged)
 }
 
 pub(super) async fn insert(

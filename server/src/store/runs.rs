@@ -108,10 +108,7 @@ impl Store {
         query.push(" WHERE id = ").push_bind(run);
         let row = query.build().fetch_optional(&mut *reader).await?;
         let row = row.ok_or(StoreError::NoRun(run))?;
-        record(&row, channels(&mut reader, run).await?).map_err(|fault| match fault {
-            StoreError::Damaged(what) if !what.starts_with("table") => RUNS.damaged(&row, &what),
-            other => other,
-        })
+        record(&row, channels(&mut reader, run).await?).map_err(|fault| fault.at(|| RUNS.place_of(&row)))
     }
 
     /// A page of the matching runs, without their channels, and the number of all matches. A damaged run is listed with

@@ -198,6 +198,6 @@ impl TailPiece {
 
 impl From<Broken> for StoreError {
     fn from(fault: Broken) -> Self {
-        StoreError::Damaged(fault.to_string())
+        StoreError::damaged(fault)
     }
 }

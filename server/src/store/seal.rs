@@ -172,7 +172,12 @@ impl Sealed {
     }
 
     /// The error of a damaged row.
-    pub fn damaged(&self, row: &SqliteRow, what: &str) -> StoreError {
+    fn damaged(&self, row: &SqliteRow, what: &str) -> StoreError {
+        StoreError::damaged(what).at(|| self.place_of(row))
+    }
+
+    /// Table and keys of a row.
+    pub fn place_of(&self, row: &SqliteRow) -> String {
         let name = |column: &&str| {
             let value = match cell(row, column) {
                 Ok(Cell::Integer(value)) => value.to_string(),
@@ -182,7 +187,7 @@ impl Sealed {
             format!("{column} {value}")
         };
         let place: Vec<String> = self.names.iter().map(name).collect();
-        StoreError::Damaged(format!("table {}, {}: {what}", self.table, place.join(", ")))
+        format!("table {}, {}", self.table, place.join(", "))
     }
 }
 

@@ -19,5 +19,5 @@ pub(super) fn word<T: DeserializeOwned>(text: &str) -> Result<T, StoreError> {
 
 /// A column that holds JSON.
 pub(super) fn json<T: DeserializeOwned>(row: &SqliteRow, column: &str) -> Result<T, StoreError> {
-    serde_json::from_str(row.try_get(column)?).map_err(|fault| StoreError::Damaged(format!("column {column}: {fault}")))
+    serde_json::from_str(row.try_get(column)?).map_err(|fault| StoreError::damaged(format!("column {column}: {fault}")))
 }

@@ -41,7 +41,7 @@ pub async fn check_rows(
 /// The damage without the advice.
 pub fn what(fault: &StoreError) -> String {
     match fault {
-        StoreError::Damaged(what) => what.clone(),
+        StoreError::Damaged(damage) => damage.to_string(),
         other => other.to_string(),
     }
 }

@@ -90,25 +90,20 @@ async fn span(database: &mut SqliteConnection, run: RunId, first_row: i64, chann
         let mut columns = Vec::new();
         for (channel, block) in blocks.into_iter().enumerate() {
             let column = block.map_err(StoreError::from).and_then(|block| column(&block, &mut found));
-            let place = || format!("channel {channel}, first_row {first_row}: ");
+            let place = || format!("channel {channel}, first_row {first_row}");
             match column {
                 Ok(values) => columns.push((channel, values)),
-                Err(fault) => found.damaged.push(("blocks", named(what(&fault), place))),
+                Err(fault) => found.damaged.push(("blocks", what(&fault.at(place)))),
             }
         }
         found.whole = columns.len() as u64;
         let picture = span.map_err(StoreError::from).and_then(|span| picture(&span, &columns, &mut found));
         if let Err(fault) = picture {
-            found.damaged.push(("spans", named(what(&fault), || format!("first_row {first_row}: "))));
+            found.damaged.push(("spans", what(&fault.at(|| format!("first_row {first_row}")))));
         }
         found
     });
     checked.await.map_err(|fault| StoreError::Database(fault.to_string()))
-}
-
-/// Adds the position to a fault of SQLite, which has none.
-fn named(what: String, place: impl Fn() -> String) -> String {
-    if what.starts_with("table") { what } else { place() + &what }
 }
 
 fn check_seal(row: &SqliteRow, sealed: &Sealed, found: &mut Found) -> Result<(), StoreError> {
@@ -164,7 +159,7 @@ async fn tail_piece(
     };
     match checked {
         Ok(()) => found.whole = 1,
-        Err(fault) => found.damaged.push(("tail", named(what(&fault), || format!("first_row {first_row}: ")))),
+        Err(fault) => found.damaged.push(("tail", what(&fault.at(|| format!("first_row {first_row}"))))),
     }
     Ok(found)
 }
