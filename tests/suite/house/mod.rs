@@ -1,6 +1,7 @@
 //! Rules of the workspace: dependencies, confined libraries, licences, file sizes, and the English of its texts.
 
 mod arrows;
+mod citations;
 mod licences;
 mod modules;
 mod sizes;

@@ -4,7 +4,7 @@ use super::root;
 use std::process::Command;
 
 /// Source files with their text. `None` outside a git checkout.
-fn sources(suffixes: &[&str]) -> Option<Vec<(String, String)>> {
+pub fn sources(suffixes: &[&str]) -> Option<Vec<(String, String)>> {
     let listed = Command::new("git").arg("ls-files").args(suffixes).current_dir(root()).output();
     let Some(listed) = listed.ok().filter(|o| o.status.success()) else {
         eprintln!("SKIPPED: not a git checkout, so there is no list of source files");

@@ -17,7 +17,7 @@ export function curve(values: readonly number[], edges: number[], residual: read
 
 /**
  * Fraction of the residual's variance that depends on the axis: ω² of a one-way analysis of variance, which does not
- * favour axes with many bins (Hays, Statistics, 1963).
+ * favour axes with many bins (Hays 1963).
  */
 export function explainedShare(values: readonly number[], edges: number[], residual: readonly number[], counted: Uint8Array): number {
 	const groups = new Map<number, { n: number; sum: number }>();

@@ -31,7 +31,7 @@ export function inTimeOrder(set: ResidualSet, counted: Uint8Array): number[] {
 }
 
 /**
- * Autocorrelation with the band of white residuals (Ljung, System Identification, 1999, section 16.6); `null` with too
+ * Autocorrelation with the band of white residuals (Ljung 1999, section 16.6); `null` with too
  * few points.
  */
 export function autocorrelation(residual: readonly number[]): Autocorrelation | null {
@@ -47,17 +47,17 @@ export function autocorrelation(residual: readonly number[]): Autocorrelation | 
 	return { lags, band: 1.96 / Math.sqrt(n), n };
 }
 
-/** Whether all lags together agree with white noise at 95 % (Ljung and Box, 1978). */
+/** Whether all lags together agree with white noise at 95 % (Ljung and Box 1978). */
 export function isWhite({ lags, n }: Autocorrelation): boolean {
 	const h = lags.length;
 	const q = n * (n + 2) * lags.reduce((sum, one, k) => sum + one ** 2 / (n - k - 1), 0);
-	// The 95 % point of χ² (Wilson and Hilferty, 1931).
+	// The 95 % point of χ² (Wilson and Hilferty 1931).
 	const spread = 2 / (9 * h);
 	return q <= h * (1 - spread + 1.645 * Math.sqrt(spread)) ** 3;
 }
 
 /**
- * Skewness and kurtosis compared with those of the normal distribution (Jarque and Bera, 1987); `null` with too few
+ * Skewness and kurtosis compared with those of the normal distribution (Jarque and Bera 1987); `null` with too few
  * points.
  */
 export function distribution(residual: readonly number[]): Distribution | null {

@@ -4,6 +4,8 @@ use crate::effect::Regime;
 use crate::regression::linear_model::Term;
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::alone;
+use crate::residual_analysis::maps::Maps;
+use crate::selection::floating_search::FloatingSearch;
 use crate::selection::pruning::Trial;
 use crate::thresholds::BIAS_TOLERANCE;
 
@@ -11,8 +13,12 @@ use crate::thresholds::BIAS_TOLERANCE;
 /// that axis it explains nothing. Example: a wave whose mean changes from step to step follows any curve over speed a
 /// little.
 pub fn spurious<'p>(trial: &Trial<'_, '_, 'p>) -> Option<&'p str> {
-    let (search, options) = (trial.search, trial.search.options);
-    let functions = trial.maps().functions(trial.axis()?);
+    over(trial.search, trial.maps(), trial.axis()?)
+}
+
+fn over<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str) -> Option<&'p str> {
+    let options = search.options;
+    let functions = maps.functions(axis);
     let is_spurious = |term: &&Term<'p>| {
         let without = search.now.without(term.id());
         let mut basis = without.tangent();
@@ -48,7 +54,9 @@ mod tests {
                     (5.0 + size) * row.direction + 0.1 * row.scatter
                 },
             );
-            tiny.removed(&["temperature_coulomb"], |search| super::spurious(&Trial::new(search)))
+            tiny.removed(&["temperature_coulomb"], |search| {
+                super::over(search, Trial::new(search).maps(), "motor_velocity_rad_s")
+            })
         };
         assert_eq!(removed(4.0, 0.0).as_deref(), Some("temperature_coulomb"));
         assert_eq!(removed(0.0, 1.0), None);
