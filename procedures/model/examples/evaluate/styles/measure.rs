@@ -62,8 +62,8 @@ impl Row {
         counts.into_iter().for_each(|(count, hit)| {
             hit.map(|hit| count.add(hit));
         });
-        score.covered.iter().for_each(|(_, hit)| {
-            self.covered.add(*hit);
+        score.covered.iter().for_each(|covered| {
+            self.covered.add(covered.is_inside());
         });
     }
 
@@ -86,8 +86,9 @@ fn report(
         let score = score(&case)?;
         kinds.entry(case.answer.kind.clone()).or_default().add(&score);
         styles.entry(format!("{}, {}", case.answer.kind, case.answer.style)).or_default().add(&score);
-        for (name, hit) in &score.covered {
-            parameters.entry(format!("{} {name}", case.answer.kind)).or_default().add(*hit);
+        for covered in &score.covered {
+            let name = format!("{} {}", case.answer.kind, covered.name);
+            parameters.entry(name).or_default().add(covered.is_inside());
         }
         if !quiet {
             println!("{:60} {:34} {}", case.name, marks(&case, &score), score.found);
@@ -116,7 +117,8 @@ fn marks(case: &Case, score: &Score) -> String {
         ("modest", score.modest),
     ];
     let missed: Vec<&str> = of.iter().filter(|(_, hit)| *hit == Some(false)).map(|(name, _)| *name).collect();
-    let outside: Vec<&str> = score.covered.iter().filter(|(_, hit)| !hit).map(|(name, _)| name.as_str()).collect();
+    let outside = score.covered.iter().filter(|covered| !covered.is_inside());
+    let outside: Vec<String> = outside.map(|covered| format!("{} {:+.1}", covered.name, covered.distance())).collect();
     let weak = if case.answer.identifiable { "" } else { "(weak) " };
     let wrong = if missed.is_empty() { "ok".to_owned() } else { format!("MISSED {}", missed.join(" ")) };
     if outside.is_empty() { format!("{weak}{wrong}") } else { format!("{weak}{wrong}, outside {}", outside.join(" ")) }

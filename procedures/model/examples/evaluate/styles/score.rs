@@ -5,6 +5,25 @@ use super::answer::Answer;
 use jointbench_model::{Discovery, ModelSpec, Options, Verdict, diagnose, discover};
 use std::error::Error;
 
+/// A true parameter and its 95 % interval.
+pub struct Covered {
+    pub name: String,
+    pub truth: f64,
+    pub ci95: [f64; 2],
+}
+
+impl Covered {
+    pub fn is_inside(&self) -> bool {
+        (self.ci95[0]..=self.ci95[1]).contains(&self.truth)
+    }
+
+    /// Distance of the estimate from the truth, in half widths of the interval.
+    pub fn distance(&self) -> f64 {
+        let [low, high] = self.ci95;
+        (low + high - 2.0 * self.truth) / (high - low)
+    }
+}
+
 /// Score of one case. `None` if a question does not apply.
 #[derive(Default)]
 pub struct Score {
@@ -20,8 +39,8 @@ pub struct Score {
     pub unknown: Option<bool>,
     /// Not identifiable, and nothing wrong named.
     pub modest: Option<bool>,
-    /// True parameters that were compared, and those inside their 95 % interval.
-    pub covered: Vec<(String, bool)>,
+    /// True parameters that were compared with their 95 % intervals.
+    pub covered: Vec<Covered>,
     pub found: String,
 }
 
@@ -96,11 +115,11 @@ fn matched<'a>(answer: &Answer, added: &[&'a str]) -> (usize, Vec<&'a str>) {
     best(&answer.acceptable.values().collect::<Vec<_>>(), added)
 }
 
-fn covered(answer: &Answer, whole: &Discovery) -> Vec<(String, bool)> {
+fn covered(answer: &Answer, whole: &Discovery) -> Vec<Covered> {
     let of = |(name, truth): (&String, &f64)| {
         let (effect, parameter) = name.split_once('.')?;
         let found = whole.fit.parameters.iter().find(|p| p.effect == effect && p.name == parameter)?;
-        Some((name.clone(), found.ci95[0] <= *truth && *truth <= found.ci95[1]))
+        Some(Covered { name: name.clone(), truth: *truth, ci95: found.ci95 })
     };
     answer.truth.iter().filter_map(of).collect()
 }
