@@ -172,7 +172,7 @@ impl Sealed {
     }
 
     /// The error of a damaged row.
-    fn damaged(&self, row: &SqliteRow, what: &str) -> StoreError {
+    pub fn damaged(&self, row: &SqliteRow, what: &str) -> StoreError {
         StoreError::damaged(what).at(|| self.place_of(row))
     }
 

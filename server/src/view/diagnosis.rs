@@ -220,7 +220,9 @@ pub struct Silent {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LeftOut {
     pub effect: String,
-    pub reason: RejectionReason,
+    /// Results of older releases have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<RejectionReason>,
     /// The reason in words, with the figures.
     pub why: String,
 }
@@ -264,7 +266,9 @@ pub enum RejectionReason {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Invisible {
     pub effect: String,
-    pub reason: InvisibleReason,
+    /// Results of older releases have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<InvisibleReason>,
     /// The reason in words: the missing signal or excitation.
     pub why: String,
 }
