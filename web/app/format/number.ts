@@ -42,16 +42,25 @@ export interface Scale {
  * Units that accept a prefix: `mNm·s/rad`, `µrad`. Only stiffnesses and rates accept large prefixes; `krad/s` is not in
  * use.
  */
-const SMALL = /^(Nm|rad|N|A|V|W|m|s)([·/].*)?$/;
+const SMALL = /^(Nm|rad)|^[NAVWms]$/;
 const LARGE = /^(Nm?\/.*|Hz)$/;
 
-/** One prefix for all values that are displayed together, chosen by the largest magnitude. */
+/**
+ * One prefix for all values that are displayed together, chosen by the largest magnitude: one to three digits before
+ * the point, as in the sentences and reports of the daemon.
+ */
 export function scaleFor(unit: string, largest: number): Scale {
 	const size = Math.abs(largest);
 	if (LARGE.test(unit) && size >= 1e4) return size >= 1e7 ? { factor: 1e-6, unit: `M${unit}` } : { factor: 1e-3, unit: `k${unit}` };
-	if (!SMALL.test(unit) || size === 0 || size >= 0.1) return { factor: 1, unit };
-	if (size >= 1e-4) return { factor: 1e3, unit: `m${unit}` };
-	return size >= 1e-7 ? { factor: 1e6, unit: `µ${unit}` } : { factor: 1e9, unit: `n${unit}` };
+	if (!SMALL.test(unit) || size === 0 || size >= 1) return { factor: 1, unit };
+	if (size >= 1e-3) return { factor: 1e3, unit: `m${unit}` };
+	return size >= 1e-6 ? { factor: 1e6, unit: `µ${unit}` } : { factor: 1e9, unit: `n${unit}` };
+}
+
+/** The prefix for values that are displayed together, in addition to the displayed unit. */
+export function withPrefix(shown: Scale, values: readonly (number | null | undefined)[]): Scale {
+	const prefix = scaleFor(shown.unit === '1' ? '' : shown.unit, Math.max(0, ...values.map((value) => Math.abs((value ?? 0) * shown.factor))));
+	return { factor: shown.factor * prefix.factor, unit: prefix.unit };
 }
 
 export function formatQuantity(value: number | null | undefined, unit: string, digits = 3): string {

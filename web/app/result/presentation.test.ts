@@ -3,6 +3,7 @@ import { resultVerdict, campaignParts, formatResult, configurationTable } from '
 
 it('says a quantity with one prefix for value and interval', () => {
 	expect(formatResult({ value: 3.2e-5, unit: 'Nm·s/rad', ci95: [3.16e-5, 3.24e-5] })).toEqual({ value: '32.00', interval: '± 0.40', unit: 'µNm·s/rad' });
+	expect(formatResult({ value: 0.007919, unit: 'V/(°/s)', ci95: [0.007866, 0.007972] }).interval).toBe('± 0.000053');
 	expect(formatResult({ value: 41_230, unit: 'Nm/rad', ci95: [40_920, 41_540] })).toEqual({ value: '41.23', interval: '± 0.31', unit: 'kNm/rad' });
 });
 
@@ -22,6 +23,11 @@ it('sets what was found for several ways side by side, and nothing else', () => 
 		['Sum of the errors, share of none', 0, 1, 2],
 	]);
 	expect(configurationTable(found.slice(1))).toBeNull();
+	expect(configurationTable([...found, { ...found[0]!, name: 'gain', symbol: 'κ', base_title: 'Gain' }])).toEqual(table);
+	const directions = (symbol: string, what: string) => [['⁺', 'positive direction'], ['⁻', 'negative direction']].map(([sign, way]) => ({ name: `${symbol}${way}`, symbol: `${symbol}${sign}`, title: `${what}, ${way}`, base_title: what, configuration: way, unit: 'Nm', value: 1 }));
+	const both = configurationTable([...directions('τ_c', 'Coulomb friction'), ...directions('c_v', 'Viscous friction')]);
+	expect(both?.configurations).toEqual(['positive direction', 'negative direction']);
+	expect(both?.rows.map(({ symbol, title }) => [symbol, title])).toEqual([['τ_c', 'Coulomb friction'], ['c_v', 'Viscous friction']]);
 	expect(configurationTable([{ ...found[0]!, name: 'delay', symbol: 't_d', configuration: undefined }, ...found])).toEqual(table);
 });
 

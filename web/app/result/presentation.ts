@@ -53,7 +53,7 @@ export function formatResult(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci
 	const half = ((above + below) / 2) * scale.factor;
 	return {
 		value: formatEstimate(value * scale.factor, scaled),
-		interval: isSymmetric && half > 0 ? `± ${formatNumber(half, 2)}` : formatInterval(scaled),
+		interval: isSymmetric && half > 0 ? `± ${formatNumber(half, 2, 1e-6)}` : formatInterval(scaled),
 		unit: scale.unit,
 	};
 }
@@ -64,14 +64,21 @@ export interface ResultTable {
 	rows: { symbol: string; title: string; of: IdentifiedQuantity[] }[];
 }
 
-/** A row per configuration, if every symbol that has configurations has a value for each of at least three. */
+/** `τ_c` of `τ_c⁺` and `τ_c⁻`. */
+const withoutDirection = (symbol: string) => symbol.replace(/[⁺⁻]$/, '');
+
+/** A row per configuration, for at least two quantities with a value for each of at least two configurations. */
 export function configurationTable(quantities: readonly IdentifiedQuantity[]): ResultTable | null {
-	const bySymbol = new Map<string, IdentifiedQuantity[]>();
-	for (const one of quantities.filter(({ configuration }) => configuration)) bySymbol.set(one.symbol, [...(bySymbol.get(one.symbol) ?? []), one]);
-	const rows = [...bySymbol].map(([symbol, of]) => ({ symbol, title: of[0]!.base_title ?? of[0]!.title, of }));
-	const configurations = (rows[0]?.of ?? []).flatMap(({ configuration }) => configuration ?? []);
-	const hasEach = ({ of }: { of: IdentifiedQuantity[] }) => of.length === configurations.length && of.every((one, i) => one.configuration === configurations[i]);
-	return configurations.length > 2 && rows.length > 1 && rows.every(hasEach) ? { configurations, rows } : null;
+	const byTitle = new Map<string, IdentifiedQuantity[]>();
+	for (const one of quantities.filter(({ configuration }) => configuration)) {
+		const key = `${withoutDirection(one.symbol)} ${one.base_title ?? one.title}`;
+		byTitle.set(key, [...(byTitle.get(key) ?? []), one]);
+	}
+	const groups = [...byTitle.values()];
+	const configurations = (groups.toSorted((a, b) => b.length - a.length)[0] ?? []).flatMap(({ configuration }) => configuration ?? []);
+	const hasEach = (of: IdentifiedQuantity[]) => of.length === configurations.length && of.every((one, i) => one.configuration === configurations[i]);
+	const rows = groups.filter(hasEach).map((of) => ({ symbol: withoutDirection(of[0]!.symbol), title: of[0]!.base_title ?? of[0]!.title, of }));
+	return configurations.length > 1 && rows.length > 1 ? { configurations, rows } : null;
 }
 
 /** A part of a campaign with its quantities and figures. */

@@ -18,7 +18,7 @@ it('sets a figure behind those of earlier runs, and says whether it differs from
 	expect([found!.change, found!.differs]).toEqual(['+5.0 ± 1.4 mNm', true]);
 	expect(found!.text.split('\n').at(-1)).toBe('#5 35.0 ± 1.0 mNm');
 	expect(quantityTrends(5, [figure(0.0305, 0.001)], earlier, plain)[0]).toMatchObject({ change: '+0.50 ± 1.4 mNm', differs: false });
-	expect(quantityTrends(5, [{ ...figure(0.0305, 0), ci95: null }], earlier, plain)[0]).toMatchObject({ change: '+0.50 mNm', differs: null });
+	expect(quantityTrends(5, [{ ...figure(0.0305, 0), ci95: null }], earlier, plain)[0]).toMatchObject({ change: '+500 µNm', differs: null });
 });
 
 it('says nothing of a change where the run before has no such figure', () => {

@@ -1,4 +1,4 @@
-import { type Scale, formatChange, formatNumber, scaleFor } from '../format/number';
+import { type Scale, formatChange, formatNumber, withPrefix } from '../format/number';
 
 /** A quantity of several runs, each with its known interval. */
 export interface Estimate {
@@ -29,8 +29,8 @@ export function difference(first: Estimate | null, second: Estimate | null): { v
 export function differenceText(first: Estimate | null, second: Estimate | null, shown: Scale): string {
 	const of = difference(first, second);
 	if (!of) return '';
-	const { factor, unit } = scaleFor(shown.unit === '1' ? '' : shown.unit, Math.max(Math.abs(of.value), of.half) * shown.factor);
-	const say = (value: number) => formatNumber(value * shown.factor * factor, 2);
+	const { factor, unit } = withPrefix(shown, [of.value, of.half]);
+	const say = (value: number) => formatNumber(value * factor, 2);
 	return `${of.value < 0 ? '' : '+'}${say(of.value)} ± ${say(of.half)}${unit ? ` ${unit}` : ''}`;
 }
 

@@ -18,7 +18,7 @@ const MIN_CORRELATION = 0.9;
 /** Largest distance from the estimate on the scale, in multiples of it. */
 export const HALF_WIDTH = 1.3;
 
-export function parameterRows(parameters: readonly Parameter[], tradeOffs: readonly TradeOff[] = []): ParameterRow[] {
+export function parameterRows(parameters: readonly Parameter[], tradeOffs: readonly TradeOff[] = [], nameOf: (id: string) => string = (id) => id): ParameterRow[] {
 	return parameters.map((parameter) => {
 		const { value, ci95 } = parameter;
 		const [low, high] = [ci95[0] ?? Number.NaN, ci95[1] ?? Number.NaN];
@@ -27,7 +27,7 @@ export function parameterRows(parameters: readonly Parameter[], tradeOffs: reado
 		const name = `${parameter.effect}.${parameter.name}`;
 		for (const { first, second, correlation } of tradeOffs) {
 			if (Math.abs(correlation) < MIN_CORRELATION || (name !== first && name !== second)) continue;
-			flags.push(`ρ ${correlation.toFixed(2).replace('-', '−')} with ${name === first ? second : first}`);
+			flags.push(`ρ ${correlation.toFixed(2).replace('-', '−')} with ${nameOf(name === first ? second : first)}`);
 		}
 		const state = STATE_TEXTS[parameter.state];
 		// The daemon's own note has priority over the text here.

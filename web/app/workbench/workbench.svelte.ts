@@ -4,6 +4,7 @@ import { type ApiError, toApiError } from '../api/apiError';
 import type { Exclusion, Model, Run } from '../api/types';
 import { formatChange, formatQuantity } from '../format/number';
 import { idText } from '../format/label';
+import { parameterSymbol } from '../format/symbol';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
 import { readComparedRuns } from '../runs/comparedRuns';
@@ -35,6 +36,11 @@ export function openWorkbench(id: number) {
 	const effects = resource(
 		() => (run.data ? `${run.data.kind} ${lab.effects}` : null),
 		(_key, signal) => api.effects(run.data?.kind ?? '', signal),
+	);
+	/** What the procedure itself has identified. */
+	const result = resource(
+		() => (run.data?.verdict ? id : null),
+		(run, signal) => api.identification(run, signal),
 	);
 	/** Runs of the same kind. */
 	const similarRuns = resource(
@@ -81,9 +87,12 @@ export function openWorkbench(id: number) {
 	/** All data that determines the layout has arrived once. Before that, nothing that it would move is displayed. */
 	let isLaidOut = $state(false);
 	$effect(() => {
-		isLaidOut ||= model !== null && [run, effects, residuals, diagnosis, similarRuns].every((one) => one.data ?? one.error);
+		isLaidOut ||= model !== null && [run, effects, residuals, diagnosis, similarRuns].every((one) => one.data ?? one.error) && !result.loading;
 	});
 
+	const isOwn = (effect: string) => effects.data?.some((one) => one.id === effect && one.definition) ?? false;
+	/** The symbol of a parameter; a user's effect has the names of its formula. */
+	const symbolOf = ({ effect, name }: { effect: string; name: string }) => (isOwn(effect) ? name : parameterSymbol(name));
 	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? idText(effect);
 
 	/** One fit at a time; its result is a version. */
@@ -251,6 +260,7 @@ export function openWorkbench(id: number) {
 		models,
 		effects,
 		titleOf,
+		symbolOf,
 		residuals,
 		diagnosis,
 		add,
@@ -268,6 +278,10 @@ export function openWorkbench(id: number) {
 		removeRun,
 		undo,
 		redo,
+		/** Quantities that the run itself has identified. */
+		get runResult() {
+			return result.data?.quantities ?? [];
+		},
 		get similarRuns() {
 			return (similarRuns.data?.runs ?? []).filter((one) => one.rows > 0 && one.is_modelled && isFinal(one.state));
 		},
