@@ -233,6 +233,24 @@ export async function saveListView(page, base, run) {
 	for (const text of [page.getByRole('link', { name: 'golden' }), page.getByText('walked on it')]) await text.first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'a tag or a note that is written in the list is not kept'));
 }
 
+/** A column for a quantity, kept over a reload, shows the value of the result page; the list shows no other value of it. */
+export async function chooseColumns(page, base, run) {
+	await page.goto(`${base}/runs`);
+	const cell = (name) => page.locator('main tbody tr', { has: page.getByRole('link', { name: `#${run}`, exact: true }) }).locator(`[data-quantity=${name}]`).first();
+	await cell('tau_c').waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'the list does not show the Coulomb friction of a run'));
+	await page.getByLabel('Add a column').selectOption('c_v');
+	await cell('c_v').waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'a quantity that is chosen has no column'));
+	await page.goto(`${base}/runs`);
+	const listed = await cell('c_v').innerText({ timeout: TIMEOUT_MS });
+	await page.getByRole('button', { name: 'Remove the column Viscous friction' }).click();
+	await page.locator('th[data-column=c_v]').waitFor({ state: 'detached', timeout: TIMEOUT_MS });
+	await page.goto(`${base}/runs/${run}`);
+	const found = page.locator('[data-result] tr[data-quantity=c_v]');
+	await found.waitFor({ timeout: TIMEOUT_MS });
+	const value = await found.locator('td.number').innerText();
+	expect(listed.startsWith(`${value} `), `the list has ${listed} for the viscous friction of run ${run}, its result ${value}`);
+}
+
 /** Opens the results of short runs of several procedures. Returns the procedures that were shown. */
 export async function readResults(page, base, asked) {
 	const [shown, runs] = [[], []];

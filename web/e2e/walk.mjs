@@ -12,7 +12,7 @@
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, runStory } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { openUnknownVersion, reimportRun, byKeyboard, dashesOf, saveListView, openManyRuns, openTogether, readResults, showEarlier, exportRun, exportMap, countCurves, zoomWhileFollowing } from './checks.mjs';
+import { openUnknownVersion, reimportRun, byKeyboard, chooseColumns, dashesOf, saveListView, openManyRuns, openTogether, readResults, showEarlier, exportRun, exportMap, countCurves, zoomWhileFollowing } from './checks.mjs';
 import { FOREIGN, importForeign } from './files.mjs';
 import { analyse, compareChannels, followTrend, goToSteps, hideChannel, openTradeOffs, changeMapColours, stopEarly } from './plots.mjs';
 import { useQueue } from './queue.mjs';
@@ -179,6 +179,7 @@ await runStory('walk', async () => {
 	await audit(lost, 'a run that is not there');
 	await lost.close();
 	await saveListView(page, where.base, run);
+	await chooseColumns(page, where.base, run);
 	await importForeign(page, where.base, FOREIGN);
 	await page.getByLabel(`Compare run ${run}`).check();
 	const third = page.getByLabel(`Compare run ${run + 3}`);

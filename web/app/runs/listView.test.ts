@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { RunSummary } from '../api/types';
-import { nextSort, readListView, readBase, readHidden, readSavedViews, runsTable, sortOrder, toggleBase, toggleColumn, toggleSavedView, listViewText, writeListView } from './listView';
+import { nextSort, readListView, readBase, readHidden, readQuantities, readSavedViews, runsTable, sortOrder, toggleBase, toggleColumn, toggleQuantity, toggleSavedView, listViewText, writeListView } from './listView';
 
 function storage() {
 	const kept = new Map<string, string>();
@@ -17,16 +17,26 @@ it('remembers the columns, and lets the address have the last word', () => {
 	expect(readHidden(null, kept)).toEqual([]);
 });
 
+it('has a column for any quantity, Coulomb friction at first', () => {
+	const kept = storage();
+	expect(readQuantities(null, kept)).toEqual(['tau_c']);
+	expect(toggleQuantity(['tau_c'], 'k', kept)).toBe('tau_c,k');
+	expect(readQuantities(null, kept)).toEqual(['tau_c', 'k']);
+	expect(readQuantities('c_v,c_v', kept)).toEqual(['c_v']);
+	expect(toggleQuantity(['k'], 'k', kept)).toBe('none');
+	expect(readQuantities(null, kept)).toEqual([]);
+});
+
 it('keeps views and forgets them again', () => {
 	const kept = storage();
 	kept.setItem('jointbench.runs.views', 'tag:oil -state:failed');
 	const [old] = readSavedViews(kept);
-	expect(readListView(old!)).toEqual({ search: 'tag:oil -state:failed', sort: null, base: 'none', hide: 'none' });
-	const view = writeListView('rows>1000', '-error', 180, ['bench', 'safe']);
+	expect(readListView(old!)).toEqual({ search: 'tag:oil -state:failed', sort: null, base: 'none', hide: 'none', columns: 'tau_c' });
+	const view = writeListView('rows>1000', '-error', 180, ['bench', 'safe'], ['c_v', 'k']);
 	toggleSavedView(view, kept);
 	expect(readSavedViews(kept)).toEqual([old, view]);
-	expect(readSavedViews(kept).map(listViewText)).toEqual(['tag:oil -state:failed', 'rows>1000 · by error, largest first · against #180 · without bench, safe']);
-	expect(readListView(view)).toEqual({ search: 'rows>1000', sort: '-error', base: '180', hide: 'bench,safe' });
+	expect(readSavedViews(kept).map(listViewText)).toEqual(['tag:oil -state:failed', 'rows>1000 · by error, largest first · against #180 · with c_v, k · without bench, safe']);
+	expect(readListView(view)).toEqual({ search: 'rows>1000', sort: '-error', base: '180', hide: 'bench,safe', columns: 'c_v,k' });
 	toggleSavedView(old!, kept);
 	expect(readSavedViews(kept)).toEqual([view]);
 });
@@ -47,10 +57,11 @@ it('remembers the base, and lets the address have the last word', () => {
 });
 
 it('writes the list as a table', () => {
-	const run = { id: 3, state: 'failed', procedure: 'friction', kind: 'friction', bench: 'a', simulated: true, created_at: '2026-01-02T03:04:05Z', duration_s: 1.5, rows: 7, safe: null, reason: 'no "contact", twice', tags: ['cold', 'new oil'], unit: { serial: 'SN1', batch: '7' }, operator: 'A. Smith', model: { validation_rms: 0.002, unit: 'Nm', coulomb: { value: 0.03, ci95: [0.029, null] } } };
-	const { head, rows } = runsTable([run as unknown as RunSummary]);
-	expect(head.slice(-5)).toEqual(['held_out_rms', 'unit', 'coulomb', 'coulomb_low', 'coulomb_high']);
+	const run = { id: 3, state: 'failed', procedure: 'friction', kind: 'friction', bench: 'a', simulated: true, created_at: '2026-01-02T03:04:05Z', duration_s: 1.5, rows: 7, safe: null, reason: 'no "contact", twice', tags: ['cold', 'new oil'], unit: { serial: 'SN1', batch: '7' }, operator: 'A. Smith', model: { validation_rms: 0.002, unit: 'Nm' } };
+	const tau_c = { name: 'tau_c', symbol: 'τ_c', title: 'Coulomb friction', unit: 'Nm', value: 0.031, ci95: [0.03, 0.032] };
+	const { head, rows } = runsTable([run as unknown as RunSummary], ['tau_c', 'k'], new Map([[3, [tau_c]]]));
+	expect(head.slice(-10)).toEqual(['held_out_rms', 'unit', 'tau_c', 'tau_c_low', 'tau_c_high', 'tau_c_unit', 'k', 'k_low', 'k_high', 'k_unit']);
 	expect(rows).toEqual([
-		[3, 'failed', 'friction', 'friction', 'a', 'true', '2026-01-02T03:04:05Z', 1.5, 7, null, 'no "contact", twice', 'cold new oil', null, 'SN1', null, null, '7', 'A. Smith', 0.002, 'Nm', 0.03, 0.029, null],
+		[3, 'failed', 'friction', 'friction', 'a', 'true', '2026-01-02T03:04:05Z', 1.5, 7, null, 'no "contact", twice', 'cold new oil', null, 'SN1', null, null, '7', 'A. Smith', 0.002, 'Nm', 0.031, 0.03, 0.032, 'Nm', null, null, null, null],
 	]);
 });

@@ -1,13 +1,17 @@
-import type { RunSummary, Table } from '../api/types';
+import type { IdentifiedQuantity, RunSummary, Table } from '../api/types';
+import { parameterSymbol } from '../format/symbol';
 import { withQuery } from '../state/route';
 
 /**
- * Columns of the list in addition to the number and state of a run. The user selects them, and the browser stores them.
+ * Columns of the list in addition to the number and state of a run and to quantities of its result. The user selects
+ * them, and the browser stores them.
  */
-export const COLUMNS = ['procedure', 'unit', 'bench', 'started', 'duration', 'rows', 'safe', 'error', 'change', 'Coulomb', 'note'] as const;
+export const COLUMNS = ['procedure', 'unit', 'bench', 'started', 'duration', 'rows', 'safe', 'error', 'change', 'note'] as const;
 export type Column = (typeof COLUMNS)[number];
 
 const HIDDEN = 'jointbench.runs.hidden';
+const QUANTITIES = 'jointbench.runs.quantities';
+const DEFAULT_QUANTITIES = 'tau_c';
 const VIEWS = 'jointbench.runs.views';
 const BASE = 'jointbench.runs.base';
 
@@ -25,6 +29,19 @@ export function toggleColumn(hidden: readonly Column[], column: Column, kept: Pi
 	return text;
 }
 
+/** Names of quantities with a column: from the address, or from this browser; `none` for none. */
+export function readQuantities(address: string | null, kept: Pick<Storage, 'getItem'>): string[] {
+	const text = address ?? kept.getItem(QUANTITIES) ?? DEFAULT_QUANTITIES;
+	return text === 'none' ? [] : [...new Set(text.split(',').filter(Boolean))];
+}
+
+/** Adds or removes a column and stores it. Returns the value for the address. */
+export function toggleQuantity(shown: readonly string[], name: string, kept: Pick<Storage, 'setItem'>): string {
+	const text = (shown.includes(name) ? shown.filter((one) => one !== name) : [...shown, name]).join() || 'none';
+	kept.setItem(QUANTITIES, text);
+	return text;
+}
+
 /** The base run for comparisons: from the address, or from this browser; `none` for none. */
 export function readBase(address: string | null, kept: Pick<Storage, 'getItem'>): number | null {
 	const id = Number(address ?? kept.getItem(BASE));
@@ -39,7 +56,7 @@ export function toggleBase(base: number | null, id: number, kept: Pick<Storage, 
 }
 
 /** Sort keys of the list under the daemon's names; numbers start with the largest. */
-const SORTS: Partial<Record<Column | 'state', string>> = { state: 'state', procedure: 'procedure', bench: 'bench', started: 'started', duration: '-duration', rows: '-rows', safe: 'safe', error: '-error', Coulomb: '-coulomb' };
+const SORTS: Partial<Record<Column | 'state', string>> = { state: 'state', procedure: 'procedure', bench: 'bench', started: 'started', duration: '-duration', rows: '-rows', safe: 'safe', error: '-error' };
 const reversed = (sort: string) => (sort.startsWith('-') ? sort.slice(1) : `-${sort}`);
 
 /** Present sort order of a column; `null` if it cannot be sorted. */
@@ -56,30 +73,32 @@ export function nextSort(sort: string | null, column: Column | 'state'): string 
 }
 
 /** A view of the list as an address: search, order, base run and columns. */
-export const writeListView = (search: string, sort: string | null, base: number | null, hidden: readonly Column[]): string =>
-	withQuery(new URLSearchParams(), { search, sort, base: base ?? 'none', hide: hidden.join(',') || 'none' });
+export const writeListView = (search: string, sort: string | null, base: number | null, hidden: readonly Column[], quantities: readonly string[]): string =>
+	withQuery(new URLSearchParams(), { search, sort, base: base ?? 'none', hide: hidden.join(',') || 'none', columns: quantities.join() || 'none' });
 
 /** All settings of a view's address, for the router. */
 export function readListView(view: string): Record<string, string | null> {
 	const query = new URLSearchParams(view);
-	return Object.fromEntries(['search', 'sort', 'base', 'hide'].map((key) => [key, query.get(key)]));
+	return Object.fromEntries(['search', 'sort', 'base', 'hide', 'columns'].map((key) => [key, query.get(key)]));
 }
 
 /** A view in words. */
 export function listViewText(view: string): string {
-	const { search, sort, base, hide } = readListView(view);
+	const { search, sort, base, hide, columns } = readListView(view);
+	const quantities = readQuantities(columns ?? null, { getItem: () => null });
 	const hidden = readHidden(hide ?? 'none', { getItem: () => null });
 	return [
 		search || 'all runs',
 		...(sort ? [`by ${sort.replace('-', '')}${sort.startsWith('-') ? ', largest first' : ''}`] : []),
 		...(base && base !== 'none' ? [`against #${base}`] : []),
+		...(quantities.length > 0 && quantities.join() !== DEFAULT_QUANTITIES ? [`with ${quantities.map(parameterSymbol).join(', ')}`] : []),
 		...(hidden.length > 0 ? [`without ${hidden.join(', ')}`] : []),
 	].join(' · ');
 }
 
 /** Saved views, in the order of saving. Earlier versions saved only the search. */
 export const readSavedViews = (kept: Pick<Storage, 'getItem'>): string[] =>
-	(kept.getItem(VIEWS) ?? '').split('\n').filter(Boolean).map((line) => (line.startsWith('?') ? line : writeListView(line, null, null, [])));
+	(kept.getItem(VIEWS) ?? '').split('\n').filter(Boolean).map((line) => (line.startsWith('?') ? line : writeListView(line, null, null, [], [DEFAULT_QUANTITIES])));
 
 export function toggleSavedView(view: string, kept: Pick<Storage, 'getItem' | 'setItem'>): void {
 	const views = readSavedViews(kept);
@@ -89,10 +108,14 @@ export function toggleSavedView(view: string, kept: Pick<Storage, 'getItem' | 's
 const FIELDS = ['id', 'state', 'procedure', 'kind', 'bench', 'simulated', 'created_at', 'duration_s', 'rows', 'safe', 'reason', 'tags', 'note'] as const;
 const UNIT_FIELDS = ['serial', 'part', 'revision', 'batch'] as const;
 
-/** The list as a table for other programs. */
-export function runsTable(runs: readonly RunSummary[]): Table {
+/** The list as a table for other programs, with the shown quantities of the results. */
+export function runsTable(runs: readonly RunSummary[], shown: readonly string[], results: ReadonlyMap<number, readonly IdentifiedQuantity[]>): Table {
 	const cell = (value: unknown) => (Array.isArray(value) ? value.join(' ') : typeof value === 'number' ? value : value == null ? null : String(value));
-	const model = ({ model }: RunSummary) => [model?.validation_rms, model?.unit, model?.coulomb?.value, ...(model?.coulomb?.ci95 ?? [null, null])];
-	const head = [...FIELDS, ...UNIT_FIELDS, 'operator', 'held_out_rms', 'unit', 'coulomb', 'coulomb_low', 'coulomb_high'];
-	return { head, rows: runs.map((run) => [...FIELDS.map((field) => run[field]), ...UNIT_FIELDS.map((field) => run.unit?.[field]), run.operator, ...model(run)].map(cell)) };
+	const quantities = (run: RunSummary) =>
+		shown.flatMap((name) => {
+			const of = results.get(run.id)?.find((one) => one.name === name);
+			return [of?.value, of?.ci95?.[0], of?.ci95?.[1], of?.unit];
+		});
+	const head = [...FIELDS, ...UNIT_FIELDS, 'operator', 'held_out_rms', 'unit', ...shown.flatMap((name) => [name, `${name}_low`, `${name}_high`, `${name}_unit`])];
+	return { head, rows: runs.map((run) => [...FIELDS.map((field) => run[field]), ...UNIT_FIELDS.map((field) => run.unit?.[field]), run.operator, run.model?.validation_rms, run.model?.unit, ...quantities(run)].map(cell)) };
 }

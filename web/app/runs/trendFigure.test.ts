@@ -15,8 +15,14 @@ const trends = {
 } as unknown as Trends;
 const same = (unit: string) => ({ factor: 1, unit });
 
+const results = trends.runs.map(({ quantities }) => quantities);
+
 it('offers every quantity, the most frequent first', () => {
-	expect(trendQuantities(trends).map(({ name, n }) => [name, n])).toEqual([['tau_c', 3], ['b', 1]]);
+	expect(trendQuantities(results).map(({ name, n }) => [name, n])).toEqual([['tau_c', 3], ['b', 1]]);
+	const other = { ...quantity('tau_c', 0.4), title: 'Torque at the start of sliding' };
+	expect(trendQuantities([[other], ...results]).map(({ title, n }) => [title, n])).toEqual([['TAU_C', 3], ['B', 1]]);
+	const mixed = { ...trends, runs: [{ ...trends.runs[0]!, quantities: [other] }, ...trends.runs.slice(1)] };
+	expect(trendFigure(mixed, 'tau_c', 'run', same)!.x.names).toEqual(['#4', '#6']);
 });
 
 it('lays a quantity over runs with its intervals, each bench by itself', () => {

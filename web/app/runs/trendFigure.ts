@@ -1,4 +1,4 @@
-import type { Trends } from '../api/types';
+import type { IdentifiedQuantity, Trends } from '../api/types';
 import type { Figure, Series } from '../figure/figure';
 import type { Scale } from '../format/number';
 import { formatDateTime } from '../format/time';
@@ -13,18 +13,21 @@ const NAMED = 30;
 export interface TrendQuantity {
 	name: string;
 	title: string;
+	symbol: string;
 	unit: string;
 	/** Number of runs with this quantity. */
 	n: number;
 }
 
-/** Every quantity of at least one run, the most frequent first. */
-export function trendQuantities({ runs }: Trends): TrendQuantity[] {
+/** Every quantity of at least one run, the most frequent first. Runs may use one name for two quantities: the title is that of most runs. */
+export function trendQuantities(results: readonly (readonly IdentifiedQuantity[])[]): TrendQuantity[] {
 	const found = new Map<string, TrendQuantity>();
-	for (const { quantities } of runs) {
-		for (const { name, title, unit } of quantities) found.set(name, { name, title, unit, n: (found.get(name)?.n ?? 0) + 1 });
+	for (const { name, title, symbol, unit } of results.flat()) {
+		const key = `${name} ${title}`;
+		found.set(key, { name, title, symbol, unit, n: (found.get(key)?.n ?? 0) + 1 });
 	}
-	return [...found.values()].sort((a, b) => b.n - a.n);
+	const ranked = [...found.values()].sort((a, b) => b.n - a.n);
+	return ranked.filter((one, i) => ranked.findIndex(({ name }) => name === one.name) === i);
 }
 
 const UNITS: [string, number][] = [['d', 86_400], ['h', 3600], ['min', 60]];
@@ -58,22 +61,22 @@ function trendPositions(axis: TrendAxis, runs: readonly TrendRun[]): TrendPositi
  * A quantity over runs with its intervals, one series per bench; `null` if no run has both the quantity and a position.
  */
 export function trendFigure({ runs: all }: Trends, quantity: string, axis: TrendAxis, scale: (unit: string) => Scale): Figure | null {
-	const runs = all.filter(({ quantities }) => quantities.some(({ name }) => name === quantity));
+	const shown = trendQuantities(all.map(({ quantities }) => quantities)).find(({ name }) => name === quantity);
+	if (!shown) return null;
+	const quantityOf = ({ quantities }: TrendRun) => quantities.find(({ name, title }) => name === quantity && title === shown.title);
+	const runs = all.filter(quantityOf);
 	const { at, ...x } = trendPositions(axis, runs);
+	const { factor, unit } = scale(shown.unit);
 	const series = new Map<string, Series & { band: number[][] }>();
-	let shown: TrendQuantity | undefined;
 	runs.forEach((one, i) => {
-		const found = one.quantities.find(({ name }) => name === quantity)!;
+		const found = quantityOf(one)!;
 		const place = at(one, i);
 		if (place === null) return;
-		const { factor, unit } = scale(found.unit);
-		shown ??= { name: quantity, title: found.title, unit, n: runs.length };
 		const own = series.get(one.bench) ?? { label: one.bench, mark: 'points' as const, x: [], y: [], band: [] };
 		series.set(one.bench, own);
-		const value = found.value * factor;
 		own.x.push(place);
-		own.y.push(value);
+		own.y.push(found.value * factor);
 		own.band.push((found.ci95 ?? [found.value, found.value]).map((end) => end * factor));
 	});
-	return shown ? { name: `trend-${quantity}`, title: shown.title, form: 'cartesian', x, y: { label: shown.title, unit: shown.unit }, series: [...series.values()] } : null;
+	return series.size > 0 ? { name: `trend-${quantity}`, title: shown.title, form: 'cartesian', x, y: { label: shown.title, unit }, series: [...series.values()] } : null;
 }
