@@ -91,7 +91,7 @@ export async function byKeyboard(page) {
 	const map = page.getByRole('application');
 	await map.focus();
 	for (const key of ['ArrowRight', 'ArrowRight', 'ArrowUp', 'Shift+ArrowUp']) await page.keyboard.press(key);
-	const text = await page.locator('output', { hasText: 'n = ' }).or(page.locator('output', { hasText: 'never visited' })).first().innerText();
+	const text = await page.locator('output', { hasText: 'n = ' }).or(page.locator('output', { hasText: 'not measured' })).first().innerText();
 	await page.keyboard.press('Enter');
 	await page.waitForURL((url) => url.searchParams.get('region')?.split(',').length === 2, { timeout: TIMEOUT_MS }).catch(() => expect(false, 'no cell can be chosen by keyboard'));
 	await page.keyboard.press('c');
@@ -210,7 +210,7 @@ export async function saveListView(page, base, run) {
 	const link = page.locator('main tbody tr a.mono');
 	const asked = (await (await fetch(`${base}/api/v1/runs?search=state:done&sort=-error&limit=3`)).json()).runs.map(({ id }) => `#${id}`);
 	await page.waitForFunction((first) => document.querySelector('main tbody:last-of-type a.mono')?.textContent === first, asked[0], { timeout: TIMEOUT_MS });
-	await page.getByRole('button', { name: `Base: hold the others against run ${run}` }).click();
+	await page.getByRole('button', { name: `Base: compare the others with run ${run}` }).click();
 	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'no column tells the change against the base'));
 	expect((await link.first().innerText()) === `#${run}`, 'the base does not stay at the top of another order');
 	await page.getByText(/^[+−][\d.]+ %$/).first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'no run is held against the base'));
@@ -221,7 +221,7 @@ export async function saveListView(page, base, run) {
 	await page.getByRole('button', { name: `Show state:done · by error, largest first · against #${run}` }).click();
 	await page.waitForURL((url) => url.searchParams.get('sort') === '-error' && url.searchParams.get('base') === String(run) && url.searchParams.get('search') === 'state:done', { timeout: TIMEOUT_MS }).catch(() => expect(false, `a kept view is not the view that was kept: ${page.url()}`));
 	await page.getByRole('button', { name: 'Forget this view' }).click();
-	await page.getByRole('button', { name: `Base: hold the others against run ${run}` }).click();
+	await page.getByRole('button', { name: `Base: compare the others with run ${run}` }).click();
 	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ state: 'detached', timeout: TIMEOUT_MS });
 	for (const [name, text, width] of [[`Tags of run ${run}, by commas`, 'walked, golden', 1440], [`Note on run ${run}`, 'walked on it', 420]]) {
 		await page.setViewportSize({ width, height: 900 });
@@ -336,7 +336,7 @@ export async function openTogether(page, base, [first, second]) {
 	await page.goto(`${base}/workbench`);
 	for (const run of [first, second]) await page.getByLabel(`Together: run ${run}`).check({ timeout: TIMEOUT_MS });
 	await audit(page, 'the picker with two runs');
-	await page.getByRole('link', { name: 'One model of 2 runs' }).click();
+	await page.getByRole('link', { name: 'Fit one model to 2 runs' }).click();
 	await page.getByRole('list', { name: 'Runs of the data' }).getByText(`#${second}`).waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'the runs that were ticked together have no model together'));
 	expect(!page.url().includes('more='), `the address still asks for what it shows: ${page.url()}`);
 }

@@ -12,7 +12,7 @@ export async function makeAndRevoke(page, another, base) {
 	const guest = await another();
 	await guest.addInitScript((secret) => sessionStorage.setItem('jointbench.token', secret), secret);
 	await guest.goto(`${base}/settings`);
-	await guest.getByText('your token only reads').first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'a token that only reads is not told to its holder'));
+	await guest.getByText('Your token has read access only').first().waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'a token that only reads is not told to its holder'));
 	expect((await guest.getByLabel('Name of the token').count()) === 0, 'whoever only reads is asked to make tokens');
 	await page.reload();
 	const row = page.locator('[data-token="wall screen"]');
@@ -23,7 +23,7 @@ export async function makeAndRevoke(page, another, base) {
 	await row.getByRole('button', { name: 'Revoke wall screen' }).click();
 	await row.getByRole('button', { name: 'Revoke it' }).click();
 	await row.waitFor({ state: 'detached', timeout: TIMEOUT_MS });
-	await guest.waitForFunction(() => !document.body.innerText.includes('your token only reads'), null, { timeout: TIMEOUT_MS }).catch(() => expect(false, 'a page whose token was revoked goes on as if it had one'));
+	await guest.waitForFunction(() => !document.body.innerText.includes('Your token has read access only'), null, { timeout: TIMEOUT_MS }).catch(() => expect(false, 'a page whose token was revoked goes on as if it had one'));
 	await guest.close();
 }
 

@@ -241,13 +241,13 @@ export async function compareVersions(page) {
 export async function observe(page, base) {
 	await page.goto(base);
 	await page.getByRole('button', { name: 'Operator' }).click();
-	await page.getByText('this browser only observes').waitFor({ timeout: 30_000 });
+	await page.getByText('Observer mode').waitFor({ timeout: 30_000 });
 	expect(await page.getByRole('button', { name: 'Start' }).isDisabled(), 'an observer can start');
 	await dropFiles(page, base, [['foreign.csv', FOREIGN]]);
 	const form = page.getByRole('form', { name: /foreign.csv/ });
 	for (const [name, value] of [['torque constant', '0.08'], ['gear ratio', '50'], ['rotor inertia', '4e-5']]) await form.getByLabel(name).fill(value);
 	await form.getByRole('button', { name: 'Import' }).click();
-	await form.getByText('this browser only observes').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'an observer can import'));
+	await form.getByText('Observer mode').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'an observer can import'));
 	await page.goto(base);
 }
 
@@ -316,9 +316,9 @@ export async function resetStopped(page, base) {
 		await page.locator('#start-reason', { hasText: 'the bench is stopped' }).waitFor({ timeout: 30_000 });
 		expect(await page.getByRole('button', { name: 'Start' }).isDisabled(), `a run can be started on ${name}, which is stopped`);
 		const reset = held.getByRole('button', { name: 'Reset the bench' });
-		await held.getByLabel('What was found and done').fill('walked past');
+		await held.getByLabel('Findings and action taken').fill('walked past');
 		expect(await reset.isDisabled(), 'one step is enough to reset a bench');
-		await held.getByLabel('I have looked at the bench').check();
+		await held.getByLabel('I have inspected the bench').check();
 		await reset.click();
 		await held.waitFor({ state: 'detached', timeout: 30_000 });
 		await page.waitForFunction(() => document.querySelector('.go .primary:enabled'), null, { timeout: 30_000 });
@@ -338,16 +338,16 @@ export async function brush(page) {
 	await page.mouse.move(box.x + box.width * 0.95, box.y + box.height / 2, { steps: 4 });
 	await page.mouse.up();
 	await page.waitForURL(/region=/);
-	const note = await page.getByText(/\d chosen/).first().innerText();
-	return Number(/([\d,]+) chosen/.exec(note)[1].replaceAll(',', ''));
+	const note = await page.getByText(/\d selected/).first().innerText();
+	return Number(/([\d,]+) selected/.exec(note)[1].replaceAll(',', ''));
 }
 
 /** Excludes the selected samples with a reason and undoes it. Returns the displayed exclusions. */
 export async function excludeAndUndo(page, reason) {
 	await page.getByRole('button', { name: 'Exclude …' }).click();
-	await page.getByRole('form', { name: 'Exclude the chosen samples' }).getByRole('textbox').fill(reason);
+	await page.getByRole('form', { name: 'Exclude the selected samples' }).getByRole('textbox').fill(reason);
 	await waitForOtherVersion(page, () => page.keyboard.press('Enter'));
-	const text = await page.getByRole('list', { name: 'What the fit does not look at' }).innerText();
+	const text = await page.getByRole('list', { name: 'Excluded samples' }).innerText();
 	await page.locator('figcaption').getByText('excluded').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'excluded samples are not marked in the plots'));
 	await waitForOtherVersion(page, () => page.keyboard.press('z'));
 	return text;
@@ -371,7 +371,7 @@ export async function measureNext(page) {
 export async function startAndStopAutopilot(page, address) {
 	await page.goto(address);
 	const form = page.getByRole('form', { name: 'Autopilot' });
-	await form.getByLabel('runs, at most').fill('2');
+	await form.getByLabel('max. runs').fill('2');
 	await form.getByLabel('bench time').fill('20');
 	// A mock bench without pace measures within a moment, so every image is checked, and Stop is pressed in it.
 	const measuring = () => {

@@ -87,7 +87,7 @@ await runStory('walk', async () => {
 	expect(chosen > 0, 'the brush chose no sample');
 	expect((await page.locator('svg line[stroke="var(--oi-purple)"]').count()) > 0, 'the chosen samples are not marked along the axes');
 	const cell = await byKeyboard(page);
-	expect(/standard errors|too few|never visited/.test(cell), `the map does not say what its cell is: ${cell}`);
+	expect(/standard errors|too few|not measured/.test(cell), `the map does not say what its cell is: ${cell}`);
 	await brush(page);
 	await changeMapColours(page);
 	await openTradeOffs(page);

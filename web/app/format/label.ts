@@ -24,6 +24,7 @@ const SUFFIXES: [string, string][] = [
 
 const TITLES: Record<string, string> = {
 	link_torque_nm: 'load (link torque)',
+	way_since_reversal_rad: 'travel since reversal',
 	run_order: 'order in the run',
 	direction: 'direction of motion',
 };

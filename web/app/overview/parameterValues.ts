@@ -1,4 +1,4 @@
-import { formatNumber } from '../format/number';
+import { formatAllDigits } from '../format/number';
 import type { ProcedureParameter } from '../api/types';
 
 export interface ParsedValue {
@@ -16,8 +16,8 @@ export function parseValue({ type, min, max }: ProcedureParameter, text: string)
 	function wrong(): string | null {
 		if (!Number.isFinite(value)) return 'a number';
 		if (type === 'integer' && !Number.isInteger(value)) return 'a whole number';
-		if (value < min) return `at least ${formatNumber(min)}`;
-		return value > max ? `at most ${formatNumber(max)}` : null;
+		if (value < min) return `at least ${formatAllDigits(min)}`;
+		return value > max ? `at most ${formatAllDigits(max)}` : null;
 	}
 }
 

@@ -193,7 +193,7 @@ it('counts the repeats that an effect helps', () => {
 	expect(improvedRepeats({ ...set, repeat: [0, 0, 0, 0, 0, 0] }, error)).toBeNull();
 });
 
-it('names the conditions that were never visited', () => {
+it('names the conditions that were not measured', () => {
 	const cell = (n: number) => ({ n, mean: 0, se: 1, blocks: n });
 	const x = { edges: [0, 1, 2, 3], setPoints: [0.5, 1.5, 2.5] };
 	const map = { x, y: { edges: [0, 10, 20], setPoints: null, factor: 2 }, cells: [0, 0, 4, 0, 4, 0].map(cell) };

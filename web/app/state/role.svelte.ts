@@ -12,7 +12,7 @@ class Role {
 	isObserver = $derived(this.isReadOnly || this.chosen);
 
 	/** Why nothing can be started or changed. */
-	observerReason = $derived(this.isReadOnly ? 'your token only reads: look, and stop' : 'this browser only observes: press o to operate');
+	observerReason = $derived(this.isReadOnly ? 'Your token has read access only; Stop works' : 'Observer mode: press o to switch to operator');
 
 	toggle(): void {
 		this.chosen = !this.chosen;

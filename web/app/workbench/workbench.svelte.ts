@@ -210,7 +210,7 @@ export function openWorkbench(id: number) {
 	const removeRun = (less: number) => refitOn(others.filter((one) => one !== less), `Fitting without run #${less}`);
 	const refitWithout = (excluded: Exclusion[], what: string, noticeText: string) => refitOn(others, what, excluded, noticeText);
 	const exclude = (stretches: Exclusion[], reason: string) =>
-		refitWithout([...(model?.excluded ?? []), ...stretches], 'Refitting without the chosen samples', `Fitted without the chosen samples (${reason}).`);
+		refitWithout([...(model?.excluded ?? []), ...stretches], 'Refitting without the selected samples', `Fitted without the selected samples (${reason}).`);
 	/** Includes the samples again that were excluded for a reason. */
 	const include = (reason: string) =>
 		refitWithout((model?.excluded ?? []).filter((one) => one.reason !== reason), 'Refitting with the samples', `Fitted with the samples again that were excluded (${reason}).`);
