@@ -251,6 +251,18 @@ export async function chooseColumns(page, base, run) {
 	expect(listed.startsWith(`${value} `), `the list has ${listed} for the viscous friction of run ${run}, its result ${value}`);
 }
 
+/** Evaluates the version on a run that is not in its data. Returns the displayed error. */
+export async function validateOnRun(page) {
+	const choice = page.getByLabel('Validation run');
+	await choice.selectOption({ index: 1 });
+	const found = page.locator('[data-validated]');
+	await found.waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'a version is not evaluated on a validation run'));
+	const text = await found.innerText();
+	await choice.selectOption('');
+	await found.waitFor({ state: 'detached', timeout: TIMEOUT_MS });
+	return text;
+}
+
 /** Opens the results of short runs of several procedures. Returns the procedures that were shown. */
 export async function readResults(page, base, asked) {
 	const [shown, runs] = [[], []];

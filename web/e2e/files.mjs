@@ -23,6 +23,19 @@ export async function chooseForeign(page, base, table) {
 	return form;
 }
 
+/** A text in a column of numbers is marked. It becomes an empty cell by choice, and its row is omitted. */
+export async function omitBadRow(page, base, table) {
+	const form = await chooseForeign(page, base, table.replace('8;2;0,2;', '8;2;WRONG;'));
+	await form.getByText(/WRONG/).first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'a cell without a number is not marked'));
+	await form.getByLabel('Counts as an empty cell').fill('WRONG');
+	await page.keyboard.press('Tab');
+	await form.getByText('1 cell without a value').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'an empty cell is not counted'));
+	await form.getByLabel('Omit rows with empty cells').check();
+	await form.getByText('rows omitted for an empty cell: 1').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'a row with an empty cell is not omitted'));
+	await form.getByRole('button', { name: 'Cancel' }).click();
+	await form.waitFor({ state: 'detached', timeout: 30_000 });
+}
+
 /** Imports the table in three clicks, from the file to the workbench. */
 export async function importForeign(page, base, table) {
 	const form = await chooseForeign(page, base, table);

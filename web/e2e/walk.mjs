@@ -12,8 +12,8 @@
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, runStory } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { openUnknownVersion, reimportRun, byKeyboard, chooseColumns, dashesOf, saveListView, openManyRuns, openTogether, readResults, showEarlier, exportRun, exportMap, countCurves, zoomWhileFollowing } from './checks.mjs';
-import { FOREIGN, importForeign } from './files.mjs';
+import { openUnknownVersion, reimportRun, byKeyboard, chooseColumns, dashesOf, saveListView, openManyRuns, openTogether, readResults, showEarlier, exportRun, exportMap, countCurves, validateOnRun, zoomWhileFollowing } from './checks.mjs';
+import { FOREIGN, importForeign, omitBadRow } from './files.mjs';
 import { analyse, compareChannels, followTrend, goToSteps, hideChannel, openTradeOffs, changeMapColours, stopEarly } from './plots.mjs';
 import { useQueue } from './queue.mjs';
 import { WITHOUT_LOAD, brush, compareVersions, excludeAndUndo, firstUse, startAndStopAutopilot, runAutopilotToEnd, loseAndRestoreContact, makeRun, measureNext, runningAnimations, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, waitForOtherVersion, tryAndDrop, watchRun, writeEffect, zoomOnePlot } from './steps.mjs';
@@ -115,6 +115,9 @@ await runStory('walk', async () => {
 	const differs = await compareVersions(page);
 	expect(first.effects[0] === 'load_linear' && differs.includes('Load-dependent friction'), `the comparison does not show what differs: ${differs}`);
 
+	const validated = await validateOnRun(page);
+	expect(/RMS error on run #\d+: [\d.]+ [mµ]?Nm/.test(validated), `the validation run gives no error: ${validated}`);
+
 	const back = await showForeign(page, where.base, run, undone, 'viscous_quadratic');
 	expect(back.model === undone.model, `back from the version made elsewhere the page shows ${back.model}`);
 
@@ -180,6 +183,7 @@ await runStory('walk', async () => {
 	await lost.close();
 	await saveListView(page, where.base, run);
 	await chooseColumns(page, where.base, run);
+	await omitBadRow(page, where.base, FOREIGN);
 	await importForeign(page, where.base, FOREIGN);
 	await page.getByLabel(`Compare run ${run}`).check();
 	const third = page.getByLabel(`Compare run ${run + 3}`);

@@ -96,6 +96,8 @@ export const api = {
 	/** The contribution of the effect to the prediction at each point of the residuals. */
 	withEffect: (id: number, effect: string, signal?: Signal) => callApi('get', '/api/v1/models/{id}/with/{effect}', { path: { id, effect } }, signal),
 	effectAblation: (id: number, signal?: Signal) => callApi('get', '/api/v1/models/{id}/worth', { path: { id } }, signal),
+	/** A version on another run. Nothing is stored. */
+	evaluate: (id: number, run: number, signal?: Signal) => callApi('post', '/api/v1/models/{id}/evaluate', { path: { id }, body: { run } }, signal),
 	compare: (first: number, second: number, run: number, signal?: Signal) =>
 		callApi('get', '/api/v1/models/{id}/compare/{other}', { path: { id: first, other: second }, query: { run } }, signal),
 	importModel: (run: number, model: Values) => callApi('post', '/api/v1/models/import', { body: { run, model } }),

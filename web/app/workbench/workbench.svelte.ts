@@ -14,6 +14,7 @@ import { reveal } from '../ui/reveal';
 import { isFinal } from '../ui/states';
 import { type DirectionFilter, foldPositions, withDerivedAxes } from '../residual/points';
 import { regionSamples } from '../residual/regionSamples';
+import { isOfJoint } from './joint';
 import { defaultAxes } from './rankedAxes';
 import { readRegion } from './region';
 import { MIN_GAIN, childWith, gain, isTrial, sameData, undecided, gainText } from './versionTree';
@@ -47,6 +48,7 @@ export function openWorkbench(id: number) {
 		() => (run.data ? `kind:${run.data.kind}` : null),
 		(search, signal) => api.runs({ limit: 100, search }, signal),
 	);
+	const similar = $derived((similarRuns.data?.runs ?? []).filter((one) => one.rows > 0 && one.is_modelled && isFinal(one.state)));
 	const versions: Model[] = $derived(models.data ?? []);
 	const requestedVersion = $derived(router.query.get('model'));
 	const named = $derived(versions.find((one) => String(one.id) === requestedVersion));
@@ -283,7 +285,11 @@ export function openWorkbench(id: number) {
 			return result.data?.quantities ?? [];
 		},
 		get similarRuns() {
-			return (similarRuns.data?.runs ?? []).filter((one) => one.rows > 0 && one.is_modelled && isFinal(one.state));
+			return similar;
+		},
+		/** Runs of the same joint that are not in the data of the model. */
+		get otherRuns() {
+			return similar.filter((one) => one.id !== id && !model?.more_runs.includes(one.id) && isOfJoint(one, run.data));
 		},
 		get versions() {
 			return versions;
