@@ -203,7 +203,7 @@ export async function openWorkbench(another, address) {
 /** Opens the page of a daemon without runs and starts the demo run. Returns the layout shift and the content security policy. */
 export async function firstUse(page, base) {
 	const answer = await page.goto(base);
-	await page.getByText('No run yet. Start a procedure, or bring a measurement.').waitFor({ timeout: 30_000 });
+	await page.getByText('No run yet. Start a procedure, or import a measurement.').waitFor({ timeout: 30_000 });
 	await page.getByRole('button', { name: 'Start a demo run' }).waitFor({ timeout: 30_000 });
 	await page.waitForFunction(() => document.querySelector('.go .primary:enabled'), null, { timeout: 30_000 });
 	const jumps = await layoutShiftOf(page);

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { axisTitle, truncate, inSentence, inTwoLines, label, linearUnit, displayText, pathEnd } from './label';
+import { withLabels, axisTitle, truncate, inSentence, inTwoLines, label, linearUnit, displayText, pathEnd } from './label';
 
 it('reads the unit from the suffix', () => {
 	expect(label('motor_velocity_rad_s')).toEqual({ title: 'motor velocity', unit: 'rad/s' });
@@ -40,4 +40,10 @@ it('breaks a label that has no room between its words', () => {
 	expect(inTwoLines('+ Coulomb', 100)).toEqual(['+ Coulomb']);
 	expect(inTwoLines('+ Load-dependent friction', 100)).toEqual(['+ Load-dependent', 'friction']);
 	expect(inTwoLines('+ Transmissionlosses', 60)).toEqual(['+ Transm…']);
+});
+
+it('names settings as in the form', () => {
+	const fields = [{ name: 'top_speed_rad_s', title: 'Maximum speed (motor)' }, { name: 'repeats', title: 'Repeats of the profile' }];
+	expect(withLabels('set top_speed_rad_s = 120 or less, or add repeats', fields)).toBe('set “Maximum speed (motor)” = 120 or less, or add repeats');
+	expect(withLabels('stop_top_speed_rad_s', fields)).toBe('stop_top_speed_rad_s');
 });

@@ -60,7 +60,8 @@ export function quantityColumns(visible: () => readonly RunSummary[]) {
 		return () => clearTimeout(again);
 	});
 	const of = (run: RunSummary) => known.get(run.id) ?? ofModel(run);
-	const available = $derived(trendQuantities(visible().map(of)));
+	/** Of all runs that were visible, so that a column keeps its title. */
+	const available = $derived(trendQuantities([...known.values(), ...visible().map(ofModel)]));
 	const names = $derived(readQuantities(router.query.get('columns'), localStorage));
 	const shown = $derived(names.map((name) => available.find((one) => one.name === name) ?? { name, title: '', symbol: parameterSymbol(name) }));
 	return {
