@@ -6,7 +6,7 @@
 // Workbench: the recommended run, regions of residuals, the residual map and its file, exclusions, suggestions tried and added, undo,
 // comparisons, a version from another client, REST, a user's effect, autopilots, and an effect removed and added again.
 // Bench: the queue, the software stop by keyboard, before any script is loaded, and its reset; a result applied to a bench and reverted.
-// Runs: searches, sorting, base run, saved views, imports, comparisons, trends, models of several runs, and ten thousand runs.
+// Runs: searches, sorting, base run, saved views, columns, imports, comparisons, trends, models of several runs, and ten thousand runs.
 //
 // No page may break a rule of axe. Exits with 1 and a sentence if a check fails.
 import { gzipSync } from 'node:zlib';

@@ -19,7 +19,7 @@ const unknownOf = (runs: readonly RunSummary[]) => [...new Set(runs.filter(hasRe
 async function request(ids: readonly number[], signal?: AbortSignal): Promise<boolean> {
 	const { runs, pending, left_out } = await api.trends(`id>=${Math.min(...ids)} id<=${Math.max(...ids)}`, signal);
 	const next = new Map([...known, ...runs.map(({ run, quantities }) => [run, quantities] as const)]);
-	// A run without a result is not in the answer, which begins at its oldest run if older ones are left out.
+	// A run without a result is not in the answer, which begins at its oldest run if older ones are omitted.
 	const first = left_out > 0 ? (runs[0]?.run ?? Infinity) : 0;
 	if (pending === 0) for (const id of ids) if (id >= first && !next.has(id)) next.set(id, []);
 	known = next;
