@@ -417,9 +417,8 @@ class InstrumentIdentity(BaseModel):
     serial: str
 
 
-class Invisible(BaseModel):
-    effect: str
-    why: str
+InvisibleReason = TypeAliasType("InvisibleReason", Literal['not_excited', 'confounded', 'ramps_only', 'detection_limit'])
+"""Why data cannot show an effect."""
 
 
 class Lease(BaseModel):
@@ -427,13 +426,6 @@ class Lease(BaseModel):
 
     expires_in_s: float
     """Time until the run ends unless the lease is renewed."""
-
-
-class LeftOut(BaseModel):
-    """A rejected effect: tested, but not added to the model."""
-
-    effect: str
-    why: str
 
 
 class Limit(BaseModel):
@@ -930,6 +922,10 @@ class Region(BaseModel):
     """The same as one sentence."""
 
     to: float
+
+
+RejectionReason = TypeAliasType("RejectionReason", Literal['confounded', 'not_significant', 'few_blocks', 'form_error', 'model_full', 'no_reduction', 'redundant', 'infeasible', 'mutually_cancelling', 'insignificant', 'swapped', 'random_walk', 'unidentified', 'partial_explanation', 'spurious'])
+"""Why an effect was tested and rejected."""
 
 
 class ResidualAxis(BaseModel):
@@ -1594,6 +1590,13 @@ class Instrument(BaseModel):
     """Since when it is not ready."""
 
 
+class Invisible(BaseModel):
+    effect: str
+    reason: InvisibleReason | None = None
+    why: str
+    """The reason in words: the missing signal or excitation."""
+
+
 class LastModel(BaseModel):
     """Summary of a model version."""
 
@@ -1605,6 +1608,15 @@ class LastModel(BaseModel):
 
     validation_rms: float
     """Validation error (cross-validated RMS)."""
+
+
+class LeftOut(BaseModel):
+    """A rejected effect: tested, but not added to the model."""
+
+    effect: str
+    reason: RejectionReason | None = None
+    why: str
+    """The reason in words, with the figures."""
 
 
 class LimitCheck(BaseModel):
