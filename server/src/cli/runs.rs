@@ -11,8 +11,9 @@ use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use jointbench_model::words;
 
-/// Header of the list. Times are local; error and Coulomb friction are from the last version that is not idle.
-const HEAD: &str = "  run  started (local)   state        procedure                 bench             duration       rows       error     Coulomb";
+/// Header of the list. Times are local; the error is that of the last model version that is not idle.
+const HEAD: &str =
+    "  run  started (local)   state        procedure                 bench             duration       rows       error";
 const BENCH: usize = 16;
 
 /// For an unfinished run in a folder without a daemon.
@@ -67,10 +68,8 @@ fn line(run: &RunSummary) -> String {
         more => std::iter::once('…').chain(run.bench.chars().skip(more + 1)).collect(),
     };
     let error = run.model.as_ref().map(|model| words::figure(model.validation_rms, &model.unit)).unwrap_or_default();
-    let coulomb = run.model.as_ref().and_then(|model| model.coulomb.as_ref());
-    let coulomb = coulomb.map(|one| words::figure(one.value, &one.unit)).unwrap_or_default();
     format!(
-        "{id:5}  {day}  {state:11}  {procedure:24}  {bench:BENCH$}  {duration:>7}  {rows:>9}  {error:>10}  {coulomb:>10}{unit}{reason}{not_stored}"
+        "{id:5}  {day}  {state:11}  {procedure:24}  {bench:BENCH$}  {duration:>7}  {rows:>9}  {error:>10}{unit}{reason}{not_stored}"
     )
 }
 

@@ -12,7 +12,10 @@ pub fn with_interval(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String,
     let unit = if unit == "1" { "" } else { unit };
     let (factor, prefix) = if takes_prefix(unit) { words::prefix(value.abs()) } else { (1.0, "") };
     let spread = ci95.map_or(value.abs() / 50.0, |[low, high]| (high - low) / 2.0) * factor;
-    let text = |value: f64| digits(value * factor, spread);
+    let text = |value: f64| {
+        let (sign, size) = if value < 0.0 { ("−", -value) } else { ("", value) };
+        format!("{sign}{}", digits(size * factor, spread))
+    };
     let shown = format!("{} {prefix}{unit}", text(value)).trim_end().to_owned();
     (shown, ci95.map(|[low, high]| format!("{} … {}", text(low), text(high))))
 }
@@ -42,6 +45,7 @@ mod tests {
             (11.0, None, "", "11.00", None),
             (1.2e-5, Some([1.1e-5, 1.3e-5]), "kg·m²", "1.200e-5 kg·m²", Some("1.100e-5 … 1.300e-5")),
             (0.0, Some([0.0, 0.0]), "Nm", "0 Nm", Some("0 … 0")),
+            (-2.0, Some([-2.5, 0.5]), "V", "−2.0 V", Some("−2.5 … 0.5")),
         ] {
             let (text, ends) = with_interval(value, ci95, unit);
             assert_eq!((text.as_str(), ends.as_deref()), (shown, interval));

@@ -139,12 +139,16 @@ impl Lines {
     fn at_motor(&self, nm_per_v: f64, nm_s_per_slope: f64) -> Vec<Quantity> {
         let mut all = Vec::new();
         for (suffix, sign, line) in [("positive", "⁺", &self.forward), ("negative", "⁻", &self.backward)] {
-            let [coulomb, viscous] =
-                ["Coulomb", "Viscous"].map(|kind| format!("{kind} friction (motor), {suffix} direction"));
-            let coulomb = [&format!("tau_c_{suffix}"), &format!("τ_c{sign}"), &coulomb, "Nm"];
-            all.push(named(coulomb, magnitude(line.offset, line.offset_ci95, nm_per_v)));
-            let viscous = [&format!("c_v_{suffix}"), &format!("c_v{sign}"), &viscous, "Nm·s/rad"];
-            all.push(named(viscous, magnitude(line.slope, line.slope_ci95, nm_s_per_slope)));
+            let way = format!("{suffix} direction");
+            let (offset, slope) = (
+                magnitude(line.offset, line.offset_ci95, nm_per_v),
+                magnitude(line.slope, line.slope_ci95, nm_s_per_slope),
+            );
+            let (name, symbol) = (format!("tau_c_{suffix}"), format!("τ_c{sign}"));
+            let coulomb = named([&name, &symbol, "Coulomb friction (motor)", "Nm"], offset);
+            let (name, symbol) = (format!("c_v_{suffix}"), format!("c_v{sign}"));
+            let viscous = named([&name, &symbol, "Viscous friction (motor)", "Nm·s/rad"], slope);
+            all.extend([coulomb, viscous].map(|one| one.in_configuration(&way)));
         }
         let (mean, ci95) = self.b_mean();
         let viscous = ["c_v_mean", "c_v", "Viscous friction (motor), mean of both directions", "Nm·s/rad"];
