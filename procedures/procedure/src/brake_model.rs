@@ -97,8 +97,7 @@ impl BrakeModel {
         }
     }
 
-    /// Torque (Nm) after a history of currents: the classical Preisach model in Everett form (Mayergoyz, "Mathematical
-    /// Models of Hysteresis", 1991).
+    /// Torque (Nm) after a history of currents: the classical Preisach model in Everett form (Mayergoyz 1991).
     pub fn torque_nm(&self, history: &CurrentHistory) -> f64 {
         let (mut torque_nm, mut before_a, mut rises) = (self.drag_nm, 0.0, true);
         for turn_a in history.turns_a.iter().chain([&history.now_a]) {

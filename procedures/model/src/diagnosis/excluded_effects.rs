@@ -3,7 +3,8 @@
 
 use crate::effect::{Effect, Form, Regime, ShapeSearch};
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::diagnosis::{Invisible, InvisibleReason, LeftOut, RejectionReason, Silent};
+use crate::report::diagnosis::Silent;
+use crate::report::reasons::{Invisible, InvisibleReason, LeftOut, RejectionReason};
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::{hysteresis_stage, ramp_stage};

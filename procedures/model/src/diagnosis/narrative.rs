@@ -2,9 +2,10 @@
 
 use crate::diagnosis::findings::Findings;
 use crate::effect::{Effect, Regime};
-use crate::report::diagnosis::{Evidence, Imitated, RemovalReason, Suggestion, UndecidedReason, Verdict};
+use crate::report::diagnosis::{Evidence, Imitated, Suggestion, UndecidedReason, Verdict};
 use crate::report::fit::{Parameter, ParameterState};
 use crate::report::maps::{PairMap, Region};
+use crate::report::reasons::RemovalReason;
 use crate::report::text::{all_marked, marked};
 use crate::residual_analysis::events::Events;
 use crate::residual_analysis::lack_of_fit;

@@ -6,7 +6,7 @@ use crate::effect::{Columns, Effect, Form, Regime};
 use crate::preprocess::Problem;
 use crate::preprocess::filter::ABREAST;
 use crate::regression::linear_model::Term;
-use crate::report::diagnosis::Invisible;
+use crate::report::reasons::Invisible;
 use jointbench_instrument::Kind;
 use rayon::prelude::*;
 use std::sync::Arc;

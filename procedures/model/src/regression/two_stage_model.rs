@@ -8,7 +8,7 @@ use crate::regression::canonical_fit::{enter, fit_canonical};
 use crate::regression::hysteresis_form::form_of;
 use crate::regression::linear_model::{LinearModel, Term, columns};
 use crate::regression::solution::PRESLIDING;
-use crate::report::diagnosis::Invisible;
+use crate::report::reasons::Invisible;
 use crate::{Effect, ModelError, ModelSpec, Options};
 
 #[derive(Clone)]

@@ -1,7 +1,8 @@
 //! Upper limits of effects that were not found, and effects that a run could hardly show.
 
-use crate::report::diagnosis::{Diagnosis, Discovery, Invisible, InvisibleReason, Silent};
+use crate::report::diagnosis::{Diagnosis, Discovery, Silent};
 use crate::report::fit::Fit;
+use crate::report::reasons::{Invisible, InvisibleReason};
 use crate::thresholds::{DETECTION_POWER, WORTH_SEEING};
 use crate::words::percent;
 

@@ -1,7 +1,7 @@
 //! The steps of a selection.
 
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::diagnosis::RemovalReason;
+use crate::report::reasons::RemovalReason;
 use crate::selection::forward_step::ScoredCandidate;
 
 /// An added or removed effect, and the model after this step.

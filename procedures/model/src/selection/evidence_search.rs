@@ -13,7 +13,7 @@ use crate::regression::evidence::{Evidence, chance, errors, evidence};
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_coefficient, effect_columns, nuisance, without};
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::diagnosis::{AdditionReason, RemovalReason};
+use crate::report::reasons::{AdditionReason, RemovalReason};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::{self, Unexplained};
 use crate::selection::advance::{Path, SelectionStep};

@@ -8,7 +8,7 @@ use crate::regression::canonical_fit::fit_canonical;
 use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
-use crate::report::diagnosis::{AdditionReason, RemovalReason};
+use crate::report::reasons::{AdditionReason, RemovalReason};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::undersampled_harmonics;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;

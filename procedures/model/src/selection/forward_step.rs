@@ -6,7 +6,7 @@ use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::linear_model::{LinearModel, Term, varpro};
 use crate::regression::partial_regression::{Orthogonalized, PartialRegression};
 use crate::regression::significance::family_wise;
-use crate::report::diagnosis::AdditionReason;
+use crate::report::reasons::AdditionReason;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use crate::selection::acceptance::{aliasing, between_leg_variance};
 use crate::selection::equivalence::{encompasses, is_tie};

@@ -9,7 +9,7 @@ use crate::Options;
 use crate::regression::hysteresis_form::Reversals;
 use crate::regression::significance::significance;
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::diagnosis::AdditionReason;
+use crate::report::reasons::AdditionReason;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::HYSTERESIS_SHARE;

@@ -7,7 +7,7 @@ use crate::regression::linear_model::Term;
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::diagnosis::AdditionReason;
+use crate::report::reasons::AdditionReason;
 use crate::selection::advance::SelectionStep;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;

@@ -7,7 +7,7 @@ use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
-use crate::report::diagnosis::AdditionReason;
+use crate::report::reasons::AdditionReason;
 use crate::selection::equivalence::is_tie;
 use crate::selection::floating_search::FloatingSearch;
 use crate::selection::forward_step::ScoredCandidate;

@@ -12,7 +12,7 @@ use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::alone;
 use crate::regression::solution::DELAY;
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::diagnosis::AdditionReason;
+use crate::report::reasons::AdditionReason;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::{DELAY_HALF_WIDTHS, DELAY_POWER, DELAY_ROWS};

@@ -2,7 +2,7 @@
 
 use crate::effect::{Effect, Regime};
 use crate::regression::evidence::{Evidence, ONE_ERROR};
-use crate::report::diagnosis::RejectionReason;
+use crate::report::reasons::RejectionReason;
 use crate::residual_analysis::structure::Unexplained;
 use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
 use crate::words::percent;

@@ -1,7 +1,7 @@
 //! Effects that were added and removed again.
 
 use crate::regression::cross_validation::validation_rms;
-use crate::report::diagnosis::RemovalReason;
+use crate::report::reasons::RemovalReason;
 use crate::selection::floating_search::FloatingSearch;
 
 /// An effect that was added and removed again, with the validation RMS that the last model has with it.

@@ -10,7 +10,7 @@ pub(crate) mod spurious;
 pub(crate) mod swapped;
 pub(crate) mod unidentified;
 
-use crate::report::diagnosis::RemovalReason;
+use crate::report::reasons::RemovalReason;
 use crate::residual_analysis::{lack_of_fit, maps::Maps};
 use crate::selection::floating_search::{FloatingSearch, Found};
 use std::cell::OnceCell;

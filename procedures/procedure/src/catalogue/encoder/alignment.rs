@@ -38,9 +38,9 @@ impl Procedure for EncoderAlignment {
     }
 
     fn summary(&self) -> &'static str {
-        "Moves the sensor along each axis of the stage until the encoder reports inconsistent periods (bisection from \
-         the consistent side), which gives the tested tolerance of each axis. Then measures the error over the radial shift and finds its minimum. Align the stage \
-         zero with the sensor position first."
+        "Moves the sensor along each axis of the stage until the encoder reports inconsistent periods (bisection). This \
+         gives the tested tolerance of each axis. Then measures the error over the radial shift and finds its minimum. \
+         Align the stage zero with the sensor position first."
     }
 
     fn kind(&self) -> Kind {

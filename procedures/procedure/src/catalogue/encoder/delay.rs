@@ -28,8 +28,8 @@ impl Procedure for EncoderDelay {
 
     fn summary(&self) -> &'static str {
         "Turns at several speeds in both directions. The slope of the encoder difference over speed is the delay. A \
-         second run with the filter of the encoder switched on measures the delay of the filter, and at each speed how \
-         much it exceeds the data sheet."
+         second run with the filter of the encoder switched on measures the delay of the filter, and how much it exceeds \
+         the data sheet."
     }
 
     fn kind(&self) -> Kind {
