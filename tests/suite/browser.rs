@@ -40,7 +40,8 @@ fn an_engineer_walks_from_start_to_undo() {
     let mock = |name: &str, rest: &str| format!("[[bench]]\nname = \"{name}\"\n[bench.mock]\nseed = 2\n{rest}\n");
     let text = mock("mock", "joint = \"a\"\neffects = [\"load_linear\"]")
         + &mock("encoders", "joint = \"encoder_shaft\"")
-        + &mock("paced", "joint = \"a\"\npace = 5.0");
+        + &mock("paced", "joint = \"a\"\npace = 5.0")
+        + &mock("arm", "joint = \"puma\"");
     std::fs::write(&config, text).expect("the bench description is written");
     let daemon = Daemon::serve(&folder.path().join("data"), &config);
     let output = Command::new("node")

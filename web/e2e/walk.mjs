@@ -25,11 +25,12 @@ const FIT_MS = 60_000;
 const BUNDLE_BYTES = 160_000;
 /** The link is where a stopped autopilot left it. A slow brake run stays within its range. */
 const SLOW = { speed_rad_s: 0.5 };
-/** Short runs with different kinds of results. The last two need an encoder bench. */
+/** Short runs with different kinds of results. The last three need a robot arm and an encoder bench. */
 const RESULTS = {
 	stiffness: { parameters: { load_levels: 4 }, title: /Torsion over torque/i },
 	compensation: { parameters: {}, title: /Errors relative to no compensation/i },
 	brake_hysteresis: { parameters: { levels: 5, loops: 1, random_turns: 4, dwell_s: 0.8, ...SLOW }, title: /Minor loops/i },
+	puma_friction: { parameters: {}, title: /Shunt voltage over speed/i },
 	encoder_alignment: { parameters: { halvings: 2, map_positions: 3 }, title: /Usable range/i },
 	encoder_linearity: { parameters: { turns: 2 }, title: /Error over the turn/i },
 };

@@ -28,6 +28,8 @@ it('sets what was found for several ways side by side, and nothing else', () => 
 	const both = configurationTable([...directions('τ_c', 'Coulomb friction'), ...directions('c_v', 'Viscous friction')]);
 	expect(both?.configurations).toEqual(['positive direction', 'negative direction']);
 	expect(both?.rows.map(({ symbol, title }) => [symbol, title])).toEqual([['τ_c', 'Coulomb friction'], ['c_v', 'Viscous friction']]);
+	const inVoltsAndNm = configurationTable([...directions('τ_s', 'Breakaway friction'), ...directions('τ_s', 'Breakaway friction (motor)')]);
+	expect(new Set(inVoltsAndNm?.rows.map(({ key }) => key)).size).toBe(2);
 	expect(configurationTable([{ ...found[0]!, name: 'delay', symbol: 't_d', configuration: undefined }, ...found])).toEqual(table);
 });
 

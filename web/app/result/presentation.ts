@@ -61,7 +61,8 @@ export function formatResult(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci
 /** Results for several directions, methods or speeds. */
 export interface ResultTable {
 	configurations: string[];
-	rows: { symbol: string; title: string; of: IdentifiedQuantity[] }[];
+	/** Two quantities may share a symbol, such as τ_s in volts and newton metres. */
+	rows: { key: string; symbol: string; title: string; of: IdentifiedQuantity[] }[];
 }
 
 /** `τ_c` of `τ_c⁺` and `τ_c⁻`. */
@@ -74,10 +75,10 @@ export function configurationTable(quantities: readonly IdentifiedQuantity[]): R
 		const key = `${withoutDirection(one.symbol)} ${one.base_title ?? one.title}`;
 		byTitle.set(key, [...(byTitle.get(key) ?? []), one]);
 	}
-	const groups = [...byTitle.values()];
-	const configurations = (groups.toSorted((a, b) => b.length - a.length)[0] ?? []).flatMap(({ configuration }) => configuration ?? []);
+	const groups = [...byTitle];
+	const configurations = (groups.toSorted(([, a], [, b]) => b.length - a.length)[0]?.[1] ?? []).flatMap(({ configuration }) => configuration ?? []);
 	const hasEach = (of: IdentifiedQuantity[]) => of.length === configurations.length && of.every((one, i) => one.configuration === configurations[i]);
-	const rows = groups.filter(hasEach).map((of) => ({ symbol: withoutDirection(of[0]!.symbol), title: of[0]!.base_title ?? of[0]!.title, of }));
+	const rows = groups.filter(([, of]) => hasEach(of)).map(([key, of]) => ({ key, symbol: withoutDirection(of[0]!.symbol), title: of[0]!.base_title ?? of[0]!.title, of }));
 	return configurations.length > 1 && rows.length > 1 ? { configurations, rows } : null;
 }
 
