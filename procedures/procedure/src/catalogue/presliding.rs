@@ -15,6 +15,8 @@ use crate::plan::{Drive, EndCondition, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
 
+mod dahl;
+mod damping;
 mod identify;
 mod loops;
 
@@ -98,7 +100,12 @@ impl Procedure for Presliding {
     }
 
     fn finds(&self) -> Vec<Findable> {
-        findable(&[("Nm/rad", "sigma_0 element_#_stiffness"), ("Nm", "tau_c bias element_#_slip"), ("rad", "reach")])
+        findable(&[
+            ("Nm/rad", "sigma_0 element_#_stiffness"),
+            ("Nm", "tau_c bias element_#_slip"),
+            ("rad", "reach"),
+            ("Nm·s/rad", "sigma_1 sigma_1_most"),
+        ])
     }
 
     fn follow_up(&self, found: &Identification) -> Option<FollowUp> {

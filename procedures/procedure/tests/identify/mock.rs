@@ -226,6 +226,9 @@ fn presliding_finds_the_stiffness_of_the_contacts_from_a_few_counts() {
         let [low, high] = slip.ci95.unwrap();
         assert!(low < slip.value && slip.value < high && high - low < 0.1 * slip.value, "{n}: {low} … {high}");
     }
+    // Twice 0.4 √(σ₀J) with the inertia of the rotor: 0.7 ms, less than a control period of 4 ms.
+    let damping = found.quantity("sigma_1_most").unwrap_or_else(|| panic!("{}", found.summary)).value;
+    assert!((0.0107..1.0).contains(&damping) && found.quantity("sigma_1").is_none(), "{}", found.summary);
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Dahl parameters by least squares of the motor displacement, and the derived parameters of LuGre and Maxwell slip.
 
+use super::dahl::{Dahl, top_nm};
+use super::damping::Damping;
 use super::loops::{Swings, dahl, swings};
 use crate::findings::{Unusable, curve, jackknife95, quantity, scatter, solve};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
@@ -14,34 +16,6 @@ const ELEMENTS: usize = 4;
 const POLYGON_END: f64 = 0.98;
 /// Largest relative half width of the interval of an identified parameter.
 const WIDEST: f64 = 0.25;
-
-/// Compliance [rad/Nm], Coulomb torque (Nm) and a constant bias torque (Nm).
-#[derive(Debug, Clone, Copy)]
-struct Dahl {
-    compliance: f64,
-    coulomb_nm: f64,
-    bias_nm: f64,
-}
-
-impl Dahl {
-    fn stiffness(self) -> f64 {
-        1.0 / self.compliance
-    }
-
-    /// τ_c/k: the displacement at which a linear spring would reach the Coulomb torque.
-    fn reach_rad(self) -> f64 {
-        self.compliance * self.coulomb_nm
-    }
-
-    fn shifted(self, by: [f64; 3], share: f64, top_nm: f64) -> Self {
-        Self {
-            compliance: (self.compliance + share * by[0]).max(0.1 * self.compliance),
-            // Contacts that carried the largest amplitude have at least that Coulomb torque.
-            coulomb_nm: (self.coulomb_nm + share * by[1]).max(1.001 * (top_nm + self.bias_nm.abs())),
-            bias_nm: (self.bias_nm + share * by[2]).clamp(-0.2 * top_nm, 0.2 * top_nm),
-        }
-    }
-}
 
 pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
     let torque_constant = run.meta().torque_constant_nm_per_a.unwrap_or(1.0);
@@ -79,14 +53,18 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
         quantity(["reach", "τ_c/σ₀", "Presliding displacement", "rad"], dahl.reach_rad(), reach),
         quantity(["bias", "τ₀", "Torque offset", "Nm"], dahl.bias_nm, bias),
     ];
+    let rate_hz = run.meta().sample_rate_hz.unwrap_or(250.0);
+    let damping = k.and_then(|k| Damping::of(&held, dahl, k, rate_hz));
+    quantities.extend(damping.iter().flat_map(Damping::quantities));
     quantities.extend(elements(dahl, &interval));
     Ok(Identification {
         verdict: if decided { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Presliding stiffness {} (motor side). Sliding starts at {}, after a displacement of {} ({points} points).",
+            "Presliding stiffness {} (motor side). Sliding starts at {}, after a displacement of {} ({points} points).{}",
             words::figure(dahl.stiffness(), "Nm/rad"),
             words::figure(dahl.coulomb_nm, "Nm"),
             words::figure(dahl.reach_rad(), "rad"),
+            damping.as_ref().map(Damping::words).unwrap_or_default(),
         ),
         advice: (!decided).then(|| {
             let top_nm = words::figure(values.number("top_torque_nm"), "Nm");
@@ -134,7 +112,7 @@ fn spread(jackknife: &[Dahl], figure: &dyn Fn(Dahl) -> f64) -> Option<f64> {
 
 /// Gauss–Newton with halved steps; the zero of each step is subtracted.
 fn fit(all: &[&Swings]) -> Option<Dahl> {
-    let top_nm = all.iter().flat_map(|s| &s.torque_nm).fold(0.0, |top: f64, nm| top.max(nm.abs()));
+    let top_nm = top_nm(all);
     let ways: f64 = all.iter().filter_map(|s| width(s)).fold(0.0, f64::max);
     if top_nm == 0.0 || ways == 0.0 {
         return None;
@@ -142,7 +120,7 @@ fn fit(all: &[&Swings]) -> Option<Dahl> {
     let mut at = Dahl { compliance: 0.2 * ways / top_nm, coulomb_nm: 1.1 * top_nm, bias_nm: 0.0 };
     let (mut left, mut error) = residuals(all, at);
     for _ in 0..ROUNDS {
-        let sizes = [at.compliance, at.coulomb_nm, top_nm].map(|size| 1e-5 * size);
+        let sizes = at.sizes(top_nm).map(|size| 1e-5 * size);
         let slopes = [0, 1, 2].map(|i| {
             let mut by = [0.0; 3];
             by[i] = sizes[i];
