@@ -7,6 +7,7 @@ mod brake_speed_independence;
 mod brake_torque;
 mod breakaway;
 mod compensation;
+mod constant_load;
 mod demagnetise;
 mod encoder;
 mod findable;
@@ -118,6 +119,7 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &brake_speed_independence::BrakeSpeedIndependence,
         &brake_hysteresis::BrakeHysteresis,
         &brake_torque::BrakeTorque,
+        &constant_load::ConstantLoad,
         &demagnetise::Demagnetise,
         &brake_poles::BrakePoles,
         &torque_sensor_zero::TorqueSensorZero,

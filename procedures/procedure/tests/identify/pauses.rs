@@ -1,5 +1,6 @@
 //! A run that is paused in a step of every kind, or killed and continued, gives the result of an uninterrupted one.
 
+use super::cut::cut_anywhere;
 use jointbench_devices::sim::Load;
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
@@ -14,10 +15,6 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{park, spawn};
-
-/// First rows after each of which a run is cut, and number of equal parts after each of which it is cut too.
-const FIRST: usize = 40;
-const PARTS: usize = 16;
 
 /// Steps, time after their start [s], and the control at that time. `None`: the process is killed.
 type Due = BTreeMap<usize, (f64, Option<Control>)>;
@@ -145,7 +142,20 @@ fn one_of_each_kind(plan: &Plan) -> Due {
 /// without compensation.
 const WARMTH: f64 = 0.02;
 
-/// The same figure of `compensation` without compensation; 0 for another quantity.
+/// The torque of a brake follows its temperature too.
+const BRAKE_WARMTH: f64 = 0.005;
+
+/// What the temperature changes: a share of the figure of `compensation` without compensation, and of the torque of
+/// `constant_load`. 0 for another quantity.
+fn warmth(found: &Identification, name: &str) -> f64 {
+    let demanded_nm = found.quantity("demanded").map(|demanded| demanded.value);
+    match (name.split('_').next(), demanded_nm) {
+        (Some("reached"), Some(demanded_nm)) => BRAKE_WARMTH * demanded_nm,
+        (Some("error"), Some(_)) => BRAKE_WARMTH,
+        _ => WARMTH * without_compensation(found, name),
+    }
+}
+
 fn without_compensation(found: &Identification, name: &str) -> f64 {
     let figure =
         ["rho_1_", "rho_2_", "rho_max_", "ratio_", "rms_", "shift_"].into_iter().find(|part| name.contains(part));
@@ -162,7 +172,7 @@ fn same(what: &str, found: &Identification, unbroken: &Identification) {
     for whole in &unbroken.quantities {
         let Some([low, high]) = whole.ci95 else { continue };
         let value = found.quantity(&whole.name).unwrap_or_else(|| panic!("{what}: no {}", whole.name)).value;
-        let margin = 0.5 * (high - low) + WARMTH * without_compensation(unbroken, &whole.name);
+        let margin = 0.5 * (high - low) + warmth(unbroken, &whole.name);
         let holds = (low - margin..=high + margin).contains(&value);
         assert!(holds, "{what}, {}: {value:e} beyond {low:e} … {high:e}", whole.name);
     }
@@ -224,38 +234,6 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
     same(&format!("{id}, gone on with"), &procedure.identify(&values, &whole).unwrap(), &unbroken);
 }
 
-/// A run may be aborted at any moment: its result contains finite numbers only, as the API requires.
-fn cut_anywhere(procedure: &dyn Procedure, values: &Values, whole: &RunTable) {
-    let rows = whole.column("time_s").unwrap().len();
-    for kept in (1..FIRST).chain((1..PARTS).map(|part| part * rows / PARTS)) {
-        let columns =
-            whole.trace().channels().iter().map(|c| whole.column(&c.name).unwrap()[..kept].to_vec()).collect();
-        let trace = Trace::from_columns(whole.trace().channels().to_vec(), columns);
-        let Ok(table) = RunTable::new(whole.meta().clone(), trace) else { continue };
-        let Some(found) = procedure.identify(values, &table) else { continue };
-        let mut places = Vec::new();
-        nulls("", &serde_json::to_value(&found).unwrap(), &mut places);
-        assert!(
-            places.is_empty(),
-            "{}, cut after {kept} of {rows} rows: {places:?}: {}",
-            procedure.id(),
-            found.summary
-        );
-    }
-}
-
-/// Places of numbers that are not finite, which JSON writes as null.
-fn nulls(place: &str, json: &Value, places: &mut Vec<String>) {
-    match json {
-        Value::Null if !place.ends_with("/advice") && !place.ends_with("/ci95") => places.push(place.to_owned()),
-        Value::Array(items) => items.iter().for_each(|item| nulls(&format!("{place}/_"), item, places)),
-        Value::Object(fields) => {
-            fields.iter().for_each(|(name, field)| nulls(&format!("{place}/{name}"), field, places))
-        }
-        _ => {}
-    }
-}
-
 fn measured_brake(bench: &mut Bench) -> BrakeModel {
     let given = json!({"levels": 6, "loops": 1, "random_turns": 4, "dwell_s": 0.8, "speed_rad_s": 3.0});
     let hysteresis = procedure("brake_hysteresis").unwrap();
@@ -298,6 +276,7 @@ fn a_brake_is_the_same_brake() {
         ("brake_speed_independence", json!({"currents": 2, "speeds": 3, "dwell_s": 0.6})),
         ("brake_hysteresis", json!({"levels": 5, "loops": 2, "random_turns": 6, "dwell_s": 0.8, "speed_rad_s": 3.0})),
         ("brake_torque", json!({"histories": 2, "torques": 8, "speed_rad_s": 3.0})),
+        ("constant_load", json!({"torque_nm": 6.0, "levels": 4, "speeds": 2, "repeats": 2, "top_speed_rad_s": 3.0})),
         ("demagnetise", json!({"turns": 1.0, "speed_rad_s": 3.0, "sample_rate_hz": 100.0})),
         ("brake_poles", json!({"repeats": 2, "speed_rad_s": 1.5, "demagnetise_speed_rad_s": 3.0})),
         ("torque_sensor_zero", json!({"duration_s": 45.0, "loads": 2, "speed_rad_s": 1.0, "dwell_s": 1.2})),
