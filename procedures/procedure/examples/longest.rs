@@ -118,6 +118,7 @@ fn facts() -> BenchFacts {
         amperes_per_volt: None,
         setpoint_interval: None,
         brake_model: None,
+        compared_brake: None,
         feeds_forward: true,
     }
 }

@@ -1,6 +1,6 @@
 //! Facts about a bench that a procedure may use before anything moves.
 
-use crate::brake_model::BrakeModel;
+use crate::brake_model::{BrakeModel, ComparedBrake};
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{PositionCounter, SetpointInterval};
 use jointbench_instrument::{Bench, Limits};
@@ -35,6 +35,9 @@ pub struct BenchFacts {
     /// The brake model of an earlier run, if a procedure needs it ([`crate::Procedure::brake_model`]).
     #[serde(skip)]
     pub brake_model: Option<BrakeModel>,
+    /// The brake of another run, if a procedure compares with it ([`crate::Procedure::compared_brake`]).
+    #[serde(skip)]
+    pub compared_brake: Option<ComparedBrake>,
     /// Whether the joint's drive accepts a motor current in addition to a velocity.
     pub feeds_forward: bool,
 }
@@ -57,6 +60,7 @@ impl BenchFacts {
             amperes_per_volt: bench.joint.amperes_per_volt(),
             setpoint_interval: bench.joint.setpoint_interval(),
             brake_model: None,
+            compared_brake: None,
             feeds_forward: bench.joint.feeds_forward(),
         }
     }

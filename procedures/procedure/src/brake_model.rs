@@ -13,6 +13,17 @@ pub struct BrakeModel {
     drag_nm: f64,
 }
 
+/// Another brake, with which a run compares its own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ComparedBrake {
+    /// Its torque at the output (Nm).
+    pub model: BrakeModel,
+    /// RMS error of the model on histories from which it is not built (Nm).
+    pub error_nm: f64,
+    /// Turns of the brake for each turn of the link.
+    pub gear_ratio: f64,
+}
+
 /// The turning points of a current that are not erased: highest, lowest, next highest and so on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CurrentHistory {
@@ -70,6 +81,11 @@ impl BrakeModel {
     /// Number of currents in the grid, including 0.
     pub fn currents(&self) -> usize {
         self.grid_a.len()
+    }
+
+    /// Torque without current (Nm).
+    pub fn drag_nm(&self) -> f64 {
+        self.drag_nm
     }
 
     /// Highest current of the model (A).

@@ -33,7 +33,7 @@ pub mod state;
 pub mod steady;
 
 pub use bench_facts::BenchFacts;
-pub use brake_model::BrakeModel;
+pub use brake_model::{BrakeModel, ComparedBrake};
 pub use catalogue::{Procedure, catalogue, procedure};
 pub use deferred_plan::DeferredPlan;
 pub use engine::{RunEnd, Secured, run, secure};

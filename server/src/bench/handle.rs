@@ -239,6 +239,7 @@ pub fn facts(description: &BenchDescription) -> BenchFacts {
         amperes_per_volt: has.amperes_per_volt,
         setpoint_interval: has.setpoint_interval,
         brake_model: None,
+        compared_brake: None,
         feeds_forward: has.feeds_forward,
     }
 }

@@ -86,6 +86,10 @@ pub enum Job {
     BrakeModel {
         run: i64,
     },
+    /// The same with the error of the model, for comparison with another brake.
+    ComparedBrake {
+        run: i64,
+    },
     /// The part of an unfinished run's measurement that its remaining steps need.
     Recall {
         run: i64,

@@ -8,9 +8,9 @@ use crate::job::Job;
 use crate::store::RunFilter;
 use crate::view::{self, Bench, BenchState, reread, safety_entry};
 use jointbench_instrument::zero::TORQUE_ZERO;
-use jointbench_procedure::catalogue::brake_model;
+use jointbench_procedure::catalogue::{brake_model, compared_brake};
 use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
-use jointbench_procedure::{BenchFacts, BrakeModel, Plan, PlanFault, Procedure, catalogue, procedure};
+use jointbench_procedure::{BenchFacts, BrakeModel, ComparedBrake, Plan, PlanFault, Procedure, catalogue, procedure};
 use serde_json::{Map, Value};
 use std::time::Duration;
 use tokio::time::timeout;
@@ -124,8 +124,15 @@ impl Lab {
         if let Some(run) = procedure.brake_model(&values) {
             (source, facts.brake_model) = self.brake_model(bench.name(), i64::from(run)).await?.unzip();
         }
+        let compared = procedure.compared_brake(&values).map(i64::from);
+        if let Some(run) = compared {
+            facts.compared_brake = Some(self.compared_brake(run).await?);
+        }
         let mut plan = procedure.plan(&choices, &facts)?;
         let mut add = |fact: &str, value: Value| plan.meta.other.insert(fact.to_owned(), value);
+        if let Some(run) = compared {
+            add("compared_brake_of_run", run.into());
+        }
         if let Some(run) = source {
             add("brake_model_of_run", run.into());
         }
@@ -176,6 +183,25 @@ impl Lab {
     pub(super) async fn brake_model_here(&self, run: i64) -> Answer<Option<BrakeModel>> {
         let table = self.measurement(run).await?;
         blocking(move || Ok(brake_model(&table))).await
+    }
+
+    /// The brake that a run of any bench has measured.
+    async fn compared_brake(&self, run: i64) -> Answer<ComparedBrake> {
+        let record = self.inner.store.run(run).await?;
+        if record.procedure != BRAKE_MODEL {
+            return Err(LabError::Invalid(format!(
+                "run {run} is not a {BRAKE_MODEL} run: enter such a run for compare_run, or 0 for no comparison"
+            )));
+        }
+        let brake: Option<ComparedBrake> = self.compute(Job::ComparedBrake { run }).await?;
+        brake.ok_or_else(|| {
+            LabError::Invalid(format!("run {run} ended before its model was identified: repeat {BRAKE_MODEL}"))
+        })
+    }
+
+    pub(super) async fn compared_brake_here(&self, run: i64) -> Answer<Option<ComparedBrake>> {
+        let table = self.measurement(run).await?;
+        blocking(move || Ok(compared_brake(&table))).await
     }
 
     pub(super) async fn wait_until_secured(&self) {

@@ -40,6 +40,7 @@ impl Lab {
             Job::Identify { run, step } => json(&self.identify_here(run, step).await?),
             Job::OverlayModel { run } => json(&self.model_overlay_here(run).await?),
             Job::BrakeModel { run } => json(&self.brake_model_here(run).await?),
+            Job::ComparedBrake { run } => json(&self.compared_brake_here(run).await?),
             Job::Recall { run, lesson } => self.recall_here(run, &lesson).await,
             Job::Statistics { run, channels, from_s, to_s } => {
                 json(&self.statistics_here(run, channels.as_deref(), from_s, to_s).await?)

@@ -96,3 +96,27 @@ fn a_zero_is_taken_off_the_next_runs_and_compensation_is_planned_with_the_fricti
     let fed = run(made(&daemon, "compensation", json!({"periods": 2})));
     assert_eq!((&fed["parameters"]["tau_c_nm"], &fed["meta"]["friction_of_run"]), (&0.03.into(), &Value::Null));
 }
+
+#[test]
+fn a_brake_is_compared_with_that_of_another_run() {
+    let daemon = TestDaemon::start();
+    let short = |compared: i64| json!({"levels": 5, "loops": 2, "random_turns": 4, "compare_run": compared});
+    let other = made(&daemon, "brake_hysteresis", short(0));
+    let run = made(&daemon, "brake_hysteresis", short(other));
+    let (_, stored) = daemon.get(&format!("/api/v1/runs/{run}"));
+    assert_eq!(stored["meta"]["compared_brake_of_run"], other);
+    let (_, found) = daemon.get(&format!("/api/v1/runs/{run}/identification"));
+    let difference = found["quantities"].as_array().unwrap().iter().find(|one| one["name"] == "difference_mean");
+    let ends = difference.unwrap()["ci95"].as_array().unwrap();
+    // The same brake twice.
+    assert!(ends[0].as_f64().unwrap() < 0.0 && ends[1].as_f64().unwrap() > 0.0, "{found}");
+    let summary = found["summary"].as_str().unwrap();
+    assert!(summary.contains(&format!("Difference from the brake of run {other}: mean ")), "{summary}");
+
+    let friction = daemon.post("/api/v1/runs", SHORT_RUN).1["id"].as_i64().unwrap();
+    daemon.wait_for_end(friction);
+    for (compared, status) in [(friction, 422), (7777, 404)] {
+        let asked = json!({"bench": BENCH, "procedure": "brake_hysteresis", "parameters": short(compared)});
+        assert_eq!(daemon.post("/api/v1/runs", &asked.to_string()).0, status, "{compared}");
+    }
+}

@@ -9,14 +9,18 @@
 //! between two currents. Every history is a sum of such falls and rises (Mayergoyz, *Mathematical Models of
 //! Hysteresis*, chapter 1). No function shape is assumed. The inverse gives the current for a torque after any
 //! history.
+//!
+//! With the run of another brake, the result contains the difference between both brakes: of the torque that the
+//! current adds, at the shaft of the brake.
 
+mod compare;
 mod identify;
 
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
 use crate::bench_facts::BenchFacts;
-use crate::brake_model::BrakeModel;
+use crate::brake_model::{BrakeModel, ComparedBrake};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -38,6 +42,12 @@ const SCHEMA: &[Parameter] = &[
     ACCELERATION,
     sample_rate(100.0),
     Parameter::count("order_seed", "Random seed (history)", 1, [0, 1_000_000]),
+    Parameter::count(
+        "compare_run",
+        "Run of brake_hysteresis of another brake to compare with (0: none)",
+        0,
+        [0, 2_000_000_000],
+    ),
 ];
 
 /// Purpose of a sweep, stored in the column `repeat`.
@@ -61,7 +71,7 @@ impl Procedure for BrakeHysteresis {
 
     fn summary(&self) -> &'static str {
         "Measures the major loop, minor loops and reversal curves of the brake. Identifies a hysteresis model and its \
-         inverse, which gives the current for a torque after any history."
+         inverse, which gives the current for a torque after any history. Optionally compares two brakes."
     }
 
     fn kind(&self) -> Kind {
@@ -76,6 +86,10 @@ impl Procedure for BrakeHysteresis {
         brake_run::check(bench)?;
         let rate_hz = values.number("sample_rate_hz");
         let top_a = values.number("top_current") * bench.constants.brake_rated_current_a;
+        let mut meta = brake_run::meta(bench, rate_hz);
+        if values.count("compare_run") > 0 {
+            compare::add_to(&mut meta, bench, top_a)?;
+        }
         let sweeps = sweeps(values, top_a);
         let dwell_s = values.number("dwell_s");
         let longest_s = sweeps.iter().map(|(_, _, currents)| (currents.len() + 2) as f64 * dwell_s).fold(0.0, f64::max);
@@ -95,13 +109,17 @@ impl Procedure for BrakeHysteresis {
         }
         legs.repeat = Part::Demagnetise as u32;
         legs.way_back(way_rad, speed_rad_s);
-        Ok(legs.plan(self, values, brake_run::meta(bench, rate_hz), rate_hz))
+        Ok(legs.plan(self, values, meta, rate_hz))
+    }
+
+    fn compared_brake(&self, values: &Values) -> Option<u32> {
+        Some(values.count("compare_run")).filter(|run| *run > 0)
     }
 
     fn finds(&self) -> Vec<Findable> {
         findable(&[
-            ("Nm", "torque_top width drag"),
-            ("", "model_currents error_max error_rms error_line"),
+            ("Nm", "torque_top width drag difference_mean difference_top"),
+            ("", "model_currents error_max error_rms error_line difference_max"),
             ("A", "current_error"),
         ])
     }
@@ -115,6 +133,13 @@ impl Procedure for BrakeHysteresis {
 pub fn brake_model(run: &RunTable) -> Option<BrakeModel> {
     run.column("brake_torque_nm")?;
     identify::model(run).ok()
+}
+
+/// The brake of a run of this procedure, for comparison with another one; `None` if the run ended too early.
+pub fn compared_brake(run: &RunTable) -> Option<ComparedBrake> {
+    run.column("brake_torque_nm")?;
+    let (model, error_nm) = identify::model_with_error(run)?;
+    Some(ComparedBrake { model, error_nm, gear_ratio: brake_run::load_gear_ratio(run) })
 }
 
 /// The currents of every sweep, each from 0 and back to 0.

@@ -240,6 +240,7 @@ pub(super) mod testing {
             amperes_per_volt: None,
             setpoint_interval: None,
             brake_model: None,
+            compared_brake: None,
             feeds_forward: true,
         }
     }

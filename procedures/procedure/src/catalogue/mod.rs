@@ -26,7 +26,7 @@ mod torque_sensor_zero;
 mod transmission_breakaway;
 mod warm_up;
 
-pub use brake_hysteresis::brake_model;
+pub use brake_hysteresis::{brake_model, compared_brake};
 pub use findable::Findable;
 use findable::findable;
 
@@ -87,6 +87,11 @@ pub trait Procedure: Sync {
 
     /// The run of `brake_hysteresis` whose model it needs, 0 for the last one of the bench. `None`: it needs none.
     fn brake_model(&self, _values: &Values) -> Option<u32> {
+        None
+    }
+
+    /// The run of `brake_hysteresis` of another brake, with which the result is compared. `None`: no comparison.
+    fn compared_brake(&self, _values: &Values) -> Option<u32> {
         None
     }
 

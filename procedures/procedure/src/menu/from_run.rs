@@ -53,6 +53,7 @@ impl BenchFacts {
             amperes_per_volt: None,
             setpoint_interval: None,
             brake_model: None,
+            compared_brake: None,
             feeds_forward: true,
         }
     }

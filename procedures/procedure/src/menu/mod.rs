@@ -133,9 +133,9 @@ fn stiffness(menu: &mut Menu) {
 
 /// The whole history of the current, or constant currents over speed.
 fn brake(menu: &mut Menu) {
-    // It has no repeats: it is evaluated together with the measured run.
+    // It has no repeats: it is evaluated together with the measured run. The menu knows no other brake.
     let seed = menu.next_seed();
-    menu.ordinary("brake_hysteresis", json!({"order_seed": seed}));
+    menu.ordinary("brake_hysteresis", json!({"order_seed": seed, "compare_run": 0}));
     let top_rad_s = (menu.top_rad_s() / menu.bench.constants.gear_ratio).min(1.5);
     menu.offer(
         "brake_speed_independence",

@@ -4,10 +4,10 @@ use super::benches;
 use super::evidence::{Evidence, PlannedRun};
 use crate::cli::exit::Exit;
 use jointbench_devices::MockBench;
-use jointbench_procedure::catalogue::brake_model;
+use jointbench_procedure::catalogue::{brake_model, compared_brake};
 use jointbench_procedure::in_memory_run::run_in_memory_with_facts;
 use jointbench_procedure::reproduce::ProcedureResult;
-use jointbench_procedure::{BenchFacts, Identification, procedure};
+use jointbench_procedure::{BenchFacts, ComparedBrake, Identification, procedure};
 
 /// A run with its result. `Err`: why it has none.
 pub struct Performed {
@@ -56,11 +56,11 @@ pub fn perform<'a>(
             named.push(bench);
         }
     }
-    let mut answered = Vec::new();
+    let (mut answered, mut compared) = (Vec::new(), None);
     for bench in named {
         let runs: Vec<&PlannedRun> = open.iter().copied().filter(|run| run.bench == bench).collect();
         println!("{bench}, seed {seed}: rows");
-        on_bench(bench, &runs, seed, performed, &mut answered)?;
+        on_bench(bench, &runs, seed, performed, &mut answered, &mut compared)?;
     }
     Ok(answered)
 }
@@ -71,6 +71,7 @@ fn on_bench(
     seed: u64,
     performed: &mut Vec<Performed>,
     answered: &mut Vec<Answered>,
+    compared: &mut Option<ComparedBrake>,
 ) -> Result<(), Exit> {
     let failed = |why: String| Exit::failed(format!("{name}: {why}"));
     let settings = benches::named(name, seed).ok_or_else(|| failed("no such bench".into()))?;
@@ -81,7 +82,8 @@ fn on_bench(
         answered.push(Answered { bench: name.to_owned(), role, driver, model: identity.model });
     }
     let mut bench = mock.open_bench("mock").map_err(|fault| failed(fault.to_string()))?;
-    let mut facts = BenchFacts::of(&bench);
+    // The last brake of an earlier bench: a comparison has to name a run, whose number does not exist here.
+    let mut facts = BenchFacts { compared_brake: compared.clone(), ..BenchFacts::of(&bench) };
     for run in runs {
         let procedure = procedure(&run.procedure).ok_or_else(|| failed(format!("no procedure {}", run.procedure)))?;
         let result = match run_in_memory_with_facts(&mut bench, &facts, procedure, &run.parameters) {
@@ -89,6 +91,7 @@ fn on_bench(
             Ok(done) => {
                 if procedure.id() == "brake_hysteresis" {
                     facts.brake_model = brake_model(&done.table);
+                    *compared = compared_brake(&done.table);
                 }
                 done.identification.ok_or_else(|| format!("{} only records samples", run.procedure))
             }

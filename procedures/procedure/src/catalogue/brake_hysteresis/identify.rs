@@ -1,7 +1,7 @@
 //! Identification of the model from a run of sweeps, validated on the random history.
 
 use super::super::brake_run::rated_nm;
-use super::Part;
+use super::{Part, compare};
 use crate::brake_model::{BrakeModel, CurrentHistory};
 use crate::findings::{Hold, Mean, Unusable, holds, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
@@ -13,15 +13,23 @@ pub(in super::super) const SETTLED: f64 = 0.35;
 pub(in super::super) const BOUND: f64 = 0.01;
 
 /// One measured sweep: currents and torques, from zero current to zero current.
-struct Sweep {
+pub(super) struct Sweep {
     part: i64,
-    points: Vec<(f64, f64)>,
+    pub points: Vec<(f64, f64)>,
 }
 
 const LITTLE: Unusable = Unusable::InsufficientData("The run ended before the last reversal curve.", "Repeat the run.");
 
 pub(super) fn model(run: &RunTable) -> Result<BrakeModel, Unusable> {
     model_of(&sweeps(run))
+}
+
+/// The model and its RMS error on the validation histories (Nm).
+pub(super) fn model_with_error(run: &RunTable) -> Option<(BrakeModel, f64)> {
+    let sweeps = sweeps(run);
+    let model = model_of(&sweeps).ok()?;
+    let (_, error_nm) = Validation::of(&sweeps, &model)?.errors(1.0);
+    Some((model, error_nm))
 }
 
 fn part(sweeps: &[Sweep], part: Part) -> impl Iterator<Item = &Sweep> {
@@ -48,7 +56,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let widths: Vec<f64> = major().filter_map(|sweep| width(sweep, middle)).collect();
     let full: Vec<f64> = major().filter_map(|s| s.points.iter().find(|p| p.0 == top).map(|p| p.1)).collect();
     let currents = model.currents() as f64;
-    let quantities = vec![
+    let mut quantities = vec![
         quantity(
             ["model_currents", "N", "Currents of the Preisach model (Everett form), including 0", ""],
             currents,
@@ -71,11 +79,18 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         ),
     ];
     let good = worst <= BOUND;
+    let mut figures = [loops(&sweeps, &model), vec![judgement(&validation.torques_nm)]].concat();
+    let mut words = String::new();
+    if let Some(compared) = compare::comparison(run, &major().collect::<Vec<_>>(), rated) {
+        quantities.extend(compared.quantities());
+        figures.extend(compared.figures());
+        words = compared.words();
+    }
     Ok(Identification {
         verdict: if good { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
             "Torque {:.2} Nm at {top:.3} A. Hysteresis at half of this current: {:.2} Nm (falling minus rising). Inverse of the \
-             Preisach model: maximum torque error {:.2} % of rated on a random history.",
+             Preisach model: maximum torque error {:.2} % of rated on a random history.{words}",
             mean(&full),
             mean(&widths),
             100.0 * worst
@@ -83,7 +98,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         advice: (!good)
             .then(|| "Increase levels or dwell_s. The model error must be below 1 % of the rated torque.".into()),
         quantities,
-        figures: [loops(&sweeps, &model), vec![judgement(&validation.torques_nm)]].concat(),
+        figures,
         ..Identification::default()
     })
 }
