@@ -107,15 +107,12 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
     }
     match runtime.block_on(crate::store::Store::open(data)) {
         Ok(store) => Ok(Target::Folder(Lab::of_store(store))),
-        Err(crate::store::StoreError::InUse { folder, process }) => {
+        Err(in_use @ crate::store::StoreError::InUse { process, .. }) => {
             // The folder probably belongs to the daemon at the default address; verify this.
             let client = Client::new(&place.reach)?;
             match client.get::<Health>("/health") {
                 Ok(health) if process == Some(health.process) => Ok(Target::Daemon(client)),
-                _ => {
-                    let in_use = crate::store::StoreError::InUse { folder, process };
-                    Err(Exit::bad_input(format!("{in_use}, or give the address of its daemon with --daemon")))
-                }
+                _ => Err(Exit::bad_input(format!("{in_use}, or give the address of its daemon with --daemon"))),
             }
         }
         Err(fault) => Err(LabError::from(fault).into()),

@@ -1,4 +1,4 @@
-//! Every cited work stands in `docs/references.md`.
+//! Every cited work has an entry in `docs/references.md`.
 
 use super::root;
 use super::sizes::sources;
@@ -11,7 +11,7 @@ fn words(text: &str) -> Vec<&str> {
 
 /// A year of publication, without the punctuation that follows it.
 fn year(word: &str) -> Option<&str> {
-    let digits = word.trim_end_matches(|c: char| !c.is_ascii_digit() && c != '-');
+    let digits = word.trim_start_matches('(').trim_end_matches(|c: char| !c.is_ascii_digit() && c != '-');
     let of_print = |year: u32| (1850..2100).contains(&year);
     (digits.len() == 4 && digits.parse().is_ok_and(of_print)).then_some(digits)
 }
@@ -22,8 +22,8 @@ fn cited(text: &str) -> Vec<(String, String)> {
     let mut cited = Vec::new();
     for (at, word) in words.iter().enumerate() {
         let Some(year) = year(word) else { continue };
-        let is_all = |other: &&&str| !["et", "al."].contains(*other);
-        let Some(author) = words[..at].iter().rev().find(is_all) else { continue };
+        let is_author = |other: &&&str| !["et", "al."].contains(*other);
+        let Some(author) = words[..at].iter().rev().find(is_author) else { continue };
         let author = author.trim_matches(|c: char| !c.is_alphanumeric());
         let is_name = author.chars().next().is_some_and(char::is_uppercase) && author.chars().count() > 2;
         if is_name && !author.chars().all(char::is_uppercase) {
@@ -62,7 +62,7 @@ fn prose(path: &str, text: &str) -> String {
 
 #[test]
 fn every_citation_has_a_reference() {
-    let Some(sources) = sources(&["*.rs", "*.ts", "docs/*.md", ":!docs/references.md"]) else { return };
+    let Some(sources) = sources(&["*.rs", "*.ts", "*.svelte", "*.py", "*.md", ":!docs/references.md"]) else { return };
     let known = references();
     assert!(known.contains(&("Ljung".to_owned(), "1999".to_owned())), "the list of references is read");
     let (mut missing, mut count) = (Vec::new(), 0);

@@ -7,6 +7,7 @@ use crate::report::diagnosis::Silent;
 use crate::report::reasons::{Invisible, InvisibleReason, LeftOut, RejectionReason};
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::model_selection::ModelSelection;
+use crate::selection::refused::Refused;
 use crate::selection::{hysteresis_stage, ramp_stage};
 use crate::stats::summary::rms;
 
@@ -36,8 +37,8 @@ impl ExcludedEffects {
             let tied = tied.map(|(named, _)| format!("{named} is in the model, and this run cannot distinguish them"));
             let tried = withdrawn.iter().find(|w| w.effect == id);
             let tried = tried.map(|w| (RejectionReason::Removed(w.why), w.why.words().to_owned()));
-            let refused = || selected.decided.iter().flat_map(|decided| &decided.refused).find(|r| r.effect == id);
-            let refused = || refused().map(|refused| (refused.reason(), refused.why()));
+            let mut refused = selected.decided.iter().flat_map(|decided| &decided.refused);
+            let refused = || refused.find(|one| one.effect == id).map(Refused::reason);
             let rejected = tried.or_else(refused).or_else(|| given(effect, end));
             let detection_limit = detection_limits.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
             match (rejected, detection_limit) {

@@ -378,6 +378,6 @@ fn rejected(found: &Findings, unit: &str) -> String {
         (!effects.is_empty()).then(|| format!(" Rejected: {} ({}).", list(&all_marked(&effects)), why.words()))
     });
     let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_confounded(r.effect));
-    let refused = refused.map(|refused| format!(" Rejected: {} ({}).", marked(refused.effect), refused.why()));
+    let refused = refused.map(|refused| format!(" Rejected: {} ({}).", marked(refused.effect), refused.reason().1));
     open.into_iter().chain(for_reason).chain(refused).collect()
 }

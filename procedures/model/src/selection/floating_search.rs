@@ -144,8 +144,8 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         self.remove(id, why)
     }
 
-    /// Whether one more exchange may be tried. Their number is limited.
-    pub fn may_exchange(&mut self) -> bool {
+    /// Takes one of the tries to exchange an effect; `false` if none is left.
+    pub fn take_exchange(&mut self) -> bool {
         let left = self.exchanges.checked_sub(1);
         self.exchanges = left.unwrap_or(0);
         left.is_some()

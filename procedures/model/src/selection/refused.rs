@@ -40,28 +40,23 @@ impl<'p> Refused<'p> {
         }
     }
 
-    pub fn reason(&self) -> RejectionReason {
-        match () {
-            () if self.p_value >= self.alpha => RejectionReason::NotSignificant,
-            () if self.errors <= ONE_ERROR => RejectionReason::FewBlocks,
-            () if self.gain <= self.least || !self.is_full => RejectionReason::FormError,
-            () => RejectionReason::ModelFull,
-        }
-    }
-
-    /// The error reduction of the effect, and why it is rejected.
-    pub fn why(&self) -> String {
-        let but = match self.reason() {
-            RejectionReason::NotSignificant => format!("which is not significant (p = {:.2})", self.p_value),
-            RejectionReason::FewBlocks => "but only in a few blocks".into(),
-            RejectionReason::FormError if self.gain <= self.least => format!(
-                "but form error of the model could explain the same; at least {} is required",
-                percent(self.least)
-            ),
-            RejectionReason::FormError => "but form error of the model explains as much".into(),
-            _ => "but the largest number of added effects is reached".into(),
+    /// Why it is rejected, and the same in words with the error reduction.
+    pub fn reason(&self) -> (RejectionReason, String) {
+        let (reason, but) = match () {
+            () if self.p_value >= self.alpha => {
+                (RejectionReason::NotSignificant, format!("which is not significant (p = {:.2})", self.p_value))
+            }
+            () if self.errors <= ONE_ERROR => (RejectionReason::FewBlocks, "but only in a few blocks".into()),
+            () if self.gain <= self.least => {
+                let required = percent(self.least);
+                let but =
+                    format!("but form error of the model could explain the same; at least {required} is required");
+                (RejectionReason::FormError, but)
+            }
+            () if !self.is_full => (RejectionReason::FormError, "but form error of the model explains as much".into()),
+            () => (RejectionReason::ModelFull, "but the largest number of added effects is reached".into()),
         };
-        format!("it would reduce the squared validation error by {}, {but}", percent(self.gain))
+        (reason, format!("it would reduce the squared validation error by {}, {but}", percent(self.gain)))
     }
 }
 

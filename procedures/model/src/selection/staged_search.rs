@@ -134,7 +134,7 @@ fn next_move<'p>(search: &mut FloatingSearch<'_, 'p>) -> Option<Move<'p>> {
         if let Some(made) = pruned(search, Point::NoCandidate) {
             return Some(made);
         }
-        if search.may_exchange()
+        if search.take_exchange()
             && let Some(made) = pruned(search, Point::Exchange)
         {
             return Some(made);

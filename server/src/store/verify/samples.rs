@@ -93,17 +93,25 @@ async fn span(database: &mut SqliteConnection, run: RunId, first_row: i64, chann
             let place = || format!("channel {channel}, first_row {first_row}");
             match column {
                 Ok(values) => columns.push((channel, values)),
-                Err(fault) => found.damaged.push(("blocks", what(&fault.at(place)))),
+                Err(fault) => found.damaged.push(("blocks", placed(fault, place))),
             }
         }
         found.whole = columns.len() as u64;
         let picture = span.map_err(StoreError::from).and_then(|span| picture(&span, &columns, &mut found));
         if let Err(fault) = picture {
-            found.damaged.push(("spans", what(&fault.at(|| format!("first_row {first_row}")))));
+            found.damaged.push(("spans", placed(fault, || format!("first_row {first_row}"))));
         }
         found
     });
     checked.await.map_err(|fault| StoreError::Database(fault.to_string()))
+}
+
+/// The fault with its place. A missing row is no damage to SQLite, and has no place either.
+fn placed(fault: StoreError, place: impl Fn() -> String) -> String {
+    match fault {
+        StoreError::Damaged(_) => what(&fault.at(place)),
+        other => format!("{}: {other}", place()),
+    }
 }
 
 fn check_seal(row: &SqliteRow, sealed: &Sealed, found: &mut Found) -> Result<(), StoreError> {

@@ -17,7 +17,7 @@ impl Covered {
         (self.ci95[0]..=self.ci95[1]).contains(&self.truth)
     }
 
-    /// Distance of the estimate from the truth, in half widths of the interval.
+    /// Distance of the middle of the interval from the truth, in its half widths.
     pub fn distance(&self) -> f64 {
         let [low, high] = self.ci95;
         (low + high - 2.0 * self.truth) / (high - low)

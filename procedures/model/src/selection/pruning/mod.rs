@@ -38,14 +38,14 @@ pub(crate) struct Rejected<'p> {
 }
 
 /// A rule that rejects at most one added effect.
-pub(crate) struct Rule {
-    pub reason: RemovalReason,
-    pub point: Point,
+struct Rule {
+    reason: RemovalReason,
+    point: Point,
     rejected: for<'p> fn(&Trial<'_, '_, 'p>) -> Option<Rejected<'p>>,
 }
 
 /// All rules, in the order in which they run.
-pub(crate) const RULES: [Rule; 9] = {
+const RULES: [Rule; 10] = {
     use Point::{EachMove, End, Exchange, NoCandidate, Structure};
     [
         rule(RemovalReason::Redundant, EachMove, |trial| alone(trial.search.redundant())),
@@ -59,6 +59,8 @@ pub(crate) const RULES: [Rule; 9] = {
             alone(partial_explanation::partially_explained(trial))
         }),
         rule(RemovalReason::Spurious, Structure, |trial| alone(spurious::spurious(trial))),
+        // A weak bump leaves no structure over an axis.
+        rule(RemovalReason::PartialExplanation, Structure, |trial| alone(partial_explanation::bump(trial.search))),
     ]
 };
 
@@ -119,7 +121,8 @@ mod tests {
         files.sort();
         assert!(RULES.is_sorted_by_key(|rule| rule.point), "the search passes its points in their order");
         let name = |rule: &super::Rule| serde_json::to_value(rule.reason).unwrap().as_str().unwrap().to_owned();
-        let rules: Vec<String> = RULES.iter().map(name).collect();
+        let mut rules: Vec<String> = RULES.iter().map(name).collect();
+        assert_eq!(rules.pop().as_deref(), Some("partial_explanation"), "runs a second time, for a weak bump");
         let mut sorted = rules.clone();
         sorted.sort();
         assert_eq!(sorted, files, "a rule is a file of selection/pruning");

@@ -84,10 +84,14 @@ impl<'a> BySpeed<'a> {
         let (name, title, expected_s) = match known {
             Some(known) => (
                 "missing_delay",
-                "Filter delay at this speed, beyond the data sheet",
+                "Filter delay at this speed without hysteresis, beyond the data sheet",
                 known.without_filter_s + known.filter_s,
             ),
-            None => ("delay_difference", "Delay at this speed, beyond the mean delay", self.solved.values[2]),
+            None => (
+                "delay_difference",
+                "Delay at this speed without hysteresis, beyond the mean delay",
+                self.solved.values[2],
+            ),
         };
         for (i, (speed, (beyond_s, reach_s))) in self.speeds.iter().zip(self.beyond(expected_s)).enumerate() {
             let of = |[name, symbol, title, unit]: [&str; 4], value: f64, reach: Option<f64>| {

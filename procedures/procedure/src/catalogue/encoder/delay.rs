@@ -113,9 +113,10 @@ impl Procedure for EncoderDelay {
             quantities.push(quantity(name, filter_s, Some(ends_s)));
             let [low, high] = by_speed.missing_range_s(known).map(|missing_s| 1e6 * missing_s);
             summary.push_str(&format!(
-                " The filter contributes {:.2} µs. It exceeds its data sheet by {low:.2} to {high:.2} µs, depending on \
-                 the speed.",
-                1e6 * filter_s
+                " The filter contributes {:.2} µs. Its delay minus that of the data sheet ({:.2} µs) is {low:.2} to \
+                 {high:.2} µs, depending on the speed.",
+                1e6 * filter_s,
+                1e6 * known.filter_s
             ));
         }
         let mut figures = vec![figure(&points, solved.values)];
