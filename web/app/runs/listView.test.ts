@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { RunSummary } from '../api/types';
-import { nextSort, readListView, readBase, readHidden, readQuantities, readSavedViews, runsTable, sortOrder, toggleBase, toggleColumn, toggleQuantity, toggleSavedView, listViewText, writeListView } from './listView';
+import { nextSort, readListView, readBase, readHidden, readQuantities, readSavedViews, readSort, runsTable, sortOrder, toggleBase, toggleColumn, toggleQuantity, toggleSavedView, listViewText, writeListView } from './listView';
 
 function storage() {
 	const kept = new Map<string, string>();
@@ -35,10 +35,20 @@ it('keeps views and forgets them again', () => {
 	const view = writeListView('rows>1000', '-error', 180, ['bench', 'safe'], ['c_v', 'k']);
 	toggleSavedView(view, kept);
 	expect(readSavedViews(kept)).toEqual([old, view]);
-	expect(readSavedViews(kept).map(listViewText)).toEqual(['tag:oil -state:failed', 'rows>1000 · by error, largest first · against #180 · with c_v, k · without bench, safe']);
+	expect(readSavedViews(kept).map((one) => listViewText(one, new Map([['c_v', 'Viscous friction']])))).toEqual(['tag:oil -state:failed', 'rows>1000 · by error, largest first · against #180 · with Viscous friction, k · without bench, safe']);
 	expect(readListView(view)).toEqual({ search: 'rows>1000', sort: '-error', base: '180', hide: 'bench,safe', columns: 'c_v,k' });
 	toggleSavedView(old!, kept);
 	expect(readSavedViews(kept)).toEqual([view]);
+});
+
+it('reads views of earlier versions as the same view of this version', () => {
+	const kept = storage();
+	const now = writeListView('tag:oil', null, null, ['safe'], []);
+	kept.setItem('jointbench.runs.views', ['?search=tag:oil&base=none&hide=safe,Coulomb', '?search=tag:oil&sort=-coulomb&hide=safe,Coulomb', '?sort=-error&base=7&hide=none'].join('\n'));
+	expect(readSavedViews(kept)).toEqual([now, writeListView('', '-error', 7, [], ['tau_c'])]);
+	toggleSavedView(now, kept);
+	expect(readSavedViews(kept)).toEqual([writeListView('', '-error', 7, [], ['tau_c'])]);
+	expect(['-coulomb', 'duration', '-state', null].map(readSort)).toEqual([null, 'duration', '-state', null]);
 });
 
 it('orders by a column, the other way round, and no longer', () => {

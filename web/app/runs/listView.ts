@@ -1,5 +1,4 @@
 import type { IdentifiedQuantity, RunSummary, Table } from '../api/types';
-import { parameterSymbol } from '../format/symbol';
 import { withQuery } from '../state/route';
 
 /**
@@ -14,6 +13,8 @@ const QUANTITIES = 'jointbench.runs.quantities';
 const DEFAULT_QUANTITIES = 'tau_c';
 const VIEWS = 'jointbench.runs.views';
 const BASE = 'jointbench.runs.base';
+/** A view does not depend on what this browser stores. */
+const NOTHING_KEPT = { getItem: () => null };
 
 /** Hidden columns: from the address, or from this browser; `none` hides nothing. */
 export function readHidden(address: string | null, kept: Pick<Storage, 'getItem'>): Column[] {
@@ -59,6 +60,10 @@ export function toggleBase(base: number | null, id: number, kept: Pick<Storage, 
 const SORTS: Partial<Record<Column | 'state', string>> = { state: 'state', procedure: 'procedure', bench: 'bench', started: 'started', duration: '-duration', rows: '-rows', safe: 'safe', error: '-error' };
 const reversed = (sort: string) => (sort.startsWith('-') ? sort.slice(1) : `-${sort}`);
 
+/** The order of an address; `null` for a column without a head, such as `-coulomb` of earlier versions. */
+export const readSort = (address: string | null): string | null =>
+	address !== null && Object.values(SORTS).some((own) => address === own || address === reversed(own)) ? address : null;
+
 /** Present sort order of a column; `null` if it cannot be sorted. */
 export function sortOrder(sort: string | null, column: Column | 'state'): 'ascending' | 'descending' | 'none' | null {
 	const own = SORTS[column];
@@ -79,26 +84,32 @@ export const writeListView = (search: string, sort: string | null, base: number 
 /** All settings of a view's address, for the router. */
 export function readListView(view: string): Record<string, string | null> {
 	const query = new URLSearchParams(view);
-	return Object.fromEntries(['search', 'sort', 'base', 'hide', 'columns'].map((key) => [key, query.get(key)]));
+	return { ...Object.fromEntries(['search', 'base', 'hide', 'columns'].map((key) => [key, query.get(key)])), sort: readSort(query.get('sort')) };
 }
 
-/** A view in words. */
-export function listViewText(view: string): string {
+/** A view in words, with the known titles of quantities. */
+export function listViewText(view: string, titles: ReadonlyMap<string, string>): string {
 	const { search, sort, base, hide, columns } = readListView(view);
-	const quantities = readQuantities(columns ?? null, { getItem: () => null });
-	const hidden = readHidden(hide ?? 'none', { getItem: () => null });
+	const quantities = readQuantities(columns ?? null, NOTHING_KEPT);
+	const hidden = readHidden(hide ?? 'none', NOTHING_KEPT);
 	return [
 		search || 'all runs',
 		...(sort ? [`by ${sort.replace('-', '')}${sort.startsWith('-') ? ', largest first' : ''}`] : []),
 		...(base && base !== 'none' ? [`against #${base}`] : []),
-		...(quantities.length > 0 && quantities.join() !== DEFAULT_QUANTITIES ? [`with ${quantities.map(parameterSymbol).join(', ')}`] : []),
+		...(quantities.length > 0 && quantities.join() !== DEFAULT_QUANTITIES ? [`with ${quantities.map((name) => titles.get(name) ?? name).join(', ')}`] : []),
 		...(hidden.length > 0 ? [`without ${hidden.join(', ')}`] : []),
 	].join(' · ');
 }
 
-/** Saved views, in the order of saving. Earlier versions saved only the search. */
-export const readSavedViews = (kept: Pick<Storage, 'getItem'>): string[] =>
-	(kept.getItem(VIEWS) ?? '').split('\n').filter(Boolean).map((line) => (line.startsWith('?') ? line : writeListView(line, null, null, [], [DEFAULT_QUANTITIES])));
+/** A saved line as this version writes it: earlier versions saved only the search, or had a column `Coulomb`. */
+function savedView(line: string): string {
+	const { search, sort, base, hide, columns } = line.startsWith('?') ? readListView(line) : { search: line };
+	const quantities = columns ?? (hide?.split(',').includes('Coulomb') ? 'none' : DEFAULT_QUANTITIES);
+	return writeListView(search ?? '', sort ?? null, readBase(base ?? 'none', NOTHING_KEPT), readHidden(hide ?? 'none', NOTHING_KEPT), readQuantities(quantities, NOTHING_KEPT));
+}
+
+/** Saved views, in the order of saving. */
+export const readSavedViews = (kept: Pick<Storage, 'getItem'>): string[] => [...new Set((kept.getItem(VIEWS) ?? '').split('\n').filter(Boolean).map(savedView))];
 
 export function toggleSavedView(view: string, kept: Pick<Storage, 'getItem' | 'setItem'>): void {
 	const views = readSavedViews(kept);

@@ -25,6 +25,15 @@ it('offers every quantity, the most frequent first', () => {
 	expect(trendFigure(mixed, 'tau_c', 'run', same)!.x.names).toEqual(['#4', '#6']);
 });
 
+it('keeps a quantity together whose title contains a measured speed', () => {
+	const delay = (speed: number) => ({ ...quantity('delay_1', speed / 1e4), title: `Delay, +${speed} rad/s`, base_title: 'Delay', configuration: `+${speed} rad/s` });
+	const measured = { ...trends, runs: [52.3, 52.4].map((speed, i) => run(i + 1, i, { quantities: [delay(speed)] })) } as unknown as Trends;
+	const quantities = measured.runs.map((one) => one.quantities);
+	expect(trendQuantities(quantities).map(({ title, base_title, n }) => [title, base_title, n])).toEqual([['Delay (delay_1)', 'Delay', 2]]);
+	expect(trendQuantities(quantities.slice(1)).map(({ title }) => title)).toEqual(['Delay, +52.4 rad/s']);
+	expect(trendFigure(measured, 'delay_1', 'run', same)!.x.names).toEqual(['#1', '#2']);
+});
+
 it('lays a quantity over runs with its intervals, each bench by itself', () => {
 	const figure = trendFigure(trends, 'tau_c', 'run', same)!;
 	expect(figure.x.names).toEqual(['#3', '#4', '#6']);

@@ -13,18 +13,29 @@ const NAMED = 30;
 export interface TrendQuantity {
 	name: string;
 	title: string;
+	/** Title without the configuration, which can contain a measured speed. */
+	base_title: string;
 	symbol: string;
 	unit: string;
 	/** Number of runs with this quantity. */
 	n: number;
 }
 
-/** Every quantity of at least one run, the most frequent first. Runs may use one name for two quantities: the title is that of most runs. */
+/** Title of a quantity without its configuration: equal in all runs, also where a title contains a measured speed. */
+export const baseTitle = ({ base_title, title }: Pick<IdentifiedQuantity, 'base_title' | 'title'>): string => base_title ?? title;
+
+/**
+ * Every quantity of at least one run, the most frequent first. Runs may use one name for two quantities: the title is
+ * that of most runs. If the configuration differs between runs, the name replaces it.
+ */
 export function trendQuantities(results: readonly (readonly IdentifiedQuantity[])[]): TrendQuantity[] {
 	const found = new Map<string, TrendQuantity>();
-	for (const { name, title, symbol, unit } of results.flat()) {
-		const key = `${name} ${title}`;
-		found.set(key, { name, title, symbol, unit, n: (found.get(key)?.n ?? 0) + 1 });
+	for (const { name, title: own, symbol, unit, ...more } of results.flat()) {
+		const base_title = baseTitle({ title: own, ...more });
+		const key = `${name} ${base_title}`;
+		const former = found.get(key);
+		const title = former && former.title !== own ? `${base_title} (${name})` : own;
+		found.set(key, { name, title, base_title, symbol, unit, n: (former?.n ?? 0) + 1 });
 	}
 	const ranked = [...found.values()].sort((a, b) => b.n - a.n);
 	return ranked.filter((one, i) => ranked.findIndex(({ name }) => name === one.name) === i);
@@ -63,7 +74,7 @@ function trendPositions(axis: TrendAxis, runs: readonly TrendRun[]): TrendPositi
 export function trendFigure({ runs: all }: Trends, quantity: string, axis: TrendAxis, scale: (unit: string) => Scale): Figure | null {
 	const shown = trendQuantities(all.map(({ quantities }) => quantities)).find(({ name }) => name === quantity);
 	if (!shown) return null;
-	const quantityOf = ({ quantities }: TrendRun) => quantities.find(({ name, title }) => name === quantity && title === shown.title);
+	const quantityOf = ({ quantities }: TrendRun) => quantities.find((one) => one.name === quantity && baseTitle(one) === shown.base_title);
 	const runs = all.filter(quantityOf);
 	const { at, ...x } = trendPositions(axis, runs);
 	const { factor, unit } = scale(shown.unit);
