@@ -1,5 +1,5 @@
 import type { CampaignPart, Identification, IdentifiedQuantity, LimitCheck } from '../api/types';
-import { type Scale, formatInterval, formatEstimate, formatNumber, scaleFor } from '../format/number';
+import { type Scale, formatInterval, formatEstimate, formatNumber, prefixSize, scaleFor } from '../format/number';
 import type { StatusLabel } from '../ui/states';
 
 const VERDICTS: Record<Identification['verdict'], StatusLabel> = {
@@ -46,7 +46,7 @@ export function formatResult(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci
 		const scale = scaleFor(unit, value);
 		return { value: unit === '' && Number.isInteger(value) ? String(value) : formatEstimate(value * scale.factor, []), interval: '', unit: scale.unit };
 	}
-	const scale = scaleFor(unit, Math.max(Math.abs(value), Math.abs(low), Math.abs(high)));
+	const scale = scaleFor(unit, prefixSize(value, [low, high]));
 	const scaled = [low * scale.factor, high * scale.factor] as const;
 	const [below, above] = [value - low, high - value];
 	const isSymmetric = Math.abs(above - below) <= 0.02 * (above + below);
