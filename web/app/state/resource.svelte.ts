@@ -25,6 +25,7 @@ export function resource<K, T>(key: () => K | null, load: (key: K, signal: Abort
 		const wanted = key();
 		if (wanted === null) {
 			data = undefined;
+			error = null;
 			loading = false;
 			return;
 		}
