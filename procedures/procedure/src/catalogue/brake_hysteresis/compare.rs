@@ -5,7 +5,6 @@
 //! other brake. The model of the other brake predicts its torque after the same history of currents.
 
 use super::super::brake_run::load_gear_ratio;
-use super::identify::Sweep;
 use crate::bench_facts::BenchFacts;
 use crate::brake_model::{ComparedBrake, CurrentHistory};
 use crate::findings::{Mean, bounded, quantity, t95};
@@ -67,11 +66,11 @@ pub struct Comparison {
     other_run: Option<i64>,
 }
 
-/// `None` if the run names no other brake.
-pub fn comparison(run: &RunTable, major: &[&Sweep], rated_nm: f64) -> Option<Comparison> {
+/// From the currents and torques of each major loop. `None` if the run names no other brake.
+pub fn comparison(run: &RunTable, major: &[&[(f64, f64)]], rated_nm: f64) -> Option<Comparison> {
     let other: ComparedBrake = serde_json::from_value(run.meta().other.get(OTHER)?.clone()).ok()?;
     let ratio = load_gear_ratio(run);
-    let loops: Vec<Vec<Point>> = major.iter().filter_map(|sweep| points(sweep, &other, ratio)).collect();
+    let loops: Vec<Vec<Point>> = major.iter().filter_map(|measured| points(measured, &other, ratio)).collect();
     let count = loops.first()?.len();
     let loops: Vec<Vec<Point>> = loops.into_iter().filter(|points| points.len() == count).collect();
     let n = loops.len() as f64;
@@ -100,8 +99,8 @@ pub fn comparison(run: &RunTable, major: &[&Sweep], rated_nm: f64) -> Option<Com
 }
 
 /// The points of one loop with current. Its end without current gives the drag.
-fn points(sweep: &Sweep, other: &ComparedBrake, ratio: f64) -> Option<Vec<Point>> {
-    let (loaded, [(_, drag_nm)]) = sweep.points.split_at(sweep.points.len().checked_sub(1)?) else { return None };
+fn points(measured: &[(f64, f64)], other: &ComparedBrake, ratio: f64) -> Option<Vec<Point>> {
+    let (loaded, [(_, drag_nm)]) = measured.split_at(measured.len().checked_sub(1)?) else { return None };
     let (mut history, mut before_a) = (CurrentHistory::default(), 0.0);
     let mut points = Vec::new();
     for (current_a, torque_nm) in loaded.iter().filter(|(current_a, _)| *current_a > 0.0) {

@@ -13,9 +13,9 @@ pub(in super::super) const SETTLED: f64 = 0.35;
 pub(in super::super) const BOUND: f64 = 0.01;
 
 /// One measured sweep: currents and torques, from zero current to zero current.
-pub(super) struct Sweep {
+struct Sweep {
     part: i64,
-    pub points: Vec<(f64, f64)>,
+    points: Vec<(f64, f64)>,
 }
 
 const LITTLE: Unusable = Unusable::InsufficientData("The run ended before the last reversal curve.", "Repeat the run.");
@@ -81,7 +81,8 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let good = worst <= BOUND;
     let mut figures = [loops(&sweeps, &model), vec![judgement(&validation.torques_nm)]].concat();
     let mut words = String::new();
-    if let Some(compared) = compare::comparison(run, &major().collect::<Vec<_>>(), rated) {
+    if let Some(compared) = compare::comparison(run, &major().map(|sweep| &sweep.points[..]).collect::<Vec<_>>(), rated)
+    {
         quantities.extend(compared.quantities());
         figures.extend(compared.figures());
         words = compared.words();
