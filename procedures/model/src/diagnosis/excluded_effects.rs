@@ -117,14 +117,16 @@ fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> (InvisibleReason, Stri
                         trajectory without steps";
     let prepared = end.prepared;
     let not_excited = |why: String| (InvisibleReason::NotExcited, why);
-    let (view, otherwise): (_, fn(&dyn Effect) -> (InvisibleReason, String)) =
-        match (end.is_apart(effect), effect.regime()) {
-            (true, Regime::Hysteresis) => match &prepared.memory {
-                Some(problem) => (&problem.view, alike),
-                None => return not_excited("the run has no slow reversals".into()),
-            },
-            (true, _) => (&prepared.main.view, |_| (InvisibleReason::RampsOnly, RAMP.into())),
-            _ => (&prepared.main.view, alike),
-        };
-    effect.hidden(view).map_or_else(|| otherwise(effect), not_excited)
+    let view = match (end.is_apart(effect), effect.regime()) {
+        (true, Regime::Hysteresis) => match &prepared.memory {
+            Some(problem) => &problem.view,
+            None => return not_excited("the run has no slow reversals".into()),
+        },
+        (true, _) => {
+            let why = effect.hidden(&prepared.main.view);
+            return why.map_or_else(|| (InvisibleReason::RampsOnly, RAMP.into()), not_excited);
+        }
+        _ => &prepared.main.view,
+    };
+    effect.hidden(view).map_or_else(|| alike(effect), not_excited)
 }

@@ -81,7 +81,7 @@ mod tests {
     fn an_effect_whose_size_may_be_zero_is_unidentified() {
         let removed = |offset: f64| {
             let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| offset + 5.0 * row.direction + row.scatter);
-            tiny.removed(&["direction_offset"], |search| super::unidentified(search))
+            tiny.removed(&["direction_offset"], super::unidentified)
         };
         assert_eq!(removed(0.0).as_deref(), Some("direction_offset"));
         assert_eq!(removed(2.0), None);
