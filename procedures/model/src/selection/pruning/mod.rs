@@ -48,19 +48,19 @@ struct Rule {
 const RULES: [Rule; 10] = {
     use Point::{EachMove, End, Exchange, NoCandidate, Structure};
     [
-        rule(RemovalReason::Redundant, EachMove, |trial| alone(trial.search.redundant())),
-        rule(RemovalReason::Infeasible, NoCandidate, |trial| alone(trial.search.infeasible(&trial.search.now))),
-        rule(RemovalReason::MutuallyCancelling, NoCandidate, |trial| alone(trial.search.mutually_cancelling())),
-        rule(RemovalReason::Insignificant, NoCandidate, |trial| alone(trial.search.insignificant())),
+        rule(RemovalReason::Redundant, EachMove, |trial| plain(trial.search.redundant())),
+        rule(RemovalReason::Infeasible, NoCandidate, |trial| plain(trial.search.infeasible(&trial.search.now))),
+        rule(RemovalReason::MutuallyCancelling, NoCandidate, |trial| plain(trial.search.mutually_cancelling())),
+        rule(RemovalReason::Insignificant, NoCandidate, |trial| plain(trial.search.insignificant())),
         rule(RemovalReason::Swapped, Exchange, |trial| trial.search.swapped()),
-        rule(RemovalReason::RandomWalk, End, |trial| alone(trial.search.follows_random_walk())),
-        rule(RemovalReason::Unidentified, End, |trial| alone(unidentified::unidentified(trial.search))),
+        rule(RemovalReason::RandomWalk, End, |trial| plain(trial.search.follows_random_walk())),
+        rule(RemovalReason::Unidentified, End, |trial| plain(unidentified::unidentified(trial.search))),
         rule(RemovalReason::PartialExplanation, Structure, |trial| {
-            alone(partial_explanation::partially_explained(trial))
+            plain(partial_explanation::partially_explained(trial))
         }),
-        rule(RemovalReason::Spurious, Structure, |trial| alone(spurious::spurious(trial))),
+        rule(RemovalReason::Spurious, Structure, |trial| plain(spurious::spurious(trial))),
         // A weak bump leaves no structure over an axis.
-        rule(RemovalReason::PartialExplanation, Structure, |trial| alone(partial_explanation::bump(trial.search))),
+        rule(RemovalReason::PartialExplanation, Structure, |trial| plain(partial_explanation::bump(trial.search))),
     ]
 };
 
@@ -72,7 +72,8 @@ const fn rule(
     Rule { reason, point, rejected }
 }
 
-fn alone(id: Option<&str>) -> Option<Rejected<'_>> {
+/// A rejection without a replacement.
+fn plain(id: Option<&str>) -> Option<Rejected<'_>> {
     id.map(|id| Rejected { id, replacement: None })
 }
 
