@@ -286,3 +286,57 @@ pub enum InvisibleReason {
     /// Its detection limit exceeds a share of the measured signal.
     DetectionLimit,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::RejectionReason as View;
+    use crate::view::reread;
+    use jointbench_model::{RejectionReason as Model, RemovalReason as Removal};
+
+    /// A new reason of the model does not compile here until the view has it too.
+    fn viewed(reason: Model) -> View {
+        match reason {
+            Model::Confounded => View::Confounded,
+            Model::NotSignificant => View::NotSignificant,
+            Model::FewBlocks => View::FewBlocks,
+            Model::FormError => View::FormError,
+            Model::ModelFull => View::ModelFull,
+            Model::NoReduction => View::NoReduction,
+            Model::Removed(Removal::Redundant) => View::Redundant,
+            Model::Removed(Removal::Infeasible) => View::Infeasible,
+            Model::Removed(Removal::MutuallyCancelling) => View::MutuallyCancelling,
+            Model::Removed(Removal::Insignificant) => View::Insignificant,
+            Model::Removed(Removal::Swapped) => View::Swapped,
+            Model::Removed(Removal::RandomWalk) => View::RandomWalk,
+            Model::Removed(Removal::Unidentified) => View::Unidentified,
+            Model::Removed(Removal::PartialExplanation) => View::PartialExplanation,
+            Model::Removed(Removal::Spurious) => View::Spurious,
+        }
+    }
+
+    #[test]
+    fn each_reason_of_the_model_is_one_of_the_view() {
+        let removals = [
+            Removal::Redundant,
+            Removal::Infeasible,
+            Removal::MutuallyCancelling,
+            Removal::Insignificant,
+            Removal::Swapped,
+            Removal::RandomWalk,
+            Removal::Unidentified,
+            Removal::PartialExplanation,
+            Removal::Spurious,
+        ];
+        let others = [
+            Model::Confounded,
+            Model::NotSignificant,
+            Model::FewBlocks,
+            Model::FormError,
+            Model::ModelFull,
+            Model::NoReduction,
+        ];
+        for reason in removals.map(Model::Removed).into_iter().chain(others) {
+            assert_eq!(reread::<_, View>(&reason).expect("a reason of the view"), viewed(reason));
+        }
+    }
+}
