@@ -35,6 +35,8 @@ pub struct Constants {
     pub is_held: bool,
     /// RMS quantization error of the response, if it stays within the same encoder counts, as for a clamped joint.
     pub rounding: f64,
+    /// Largest quantization error of the response: half a count of each of its encoders. Zero if unknown.
+    pub half_counts: f64,
 }
 
 /// The first sample of a recording, with the loading history before it.

@@ -238,11 +238,16 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
     {
         let [from_s, to_s] = Events::span_s(&found.start.prepared.main, event);
         // Without repeats no recurrence can be observed.
-        let recurs = if found.start.prepared.main.replicate_pairs.is_empty() { "" } else { " and does not recur" };
+        let has_repeats = !found.start.prepared.main.replicate_pairs.is_empty();
+        let and = |recurs: &'static str| if has_repeats { recurs } else { "" };
         let which = match found.events.len() {
-            1 => format!("one interval of the run deviates far beyond the scatter of all others{recurs}:"),
+            1 => format!(
+                "one interval of the run deviates far beyond the scatter of all others{}:",
+                and(" and does not recur")
+            ),
             count => format!(
-                "{count} intervals of the run deviate far beyond the scatter of all others{recurs}; the largest:"
+                "{count} intervals of the run deviate far beyond the scatter of all others{}; the largest:",
+                and(" and do not recur")
             ),
         };
         return format!(

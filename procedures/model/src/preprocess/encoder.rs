@@ -3,6 +3,7 @@
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::segments;
+use crate::preprocess::encoder_count::encoder_count;
 use crate::preprocess::{Prepared, filter, sample_s, sweeps};
 use crate::signal::{Signal, Signals, is_pose};
 use crate::stats::summary::peak;
@@ -57,7 +58,13 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         repeat: segments::integers(run, "repeat"),
         derived_velocity: measured.is_none(),
         time_s,
-        constants: Constants { pole_pairs: run.meta().pole_pairs, poles: run.meta().poles, ..Constants::default() },
+        constants: Constants {
+            pole_pairs: run.meta().pole_pairs,
+            poles: run.meta().poles,
+            half_counts: 0.5
+                * (encoder_count(column("reference_position_rad")) + encoder_count(column("test_position_rad"))),
+            ..Constants::default()
+        },
     };
     let poses = source.signals.unknown().filter(|s| matches!(s, Signal::Column(column) if is_pose(column)));
     let inputs: Vec<Same> = std::iter::once(Signal::Velocity).chain(poses).map(Same::Value).collect();

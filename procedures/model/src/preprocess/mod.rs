@@ -6,6 +6,7 @@ pub(crate) mod chunks;
 pub(crate) mod current_dwells;
 pub(crate) mod design;
 pub(crate) mod encoder;
+pub(crate) mod encoder_count;
 pub(crate) mod filter;
 pub(crate) mod form_error;
 pub(crate) mod friction;

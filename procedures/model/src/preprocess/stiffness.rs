@@ -4,6 +4,7 @@ use crate::linear::cholesky::Cholesky;
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::segments;
+use crate::preprocess::encoder_count::encoder_count;
 use crate::preprocess::held_side::moves_by_twist_only;
 use crate::preprocess::{Prepared, filter, sample_s, sweeps};
 use crate::signal::{Signal, Signals};
@@ -33,7 +34,10 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let mut signals = Signals::new(run.len());
     signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
     let is_held = moves_by_twist_only(&target, link);
-    let rounding = if is_held { rounding(column("motor_position_rad"), link, torque, gear) } else { 0.0 };
+    let count = |angle: &[f64]| if is_held { count_of_held(angle, torque) } else { encoder_count(angle) };
+    let counts = [count(column("motor_position_rad")) / gear, count(link)];
+    // Standard deviation of a uniform distribution over a count.
+    let rounding = if is_held { counts[0].hypot(counts[1]) / 12f64.sqrt() } else { 0.0 };
     if is_held {
         signals.set(Signal::Direction, segments::trend(torque));
     }
@@ -55,7 +59,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         repeat,
         derived_velocity,
         time_s,
-        constants: Constants { is_held, rounding, ..Constants::default() },
+        constants: Constants { is_held, rounding, half_counts: 0.5 * (counts[0] + counts[1]), ..Constants::default() },
     };
     let smooth = smooth(&source, torque);
     source.signals.set(Signal::Load, smooth);
@@ -75,14 +79,9 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     Ok(prepared)
 }
 
-/// Standard deviation of the twist due to the resolution of both encoders [rad].
-fn rounding(motor: &[f64], link: &[f64], torque: &[f64], gear: f64) -> f64 {
-    encoder_step(motor, torque).hypot(gear * encoder_step(link, torque)) / gear / 12f64.sqrt()
-}
-
-/// The count of an encoder [rad], a power of two in a turn: the readings are multiples of it, while the torque that
-/// moves the angle is continuous. Zero if no count is detected.
-fn encoder_step(angle: &[f64], torque: &[f64]) -> f64 {
+/// The count of an encoder that moves by a few counts [rad], a power of two in a turn: the readings are multiples of
+/// it, while the torque that moves the angle is continuous. Zero if no count is detected.
+fn count_of_held(angle: &[f64], torque: &[f64]) -> f64 {
     /// Resultant length of readings on multiples with a noise of a fifth of a count, and of arbitrary angles.
     const ON: f64 = 0.5;
     const ANYWHERE: f64 = 0.25;
@@ -249,10 +248,10 @@ mod tests {
         let noise = |i: usize| 0.1 * step * (12.9898 * i as f64).sin();
         let counted = |t: &f64| (3.2e-6 * t / step).round() * step;
         let read: Vec<f64> = torque.iter().enumerate().map(|(i, t)| counted(t) + noise(i)).collect();
-        let found = encoder_step(&read, &torque);
+        let found = count_of_held(&read, &torque);
         assert!((found / step - 1.0).abs() < 1e-9, "{found}");
         let smooth: Vec<f64> = torque.iter().enumerate().map(|(i, t)| 3.2e-6 * t + noise(i)).collect();
-        assert_eq!(encoder_step(&smooth, &torque), 0.0);
+        assert_eq!(count_of_held(&smooth, &torque), 0.0);
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //!
 //! No function of an axis predicts an event, and in the difference of two repeats it looks like noise. An event is a
 //! short section whose mean is an outlier of the scatter of all sections. The repeats of the same moment do not show
-//! it.
+//! it. A section whose mean is at most half a count of the encoders is none: while an encoder advances by nearly a
+//! multiple of its count from sample to sample, its quantization error is constant, and averages do not reduce it.
 
 use crate::effect::ShapeSearch;
 use crate::preprocess::Problem;
@@ -73,6 +74,7 @@ impl<'p> Events<'p> {
         let mut found = Vec::new();
         for _ in 0..MOST {
             let farthest = scales.iter().filter_map(|(length, scale)| self.farthest(*length, *scale));
+            let farthest = farthest.filter(|(.., mean)| mean.abs() > self.problem.view.constants.half_counts);
             let Some((z, rows, mean)) = farthest.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
             if z < EVENT_ERRORS {
                 break;
