@@ -110,7 +110,7 @@ fn acceptable<'p>(
             let sse = if possible { sse } else { *energy };
             (term, 1.0 - sse / energy)
         })
-        .filter(|(term, share)| *share >= least_share.max(aliasing::least_share(term)))
+        .filter(|(_, share)| *share >= least_share)
         .collect()
 }
 

@@ -10,20 +10,12 @@ use crate::preprocess::design::segments::stretches;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::{PartialRegression, products};
 use crate::signal::{Signal, Signals};
-use crate::thresholds::{
-    ALIAS_ERRORS, ALIAS_SHARE, COMPARABLE_SPEED, MANY_ORDERS, MEANS_FOLLOW_RAD, PERIODIC_SHARE, SAME_SPEED,
-};
+use crate::thresholds::{ALIAS_SHARE, CLEAR_ERRORS, COMPARABLE_SPEED, FOLLOWED_RAD, SAME_SPEED};
 use crate::view::View;
 use std::ops::Range;
 
 /// More sample rows than these add no information.
 const MOST_ROWS: usize = 4_000;
-
-/// Least partial R² of a periodic effect whose order was searched among many.
-pub fn least_share(term: &Term) -> f64 {
-    let sought = term.effect.wave().is_some() && term.form.grid.len() >= MANY_ORDERS as usize;
-    if sought { PERIODIC_SHARE } else { 0.0 }
-}
 
 /// Whether the wave is missing in data where it has to be present.
 pub fn is_none(term: &Term, now: &LinearModel, partial: &PartialRegression) -> bool {
@@ -84,7 +76,7 @@ impl Part {
         let is_fast = |rows: &Range<usize>| {
             let chunks = &view.chunks[rows.clone()];
             let way: f64 = chunks.iter().map(|c| (angle[c.end - 1] - angle[c.start]).abs()).sum();
-            order * way > MEANS_FOLLOW_RAD * chunks.len() as f64
+            order * way > FOLLOWED_RAD * chunks.len() as f64
         };
         let mut fast: Vec<usize> = (0..self.stretches.len()).filter(|k| is_fast(&self.stretches[*k])).collect();
         let (whole, part): (f64, f64) = (self.found.iter().sum(), fast.iter().map(|k| self.found[*k]).sum());
@@ -131,7 +123,7 @@ fn is_missing(found: &[f64], expected: &[f64]) -> bool {
     }
     let share = sum / all;
     let error = found.iter().zip(expected).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt() / all;
-    share < ALIAS_SHARE && 1.0 - share > ALIAS_ERRORS * error
+    share < ALIAS_SHARE && 1.0 - share > CLEAR_ERRORS * error
 }
 
 #[cfg(test)]
