@@ -253,6 +253,7 @@ impl Instruments {
             simulated,
             clock,
             limits,
+            torsion: None,
             constants,
             joint: self.joint?,
             torque_sensor: self.torque_sensor,

@@ -3,7 +3,7 @@
 use crate::roles::{
     AlignmentStage, CurrentSource, Instrument, JointController, PositionCounter, PowerSwitch, Thermometer, TorqueSensor,
 };
-use crate::{Clock, Fault, Limits};
+use crate::{Clock, Fault, Limits, TorsionLimit};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -44,6 +44,8 @@ pub struct Bench {
     pub clock: Arc<dyn Clock>,
     /// Values that no command and no sample may exceed.
     pub limits: Limits,
+    /// `None`: the torsion of the joint is not monitored.
+    pub torsion: Option<TorsionLimit>,
     /// Constants of the joint under test and its brake.
     pub constants: JointConstants,
     /// Drive of the joint, which also reads its encoders.

@@ -24,7 +24,7 @@ pub use bench::Bench;
 pub use clock::{Clock, SystemClock};
 pub use fault::{Fault, FaultKind};
 pub use join::JoinFault;
-pub use limits::{Breach, Limits};
+pub use limits::{Breach, Limits, TorsionLimit};
 pub use meta::{Kind, Meta, Motion};
 pub use table::{RunTable, TableFault};
 pub use trace::{Channel, Trace};

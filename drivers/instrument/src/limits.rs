@@ -85,6 +85,16 @@ pub struct Breach {
     pub limit: f64,
 }
 
+/// Largest deviation of the torsion of a joint from the torsion that its torque causes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TorsionLimit {
+    /// Torsion between both encoders of the joint for each Nm, as a `stiffness` run has measured it (k'⁻¹), link side.
+    pub compliance_rad_per_nm: f64,
+    /// Largest |deviation| of the measured torsion, link side.
+    pub tolerance_rad: f64,
+}
+
 impl fmt::Display for Breach {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (name, unit) = (self.quantity.name(), self.quantity.unit());

@@ -1,10 +1,13 @@
 //! The guard: it checks every command and every sample of the engine.
 
+mod torsion;
+
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::limits::Limited;
-use jointbench_instrument::{Breach, Limits};
+use jointbench_instrument::{Breach, Limits, TorsionLimit};
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
+use torsion::TorsionWatch;
 
 /// Ratio of trip to set limit for a measured current or speed, so that noise at the set limit does not trip: 0.62 A
 /// over 0.60 A (Magtrol 2025).
@@ -46,6 +49,22 @@ pub enum Refusal {
         /// Permitted rotation to either side of the encoder's zero.
         range_rad: f64,
     },
+    /// The torsion of the joint is not the one that its torque causes.
+    #[error(
+        "the torsion of the joint has changed by {:.3} mrad, but its torque by {torque_nm:.3} Nm, which causes {:.3} \
+         mrad; tolerance {:.3} mrad: check the coupling, the gear and both encoders of the joint",
+        1e3 * .torsion_rad, 1e3 * .expected_rad, 1e3 * .tolerance_rad
+    )]
+    Torsion {
+        /// Change of the torsion between both encoders since the start of the run, link side.
+        torsion_rad: f64,
+        /// Change that the torque causes by the compliance of the joint.
+        expected_rad: f64,
+        /// Change of the torque since the start of the run.
+        torque_nm: f64,
+        /// Largest permitted deviation.
+        tolerance_rad: f64,
+    },
 }
 
 /// Checked quantities of one tick. Unmeasured quantities are `None`.
@@ -59,6 +78,8 @@ pub struct Sample {
     pub motor_current_a: f64,
     /// Link position from its encoder, otherwise from that of the motor.
     pub link_position_rad: f64,
+    /// Torsion between motor and link, link side, if the link has an encoder.
+    pub torsion_rad: Option<f64>,
     /// Torque between joint and load.
     pub link_torque_nm: Option<f64>,
     /// Temperature of the joint.
@@ -72,6 +93,7 @@ pub struct Sample {
 pub struct Guard {
     limits: Limits,
     constants: JointConstants,
+    torsion: Option<TorsionWatch>,
     power: Power,
     link_speed_rad_s: f64,
     brake_a: f64,
@@ -81,9 +103,10 @@ pub struct Guard {
 
 impl Guard {
     /// A guard with these limits. The constants relate motor and link and bound the travel of the link.
-    pub fn new(limits: Limits, constants: JointConstants) -> Self {
+    pub fn new(limits: Limits, torsion: Option<TorsionLimit>, constants: JointConstants) -> Self {
         let power = Power { samples: VecDeque::new(), energy_j: 0.0, last_s: None };
-        Self { limits, constants, power, link_speed_rad_s: 0.0, brake_a: 0.0, magnetised_a: 0.0 }
+        let torsion = torsion.map(TorsionWatch::new);
+        Self { limits, constants, torsion, power, link_speed_rad_s: 0.0, brake_a: 0.0, magnetised_a: 0.0 }
     }
 
     /// Called before a velocity set-point is sent.
@@ -138,6 +161,11 @@ impl Guard {
             if !inside {
                 return Err(Refusal::BeyondRange { position_rad, range_rad });
             }
+        }
+        if let (Some(watch), Some(torsion_rad), Some(torque_nm)) =
+            (&mut self.torsion, sample.torsion_rad, sample.link_torque_nm)
+        {
+            watch.check(torsion_rad, torque_nm)?;
         }
         self.link_speed_rad_s = sample.motor_velocity_rad_s / self.constants.gear_ratio;
         if self.is_turning() {
@@ -211,13 +239,14 @@ mod tests {
         motor_velocity_rad_s: 0.0,
         motor_current_a: 0.0,
         link_position_rad: 0.0,
+        torsion_rad: Some(0.0),
         link_torque_nm: Some(0.0),
         temperature_c: Some(25.0),
         brake_current_a: Some(0.0),
     };
 
     fn guard() -> Guard {
-        Guard::new(LIMITS, CONSTANTS)
+        Guard::new(LIMITS, None, CONSTANTS)
     }
 
     fn turning(guard: &mut Guard, motor_velocity_rad_s: f64) {
@@ -282,7 +311,7 @@ mod tests {
     fn a_power_peak_trips_at_once() {
         let strong = Limits { link_torque_nm: 100.0, ..LIMITS };
         let peak = Sample { motor_velocity_rad_s: 190.0, link_torque_nm: Some(12.7), ..QUIET };
-        let refused = Guard::new(strong, CONSTANTS).check_sample(&peak).unwrap_err();
+        let refused = Guard::new(strong, None, CONSTANTS).check_sample(&peak).unwrap_err();
         assert!(matches!(refused, Refusal::Breach(Breach { quantity: Limited::BrakePower, .. })), "{refused}");
     }
 

@@ -25,8 +25,9 @@ pub fn open(description: &BenchDescription) -> Opened {
             let instruments = slots.asked.iter().map(|asked| described(description, asked)).collect();
             let (limits, constants) = (description.limits, description.constants);
             let bench = slots.into_bench(&description.name, description.is_simulated(), clock, limits, constants);
+            let torsion = description.torsion;
             let power = mock.as_ref().map(MockBench::power_switch);
-            Opened { instruments, bench: bench.map(|bench| Bench { power, ..bench }), mock }
+            Opened { instruments, bench: bench.map(|bench| Bench { power, torsion, ..bench }), mock }
         }
         Err(fault) => Opened { instruments: vec![unreached(description, fault)], bench: None, mock: None },
     }

@@ -1,7 +1,7 @@
 //! Checks raw values and converts them.
 
 use super::error::{Collector, ConfigErrors};
-use super::figures::{Sheet, check_reach};
+use super::figures::{Sheet, check_reach, check_torsion};
 use super::instruments::{calibrations, instruments, ninter};
 use super::notify::{check_dashboard, check_targets};
 use super::raw::{RawBench, RawFile, RawMock};
@@ -81,11 +81,13 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
     if let (Some(limits), Some(constants)) = (&limits, &constants) {
         check_reach(raw, limits, constants, wrong);
     }
+    let torsion = raw.torsion.as_ref().map(|given| check_torsion(given, source.as_ref(), wrong));
     let calibrated = calibrations(raw, wrong);
     Some(BenchDescription {
         name: name.clone(),
         source: source?,
         limits: limits?,
+        torsion: flip(torsion)?,
         constants: constants?,
         calibrated: calibrated?,
         record: None,

@@ -1,10 +1,11 @@
 //! Limits and constants: from the description, from a data sheet, or not needed by the bench.
 
+use super::Source;
 use super::error::Collector;
-use super::raw::{RawBench, RawConstants, RawLimits};
+use super::raw::{RawBench, RawConstants, RawLimits, RawTorsion};
 use super::values::{flip, positive};
-use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
+use jointbench_instrument::{Limits, TorsionLimit};
 use toml::Spanned;
 
 /// A source regulates around its set point, so a limit slightly above the rated current is valid.
@@ -140,4 +141,22 @@ pub fn check_reach(raw: &RawBench, limits: &Limits, constants: &JointConstants, 
             format!("limits.brake_current_a = {}: the brake is rated for {rated_a} A", limits.brake_current_a);
         wrong.add(place.span(), format!("{message}; reduce the limit to at most 110 % of the rating"));
     }
+}
+
+/// The monitor of the torsion needs the torque and both encoders of the joint.
+pub fn check_torsion(
+    given: &Spanned<RawTorsion>,
+    source: Option<&Source>,
+    wrong: &mut Collector,
+) -> Option<TorsionLimit> {
+    if source.is_some_and(|source| !source.measures_torsion()) {
+        let what =
+            "torsion: this bench has no torque sensor, or no link encoder (link_encoder = true): remove the table";
+        wrong.add(given.span(), what);
+        return None;
+    }
+    let RawTorsion { compliance_rad_per_nm, tolerance_rad } = given.get_ref();
+    let compliance = positive(compliance_rad_per_nm, "torsion.compliance_rad_per_nm", wrong);
+    let tolerance = positive(tolerance_rad, "torsion.tolerance_rad", wrong);
+    Some(TorsionLimit { compliance_rad_per_nm: compliance?, tolerance_rad: tolerance? })
 }

@@ -17,11 +17,11 @@ pub use secret::{Secret, read_secret};
 
 use jiff::civil::Date;
 use jointbench_devices::sim::{ENCODER_COUNTS, MockInstrument};
-use jointbench_devices::{InstrumentSettings, MockSettings, TorqueSensorSettings};
-use jointbench_instrument::Limits;
+use jointbench_devices::{InstrumentSettings, JointSettings, MockSettings, TorqueSensorSettings};
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::SetpointInterval;
 use jointbench_instrument::spelling::nearest;
+use jointbench_instrument::{Limits, TorsionLimit};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -50,6 +50,8 @@ pub struct BenchDescription {
     pub name: String,
     pub source: Source,
     pub limits: Limits,
+    /// Monitor of the joint's torsion, if it is switched on.
+    pub torsion: Option<TorsionLimit>,
     pub constants: JointConstants,
     /// Calibration dates of the instruments, by role.
     pub calibrated: Vec<(String, Date)>,
@@ -64,6 +66,19 @@ pub struct BenchDescription {
 pub enum Source {
     Mock(MockSettings),
     Hardware(Box<InstrumentSettings>),
+}
+
+impl Source {
+    /// Whether the bench measures the torque of the joint and the positions of motor and link.
+    pub fn measures_torsion(&self) -> bool {
+        match self {
+            Source::Mock(settings) => settings.has(MockInstrument::TorqueSensor),
+            Source::Hardware(settings) => {
+                let link_encoder = matches!(&settings.joint, JointSettings::Odrive(odrive) if odrive.link_encoder);
+                settings.torque_sensor.is_some() && link_encoder
+            }
+        }
+    }
 }
 
 /// Properties of a bench that determine which procedures it can run.
@@ -98,6 +113,7 @@ impl BenchDescription {
         Self {
             name: name.to_owned(),
             limits: settings.limits(),
+            torsion: None,
             constants: settings.constants(),
             source: Source::Mock(settings),
             calibrated: Vec::new(),

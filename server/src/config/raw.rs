@@ -47,6 +47,7 @@ pub struct RawBench {
     pub thermometer: Option<RawThermometer>,
     pub limits: Option<RawLimits>,
     pub constants: Option<RawConstants>,
+    pub torsion: Option<Spanned<RawTorsion>>,
 }
 
 impl RawBench {
@@ -178,4 +179,12 @@ pub struct RawConstants {
     pub brake_rated_torque_nm: Option<Spanned<f64>>,
     pub link_range_rad: Option<Spanned<f64>>,
     pub load_gear_ratio: Option<Spanned<f64>>,
+}
+
+/// Monitor of the torsion between both encoders of the joint.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawTorsion {
+    pub compliance_rad_per_nm: Spanned<f64>,
+    pub tolerance_rad: Spanned<f64>,
 }

@@ -292,3 +292,25 @@ fn mistakes_of_targets_are_named_at_their_lines() {
     let message = parse("bench.toml", hidden).unwrap_err().to_string();
     assert!(message.contains("line 1: write each target of notifications as a table [[notify]]"), "{message}");
 }
+
+#[test]
+fn torsion_is_monitored_where_it_is_measured() {
+    let parsed = |bench: &str, torsion: &str| {
+        parse("b.toml", &format!("[[bench]]\nname = \"b\"\n[bench.mock]\n{bench}\n[bench.torsion]\n{torsion}\n"))
+    };
+    let given = "compliance_rad_per_nm = 1.8e-4\ntolerance_rad = 2e-3";
+    let limit = parsed("joint = \"a\"", given).unwrap()[0].torsion.unwrap();
+    assert_eq!((limit.compliance_rad_per_nm, limit.tolerance_rad), (1.8e-4, 2e-3));
+    for (bench, torsion, expected) in [
+        ("joint = \"puma\"", given, "line 5: torsion: this bench has no torque sensor"),
+        (
+            "joint = \"a\"",
+            "compliance_rad_per_nm = 0.0\ntolerance_rad = 2e-3",
+            "line 6: torsion.compliance_rad_per_nm = 0",
+        ),
+        ("joint = \"a\"", "compliance_rad_per_nm = 1.8e-4", "missing field `tolerance_rad`"),
+    ] {
+        let message = parsed(bench, torsion).unwrap_err().to_string();
+        assert!(message.contains(expected), "{expected} in\n{message}");
+    }
+}

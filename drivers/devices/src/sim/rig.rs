@@ -166,6 +166,7 @@ impl Rig {
         let saturated = is(MockInstrument::TorqueSensor, Trouble::Saturated);
         let loose = is(MockInstrument::Brake, Trouble::CurrentLost);
         let hot = is(MockInstrument::Joint, Trouble::OverTemperature);
+        self.plant.coupling_slips(is(MockInstrument::Joint, Trouble::CouplingSlips));
         self.plant.sensor_shift_nm = if saturated { SENSOR_SHIFT_NM } else { 0.0 };
         self.plant.brake.contact_ohm = if loose { LOOSE_CONTACT_OHM } else { 0.0 };
         self.plant.thermistor_fault_k = if hot { THERMISTOR_FAULT_K } else { 0.0 };

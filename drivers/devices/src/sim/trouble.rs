@@ -38,6 +38,8 @@ pub enum Trouble {
     CurrentLost,
     /// The joint's thermistor shows a much too high temperature.
     OverTemperature,
+    /// The coupling between gear and link slips beyond a small torque. Its displacement remains.
+    CouplingSlips,
     /// The disk for records is full. Not for an instrument, but for [`MockInstrument::Disk`].
     DiskFull,
 }
@@ -50,7 +52,7 @@ impl Trouble {
             Trouble::StreamGap => instrument == I::TorqueSensor,
             Trouble::Saturated => matches!(instrument, I::TorqueSensor | I::Thermometer),
             Trouble::CurrentLost => instrument == I::Brake,
-            Trouble::OverTemperature => instrument == I::Joint,
+            Trouble::OverTemperature | Trouble::CouplingSlips => instrument == I::Joint,
             Trouble::DiskFull => instrument == I::Disk,
             _ => true,
         }

@@ -5,6 +5,7 @@ use super::session::{Session, reported};
 use crate::bench_facts::BenchFacts;
 use crate::columns::Columns;
 use crate::event::EventKind;
+use jointbench_instrument::TorsionLimit;
 use jointbench_instrument::roles::JointReading;
 use jointbench_instrument::units::{Amperes, RadPerSec, Volts};
 
@@ -53,6 +54,10 @@ impl Session<'_> {
         }
         if self.bench.torque_sensor.is_none() {
             self.note("No torque sensor: limits of link torque and brake power are not monitored.");
+        }
+        if let Some(TorsionLimit { compliance_rad_per_nm, tolerance_rad }) = self.bench.torsion {
+            let (compliance, tolerance) = (1e3 * compliance_rad_per_nm, 1e3 * tolerance_rad);
+            self.note(format!("Torsion is monitored: {compliance:.4} mrad/Nm, tolerance {tolerance:.3} mrad."));
         }
         self.period.next_s = self.bench.clock.now_s();
         Ok(())

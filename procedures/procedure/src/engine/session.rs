@@ -170,7 +170,7 @@ impl<'a> Session<'a> {
             plan,
             journal: Journal::new(run, now_s, recorder),
             controls,
-            guard: Guard::new(bench.limits, bench.constants),
+            guard: Guard::new(bench.limits, bench.torsion, bench.constants),
             remaining_time: RemainingTime::new(plan),
             warm: plan.steady.map(SteadyDetector::new),
             columns: None,

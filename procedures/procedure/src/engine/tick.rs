@@ -262,11 +262,13 @@ impl Session<'_> {
             let kind = FaultKind::Garbled { what: "a position that is not a number".into() };
             return Err(Ending::JointFault(kind.at(self.bench.joint.name(), self.bench.joint.port())));
         }
+        let gear_ratio = self.bench.constants.gear_ratio;
         let sample = Sample {
             at_s: now_s,
             motor_velocity_rad_s: joint.motor_velocity.0,
             motor_current_a: joint.motor_current.0,
-            link_position_rad: link_position_rad(joint, self.bench.constants.gear_ratio),
+            link_position_rad: link_position_rad(joint, gear_ratio),
+            torsion_rad: joint.link_position.map(|link| joint.motor_position.0 / gear_ratio - link.0),
             link_torque_nm: values.torque.map(|torque| torque.peak_nm),
             temperature_c: values.temperature_c,
             brake_current_a: values.brake.map(|brake| brake.measured_a),

@@ -122,6 +122,7 @@ impl Fakes {
                 brake_current_a: 0.6,
                 brake_power_w: 350.0,
             },
+            torsion: None,
             constants: JointConstants {
                 torque_constant_nm_per_a: 0.08,
                 gear_ratio: RATIO,

@@ -12,6 +12,8 @@ const STOP_NM_RAD: f64 = 3000.0;
 const LOST_OVER_RAD: f64 = 0.01;
 /// Initial stiffness of a soft gear, as a fraction of its full stiffness (assumed).
 const SOFT_SHARE: f64 = 0.6;
+/// Torque that a slipping coupling still transmits (assumed).
+const SLIPS_AT_NM: f64 = 2.0;
 
 pub struct Gear {
     ratio: f64,
@@ -28,6 +30,10 @@ pub struct Gear {
     seat_rad: f64,
     /// Creep of the gear under load.
     crept_rad: f64,
+    /// The coupling to the link slips.
+    pub slips: bool,
+    /// Displacement of the coupling.
+    slipped_rad: f64,
 }
 
 impl Gear {
@@ -44,6 +50,8 @@ impl Gear {
             hidden,
             seat_rad: 0.0,
             crept_rad: 0.0,
+            slips: false,
+            slipped_rad: 0.0,
         }
     }
 
@@ -55,6 +63,11 @@ impl Gear {
     pub fn advance(&mut self, motor_rad: f64, link_rad: f64, turned_rad: f64) {
         let end = if turned_rad < 0.0 { -1.0 } else { 1.0 };
         self.flank = end + (self.flank - end) * (-turned_rad.abs() / LOST_OVER_RAD).exp();
+        if self.slips {
+            let spring_nm = self.spring(self.twist_rad(motor_rad, link_rad));
+            let beyond_nm = spring_nm - spring_nm.clamp(-SLIPS_AT_NM, SLIPS_AT_NM);
+            self.slipped_rad += beyond_nm / self.stiffness_nm_rad;
+        }
         let twist_rad = self.twist_rad(motor_rad, link_rad);
         if let Some(contact) = self.hidden.contact {
             self.seat_rad = self.seat_rad.clamp(twist_rad - contact.bends_rad, twist_rad + contact.bends_rad);
@@ -76,7 +89,7 @@ impl Gear {
 
     fn twist_rad(&self, motor_rad: f64, link_rad: f64) -> f64 {
         let stands_rad = link_rad + self.hidden.pitch_rad(link_rad);
-        motor_rad / self.ratio - stands_rad - self.lost_rad * self.flank - self.crept_rad
+        motor_rad / self.ratio - stands_rad - self.lost_rad * self.flank - self.crept_rad - self.slipped_rad
     }
 
     fn spring(&self, twist_rad: f64) -> f64 {
@@ -138,6 +151,16 @@ mod tests {
         let at_once = twisted(&mut gear, 0.002, 0.0);
         let later = twisted(&mut gear, 0.002, 20.0 * truth("lag_s"));
         assert!((at_once / later - 1.0 - truth("of_twist")).abs() < 1e-3, "{at_once} {later}");
+    }
+
+    #[test]
+    fn a_slipping_coupling_keeps_its_torque_and_its_displacement() {
+        let mut gear = Gear::new(&Joint::JointB.into(), 0.01, HiddenGear::default());
+        gear.slips = true;
+        assert!((twisted(&mut gear, 0.05, 0.01) - SLIPS_AT_NM).abs() < 0.01);
+        gear.slips = false;
+        let displaced_nm = -twisted(&mut gear, 0.0, 0.0);
+        assert!(displaced_nm > 10.0, "{displaced_nm}");
     }
 
     #[test]

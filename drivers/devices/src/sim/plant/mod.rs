@@ -198,6 +198,11 @@ impl Plant {
         self.encoders.pose = encoders::Pose { shift_m, rotation_rad };
     }
 
+    /// Starts or ends the slip of the coupling between gear and link.
+    pub fn coupling_slips(&mut self, slips: bool) {
+        self.gear.slips = slips;
+    }
+
     pub fn filter_s2(&mut self, on: bool) {
         self.encoders.filtered = on;
     }
