@@ -28,7 +28,11 @@ const SUBJECTS: [(&str, Joint, Subject); 6] = [
     ("Joint A behind the gear and brake B", Joint::JointA, Subject::GearAndBrakeB { share: 0.35 }),
     ("Joint B", Joint::JointB, Subject::JointB),
     ("Encoder bench", Joint::EncoderShaft, Subject::Encoder),
-    ("Encoder bench, filter on", Joint::EncoderShaft, Subject::FilteredEncoder { delay_without_s: 0.0 }),
+    (
+        "Encoder bench, filter on",
+        Joint::EncoderShaft,
+        Subject::FilteredEncoder { delay_without_s: 0.0, half_difference_s: 0.0 },
+    ),
     ("Puma", Joint::Puma, Subject::Puma { axis: 2 }),
 ];
 const COLUMNS: &str =

@@ -23,6 +23,8 @@ pub enum Subject {
     FilteredEncoder {
         /// Delay of the same encoder without the filter.
         delay_without_s: f64,
+        /// Half the difference of this delay between the directions.
+        half_difference_s: f64,
     },
     /// An axis of the arm of document 000.
     Puma {
@@ -114,6 +116,34 @@ fn gear_and_brake_b(share: f64) -> Vec<Part> {
 const SHIFT_STEP: Requirement = Requirement::Within(4e-6);
 const ROTATION_STEP: Requirement = Requirement::Within(2e-4);
 
+/// Table 4.2: the mean of equation 4.5, and each speed.
+fn delay() -> Vec<Figure> {
+    let per_rpm = [
+        ("points_per_rpm_1", 0.2724),
+        ("points_per_rpm_2", 0.2735),
+        ("points_per_rpm_3", 0.2748),
+        ("points_per_rpm_4", 0.2902),
+        ("points_per_rpm_5", 0.2887),
+        ("points_per_rpm_6", 0.2869),
+    ];
+    let first = [("4.2", "delay", None, Some(Requirement::Within(1e-6))), ("4.2", "delay_mean", Some(64.34e-6), None)];
+    first.into_iter().chain(per_rpm.map(|(name, figure)| ("4.2", name, Some(figure), None))).collect()
+}
+
+/// Table 4.3: its mean, and the delay beyond the data sheet at each speed.
+fn filter_delay() -> Vec<Figure> {
+    let missing = [
+        ("missing_delay_1", 0.94e-6),
+        ("missing_delay_2", 1.11e-6),
+        ("missing_delay_3", 0.69e-6),
+        ("missing_delay_4", 1.34e-6),
+        ("missing_delay_5", 1.02e-6),
+        ("missing_delay_6", 0.84e-6),
+    ];
+    let first = [("4.3", "filter_delay", Some(10.99e-6), Some(Requirement::Within(1e-6)))];
+    first.into_iter().chain(missing.map(|(name, figure)| ("4.3", name, Some(figure), None))).collect()
+}
+
 fn encoder() -> Vec<Part> {
     let point_rad = TAU / f64::from(1 << 18);
     let degree = TAU / 360.0;
@@ -125,7 +155,7 @@ fn encoder() -> Vec<Part> {
             vec![("eq. 4.3", "offset", Some(1437.0 * point_rad), Some(Requirement::Within(point_rad)))],
         ),
         ("encoder_startup", json!({}), vec![("section 4.1", "startup_spread", None, None)]),
-        ("encoder_delay", json!({}), vec![("4.2", "delay", Some(64.34e-6), Some(Requirement::Within(1e-6)))]),
+        ("encoder_delay", json!({}), delay()),
         (
             "encoder_linearity",
             json!({}),
@@ -198,9 +228,15 @@ impl Subject {
 
     /// Takes the results of earlier subjects that this one needs.
     pub fn follow<'a>(&mut self, earlier: impl IntoIterator<Item = &'a ProcedureResult>) {
-        if let Subject::FilteredEncoder { delay_without_s } = self {
-            let delay = earlier.into_iter().find_map(|result| result.identification.quantity("delay"));
-            *delay_without_s = delay.map_or(0.0, |delay| delay.value);
+        if let Subject::FilteredEncoder { delay_without_s, half_difference_s } = self {
+            let found = earlier.into_iter().find(|result| result.procedure == "encoder_delay");
+            let value = |name| found.and_then(|found| Some(found.identification.quantity(name)?.value));
+            *delay_without_s = value("delay").unwrap_or(0.0);
+            // Within its interval of 0, the earlier run has one delay.
+            let half_difference = found.and_then(|found| found.identification.quantity("half_difference"));
+            let differs = |ends: [f64; 2]| ends[0] > 0.0 || ends[1] < 0.0;
+            *half_difference_s =
+                half_difference.filter(|one| one.ci95.is_some_and(differs)).map_or(0.0, |one| one.value);
         }
     }
 
@@ -224,10 +260,13 @@ impl Subject {
             ),
             Subject::GearAndBrakeB { share } => gear_and_brake_b(share),
             Subject::Encoder => encoder(),
-            Subject::FilteredEncoder { delay_without_s } => vec![(
+            Subject::FilteredEncoder { delay_without_s, half_difference_s } => vec![(
                 "encoder_delay",
-                json!({"delay_without_filter_s": delay_without_s}),
-                vec![("4.3", "filter_delay", Some(10.99e-6), Some(Requirement::Within(1e-6)))],
+                json!({
+                    "delay_without_filter_s": delay_without_s,
+                    "half_difference_without_filter_s": half_difference_s,
+                }),
+                filter_delay(),
             )],
             Subject::Puma { axis } => puma(axis),
         }

@@ -2,7 +2,7 @@
 //! stage.
 
 use super::hidden::HiddenEncoder;
-use super::{Noise, Signal};
+use super::{Noise, Signal, curve};
 use crate::sim::data_sheet::DataSheet;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -14,7 +14,16 @@ pub const S2_COUNTS: f64 = 262_144.0;
 /// Disparity over speed, 0.2811 points/rpm: 64.34 µs.
 const DELAY_S: f64 = 64.34e-6;
 /// The 27 dB filter adds 10 µs according to the data sheet, and 0.99 µs more (mean of the table).
-const FILTER_DELAY_S: f64 = 10.99e-6;
+const DATA_SHEET_FILTER_S: f64 = 10e-6;
+const FILTER_DELAY_S: f64 = DATA_SHEET_FILTER_S + 0.99e-6;
+/// Table 4.2: points for each rpm over the speed [rpm].
+const POINTS_PER_RPM: [(f64, f64); 6] =
+    [(-1483.0, 0.2724), (-992.0, 0.2735), (-499.0, 0.2748), (497.0, 0.2902), (990.0, 0.2887), (1478.0, 0.2869)];
+/// Table 4.3: delay of the filter beyond its data sheet over the speed [rpm].
+const MISSING_DELAY_S: [(f64, f64); 6] =
+    [(-1483.0, 0.94e-6), (-992.0, 1.11e-6), (-499.0, 0.69e-6), (497.0, 1.34e-6), (990.0, 1.02e-6), (1478.0, 0.84e-6)];
+/// Standard deviation of the moment of a reading, because interrupts of the speed control delay it: that of table 4.3.
+const READOUT_S: f64 = 0.225e-6;
 /// Shape error of about 250 points: once per turn by eccentricity, twice per turn by tilt (split assumed).
 const ECCENTRIC_POINTS: f64 = 190.0;
 const TILT_POINTS: f64 = 55.0;
@@ -24,7 +33,7 @@ const TILT_POINTS_PER_RAD: f64 = 55.0 / 8.7e-3;
 /// Error within a pole pair (assumed); the ring has 64 pole pairs (assumed).
 const POLE_POINTS: f64 = 12.0;
 const POLE_PAIRS: f64 = 64.0;
-/// Half the difference between both directions (assumed).
+/// Half the difference between both directions (assumed). On the bench of the documents, table 4.2 has the whole difference.
 const HYSTERESIS_POINTS: f64 = 6.0;
 /// Largest offset of the zero after power-up (assumed).
 const STARTUP_POINTS: f64 = 30.0;
@@ -81,6 +90,8 @@ pub struct EncoderTruth {
 pub struct Encoders {
     pub pose: Pose,
     pub filtered: bool,
+    /// Exactly the delays of tables 4.2 and 4.3, and their jitter.
+    is_exact: bool,
     noise: Noise,
     hidden: HiddenEncoder,
     mounting_points: f64,
@@ -98,6 +109,7 @@ impl Encoders {
         Self {
             pose: Pose::default(),
             filtered: false,
+            is_exact: sheet.is_exact,
             noise,
             hidden,
             mounting_points: sheet.mounting_points,
@@ -113,7 +125,7 @@ impl Encoders {
     pub fn advance(&mut self, angle_rad: f64) {
         self.travelled_rad += (angle_rad - self.angle_rad).abs();
         self.angle_rad = angle_rad;
-        let half_rad = HYSTERESIS_POINTS / S2_COUNTS * TAU;
+        let half_rad = self.hysteresis_points() / S2_COUNTS * TAU;
         self.drag_rad = self.drag_rad.clamp(angle_rad - half_rad, angle_rad + half_rad);
     }
 
@@ -126,9 +138,9 @@ impl Encoders {
         (angle_rad / TAU * S1_COUNTS).floor() as i64
     }
 
-    pub fn s2_counts(&self, velocity_rad_s: f64) -> i64 {
+    pub fn s2_counts(&self, velocity_rad_s: f64, step: u64) -> i64 {
         let slipped_rad = self.hidden.slipped_points(self.travelled_rad) / S2_COUNTS * TAU;
-        let angle_rad = self.drag_rad - self.delay_s() * velocity_rad_s + slipped_rad;
+        let angle_rad = self.drag_rad - self.delay_at(velocity_rad_s, step) * velocity_rad_s + slipped_rad;
         let points = S2_COUNTS * angle_rad / TAU;
         let error_points = self.shape_points(angle_rad) + self.hidden.error_points(angle_rad);
         (points + error_points + self.offset_points()).floor() as i64
@@ -138,6 +150,22 @@ impl Encoders {
         self.mounting_points + self.startup_points
     }
 
+    fn hysteresis_points(&self) -> f64 {
+        if self.is_exact { 0.0 } else { HYSTERESIS_POINTS }
+    }
+
+    /// Delay of one reading.
+    fn delay_at(&self, velocity_rad_s: f64, step: u64) -> f64 {
+        if !self.is_exact {
+            return self.delay_s();
+        }
+        let rpm = velocity_rad_s / TAU * 60.0;
+        let of = |table: &[(f64, f64); 6]| curve::at(table, rpm.clamp(table[0].0, table[5].0));
+        let filter_s = if self.filtered { DATA_SHEET_FILTER_S + of(&MISSING_DELAY_S) } else { 0.0 };
+        of(&POINTS_PER_RPM) * 60.0 / S2_COUNTS + filter_s + READOUT_S * self.noise.at(Signal::Readout, step)
+    }
+
+    /// Mean over the speeds.
     fn delay_s(&self) -> f64 {
         if self.filtered { DELAY_S + FILTER_DELAY_S } else { DELAY_S }
     }
@@ -157,7 +185,7 @@ impl Encoders {
             filter_delay_s: self.delay_s() - DELAY_S,
             offset_rad: rad(self.offset_points()),
             startup_spread_rad: rad(STARTUP_SPREAD * STARTUP_POINTS),
-            hysteresis_rad: rad(HYSTERESIS_POINTS),
+            hysteresis_rad: rad(self.hysteresis_points()),
             eccentricity_rad: rad(ECCENTRIC_POINTS),
             tilt_rad: rad(TILT_POINTS),
             pole_rad: rad(POLE_POINTS),
@@ -194,9 +222,46 @@ mod tests {
             let mut encoders = Encoders::new(&Joint::EncoderShaft.into(), Noise::new(5), hidden);
             encoders.advance(turns * TAU);
             encoders.advance(angle_rad);
-            encoders.s2_counts(0.0) as f64
+            encoders.s2_counts(0.0, 0) as f64
         };
         (counts(hidden.encoder) - counts(HiddenEncoder::default()), hidden.described().remove(0))
+    }
+
+    /// Mean difference in points at a speed, over the readings of a turn.
+    fn difference(encoders: &mut Encoders, rpm: f64) -> f64 {
+        let readings: u64 = 4000;
+        let sum: f64 = (0..readings)
+            .map(|step| {
+                let angle_rad = step as f64 / readings as f64 * TAU;
+                encoders.advance(angle_rad);
+                encoders.s2_counts(rpm / 60.0 * TAU, step) as f64 + 0.5 - angle_rad / TAU * S2_COUNTS
+            })
+            .sum();
+        sum / readings as f64 - encoders.offset_points()
+    }
+
+    #[test]
+    fn the_bench_of_the_documents_has_the_delays_of_its_tables() {
+        let mut encoders =
+            Encoders::new(&DataSheet::from(Joint::EncoderShaft).exact(), Noise::new(5), HiddenEncoder::default());
+        let without: Vec<f64> = POINTS_PER_RPM.iter().map(|(rpm, _)| difference(&mut encoders, *rpm)).collect();
+        encoders.filtered = true;
+        let with: Vec<f64> = POINTS_PER_RPM.iter().map(|(rpm, _)| difference(&mut encoders, *rpm)).collect();
+        // Disparity of table 4.2 and real shift of table 4.3, in rounded points.
+        let tables = [(404.0, 70.9), (271.0, 48.2), (137.0, 23.3), (-144.0, -24.6), (-285.0, -47.7), (-424.0, -70.0)];
+        for ((without, with), (disparity, shift)) in without.iter().zip(&with).zip(tables) {
+            assert!((without - disparity).abs() < 1.0, "{without} points for {disparity}");
+            assert!((with - without - shift).abs() < 0.4, "{} points for {shift}", with - without);
+        }
+    }
+
+    #[test]
+    fn other_benches_have_one_delay_without_jitter() {
+        let encoders = Encoders::new(&Joint::EncoderShaft.into(), Noise::new(5), HiddenEncoder::default());
+        for step in 0..20 {
+            assert_eq!(encoders.delay_at(100.0, step), DELAY_S);
+            assert_eq!(encoders.delay_at(-20.0, step), DELAY_S);
+        }
     }
 
     #[test]

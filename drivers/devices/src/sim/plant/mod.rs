@@ -186,7 +186,7 @@ impl Plant {
     }
 
     pub fn s2_counts(&self) -> i64 {
-        self.encoders.s2_counts(self.motor_velocity_rad_s)
+        self.encoders.s2_counts(self.motor_velocity_rad_s, self.step)
     }
 
     pub fn power_cycle_s2(&mut self) {

@@ -26,6 +26,7 @@ pub enum Signal {
     Stage,
     Multimeter,
     Stroke,
+    Readout,
 }
 
 #[derive(Debug, Clone, Copy)]

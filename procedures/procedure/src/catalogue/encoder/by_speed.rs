@@ -1,7 +1,7 @@
 //! Rows of tables 4.2 and 4.3 of the thesis: encoder difference, delay, and delay beyond the expected one at each speed.
 
 use super::quantities::quantity;
-use crate::findings::{Solved, t95};
+use crate::findings::{Solved, solve, t95};
 use crate::identification::{Axis, Figure, Form, Mark, Quantity, Series};
 use std::f64::consts::TAU;
 
@@ -16,8 +16,61 @@ pub type Point = (f64, f64);
 pub struct Known {
     /// The same encoder without its filter, from an equal run with the same uncertainty.
     pub without_filter_s: f64,
+    /// Half the difference of this delay between the directions.
+    pub half_difference_s: f64,
     /// The filter according to the data sheet.
     pub filter_s: f64,
+}
+
+impl Known {
+    fn without_s(&self, v: f64) -> f64 {
+        self.without_filter_s + self.half_difference_s * v.signum()
+    }
+
+    /// With the filter of the data sheet, in the positive and the negative direction.
+    fn expected_s(&self) -> [f64; 2] {
+        [1.0, -1.0].map(|v| self.without_s(v) + self.filter_s)
+    }
+}
+
+/// The straight line of each direction: offset, half the hysteresis against the motion, delay, and half the difference
+/// of the delay between the directions.
+#[derive(Debug, Clone, Copy)]
+pub struct Lines {
+    pub solved: Solved<4>,
+    /// Whether the difference is fitted. Otherwise it is 0.
+    pub differ: bool,
+    /// The difference and half its interval, fitted or not. `None`: too few sweeps.
+    pub difference: Option<[f64; 2]>,
+}
+
+impl Lines {
+    /// The delay depends on the direction only if the interval of the difference does not contain 0. `None`: too few
+    /// speeds.
+    pub fn of(points: &[Point]) -> Option<Self> {
+        let means: Vec<f64> = points.iter().map(|(_, mean)| *mean).collect();
+        let row = |v: f64| [1.0, -v.signum(), -v];
+        let equal: Solved<3> = solve(&points.iter().map(|(v, _)| row(*v)).collect::<Vec<_>>(), &means)?;
+        let rows: Vec<[f64; 4]> = points
+            .iter()
+            .map(|(v, _)| {
+                let [one, sign, speed] = row(*v);
+                [one, sign, speed, -v.abs()]
+            })
+            .collect();
+        let apart = solve(&rows, &means);
+        let difference = apart.map(|apart| [apart.values[3], apart.reach[3]]);
+        let padded = |[a, b, c]: [f64; 3]| [a, b, c, 0.0];
+        let equal = Solved { values: padded(equal.values), reach: padded(equal.reach) };
+        let differ = apart.filter(|apart| apart.values[3].abs() > apart.reach[3]);
+        Some(Self { solved: differ.unwrap_or(equal), differ: differ.is_some(), difference })
+    }
+
+    /// Encoder difference of the lines at a speed.
+    pub fn at(&self, v: f64) -> f64 {
+        let [offset_rad, hysteresis_rad, delay_s, half_difference_s] = self.solved.values;
+        offset_rad - hysteresis_rad * v.signum() - delay_s * v - half_difference_s * v.abs()
+    }
 }
 
 /// All sweeps of one set-point. The half widths of 95 % intervals come from the scatter around the straight line.
@@ -29,17 +82,18 @@ struct Speed {
     reach_rad: f64,
 }
 
-/// All set-points, with the straight line through them: offset, half the hysteresis, delay.
+/// All set-points, with the lines through them.
 pub struct BySpeed<'a> {
-    solved: &'a Solved<3>,
+    solved: &'a Solved<4>,
     speeds: Vec<Speed>,
 }
 
 impl<'a> BySpeed<'a> {
-    pub fn of(points: &[Point], solved: &'a Solved<3>) -> Self {
-        let [offset_rad, hysteresis_rad, delay_s] = solved.values;
-        let rest = |(v, mean): &Point| mean - (offset_rad - hysteresis_rad * v.signum() - delay_s * v);
-        let freedom = points.len() as f64 - 3.0;
+    pub fn of(points: &[Point], lines: &'a Lines) -> Self {
+        let solved = &lines.solved;
+        let offset_rad = solved.values[0];
+        let rest = |(v, mean): &Point| mean - lines.at(*v);
+        let freedom = points.len() as f64 - if lines.differ { 4.0 } else { 3.0 };
         let scatter_rad = (points.iter().map(|point| rest(point).powi(2)).sum::<f64>() / freedom).sqrt();
         let mut sorted = points.to_vec();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -58,23 +112,34 @@ impl<'a> BySpeed<'a> {
 
     /// Delay at a speed without the hysteresis, and the half width of its interval.
     fn delay(&self, speed: &Speed) -> [f64; 2] {
-        let [offset_reach, hysteresis_reach, _] = self.solved.reach;
+        let [offset_reach, hysteresis_reach, ..] = self.solved.reach;
         let moved_rad = speed.disparity_rad + self.solved.values[1] * speed.rad_s.signum();
         let reach_rad = speed.reach_rad.hypot(offset_reach).hypot(hysteresis_reach);
         [-moved_rad / speed.rad_s, reach_rad / speed.rad_s.abs()]
     }
 
-    /// Delay at each speed minus an expected one, whose interval is that of the straight line.
-    fn beyond(&self, expected_s: f64) -> impl Iterator<Item = (f64, f64)> {
+    /// Delay at each speed minus an expected one for the positive and the negative direction, whose interval is that of
+    /// the lines.
+    fn beyond(&self, expected_s: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
         self.speeds.iter().map(move |speed| {
             let [here_s, reach_s] = self.delay(speed);
-            (here_s - expected_s, reach_s.hypot(self.solved.reach[2]))
+            let expected_s = expected_s[usize::from(speed.rad_s < 0.0)];
+            (here_s - expected_s, reach_s.hypot(self.solved.reach[2]).hypot(self.solved.reach[3]))
         })
+    }
+
+    /// Mean of the delays of all speeds, and the half width of its interval (eq. 4.4).
+    pub fn mean_delay(&self) -> [f64; 2] {
+        let count = self.speeds.len() as f64;
+        let mean_s = self.speeds.iter().map(|speed| -speed.disparity_rad / speed.rad_s).sum::<f64>() / count;
+        let offset_s = self.solved.reach[0] * self.speeds.iter().map(|speed| 1.0 / speed.rad_s).sum::<f64>() / count;
+        let sweeps_s = self.speeds.iter().map(|speed| (speed.reach_rad / speed.rad_s).powi(2)).sum::<f64>().sqrt();
+        [mean_s, offset_s.hypot(sweeps_s / count)]
     }
 
     /// Lowest and highest delay beyond the expected one of encoder and filter.
     pub fn missing_range_s(&self, known: Known) -> [f64; 2] {
-        let missing = self.beyond(known.without_filter_s + known.filter_s).map(|(missing_s, _)| missing_s);
+        let missing = self.beyond(known.expected_s()).map(|(missing_s, _)| missing_s);
         missing.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], s| [low.min(s), high.max(s)])
     }
 
@@ -85,12 +150,12 @@ impl<'a> BySpeed<'a> {
             Some(known) => (
                 "missing_delay",
                 "Filter delay at this speed without hysteresis, beyond the data sheet",
-                known.without_filter_s + known.filter_s,
+                known.expected_s(),
             ),
             None => (
                 "delay_difference",
                 "Delay at this speed without hysteresis, beyond the mean delay",
-                self.solved.values[2],
+                [self.solved.values[2]; 2],
             ),
         };
         for (i, (speed, (beyond_s, reach_s))) in self.speeds.iter().zip(self.beyond(expected_s)).enumerate() {
@@ -124,7 +189,7 @@ impl<'a> BySpeed<'a> {
     /// Table 4.3: shift by the filter, expected and measured.
     pub fn figure(&self, known: Known) -> Figure {
         let speeds: Vec<f64> = self.speeds.iter().map(|speed| speed.rad_s).collect();
-        let shift = |speed: &Speed| -(self.delay(speed)[0] - known.without_filter_s) * speed.rad_s;
+        let shift = |speed: &Speed| -(self.delay(speed)[0] - known.without_s(speed.rad_s)) * speed.rad_s;
         let measured = self.speeds.iter().map(shift).collect();
         let expected = speeds.iter().map(|speed| -known.filter_s * speed).collect();
         Figure {
@@ -144,7 +209,6 @@ impl<'a> BySpeed<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::findings::solve;
 
     const RPM: f64 = TAU / 60.0;
     const POINT_RAD: f64 = TAU / 262_144.0;
@@ -158,9 +222,13 @@ mod tests {
         [1478.0, -424.0, 0.2869, -70.0, 0.84e-6],
     ];
 
-    fn solved(points: &[Point]) -> Solved<3> {
+    /// Lines with given values, and the intervals of a fit with one delay.
+    fn lines(points: &[Point], [offset_rad, hysteresis_rad, delay_s]: [f64; 3]) -> Lines {
         let rows: Vec<[f64; 3]> = points.iter().map(|(v, _)| [1.0, -v.signum(), -v]).collect();
-        solve(&rows, &points.iter().map(|(_, mean)| *mean).collect::<Vec<_>>()).unwrap()
+        let means: Vec<f64> = points.iter().map(|(_, mean)| *mean).collect();
+        let [a, b, c] = solve(&rows, &means).unwrap().reach;
+        let solved = Solved { values: [offset_rad, hysteresis_rad, delay_s, 0.0], reach: [a, b, c, 0.0] };
+        Lines { solved, differ: false, difference: None }
     }
 
     fn value(found: &[Quantity], name: &str) -> f64 {
@@ -177,7 +245,7 @@ mod tests {
         let offset_rad = 1437.0 * POINT_RAD;
         let points = twice(TABLES.iter().map(|[rpm, points, ..]| (rpm * RPM, offset_rad + points * POINT_RAD)));
         // The table has its own offset: that of eq. 4.3.
-        let solved = Solved { values: [offset_rad, 0.0, 0.2811 * POINT_RAD / RPM], ..solved(&points) };
+        let solved = lines(&points, [offset_rad, 0.0, 0.2811 * POINT_RAD / RPM]);
         let found = BySpeed::of(&points, &solved).quantities(Some(POINT_RAD), None);
         for (i, [rpm, points, per_rpm, ..]) in (1..).zip(TABLES) {
             assert!((value(&found, &format!("disparity_points_{i}")) - points).abs() < 1e-6);
@@ -189,6 +257,34 @@ mod tests {
         assert!(BySpeed::of(&points, &solved).quantities(None, None).iter().all(|one| !one.name.contains("points")));
     }
 
+    /// Without a given offset, the delays of both directions of table 4.2 are fitted apart.
+    #[test]
+    fn directions_with_different_delays_do_not_shift_the_offset() {
+        let offset_rad = 1437.0 * POINT_RAD;
+        // The quotients of the table have more digits than its differences.
+        let mean_rad = |rpm: f64, per_rpm: f64| offset_rad - per_rpm * rpm * POINT_RAD;
+        let points = twice(TABLES.iter().map(|[rpm, _, per_rpm, ..]| (rpm * RPM, mean_rad(*rpm, *per_rpm))));
+        let lines = Lines::of(&points).unwrap();
+        assert!(lines.differ && (lines.solved.values[0] - offset_rad).abs() < POINT_RAD, "{lines:?}");
+        let by_speed = BySpeed::of(&points, &lines);
+        let [mean_s, reach_s] = by_speed.mean_delay();
+        assert!((mean_s - 64.34e-6).abs() < reach_s && reach_s < 0.3e-6, "{mean_s:e} ± {reach_s:e}");
+        let found = by_speed.quantities(Some(POINT_RAD), None);
+        for (i, [rpm, _, per_rpm, ..]) in (1..).zip(TABLES) {
+            let name = format!("points_per_rpm_{i}");
+            let [low, high] = found.iter().find(|one| one.name == name).unwrap().ci95.unwrap();
+            assert!(low < per_rpm && per_rpm < high, "{rpm} rpm: {low} to {high}");
+        }
+    }
+
+    #[test]
+    fn directions_with_equal_delays_have_one() {
+        let points = twice(TABLES.iter().map(|[rpm, ..]| (rpm * RPM, 0.01 - 6e-5 * rpm * RPM - 2e-5 * rpm.signum())));
+        let lines = Lines::of(&points).unwrap();
+        assert!(!lines.differ && lines.solved.values[3] == 0.0 && lines.difference.unwrap()[1] > 0.0, "{lines:?}");
+        assert!((lines.solved.values[2] - 6e-5).abs() < 1e-9, "{lines:?}");
+    }
+
     #[test]
     fn the_missing_delay_of_table_4_3_is_the_shift_beyond_the_data_sheet() {
         let (delay_s, hysteresis_rad) = (64.34e-6, 6.0 * POINT_RAD);
@@ -198,8 +294,8 @@ mod tests {
         };
         let points = twice(TABLES.iter().map(mean));
         // The scatter of the table over speed belongs to the missing delay, not to offset and hysteresis.
-        let solved = Solved { values: [0.0, hysteresis_rad, delay_s + 10.99e-6], ..solved(&points) };
-        let known = Known { without_filter_s: delay_s, filter_s: 10e-6 };
+        let solved = lines(&points, [0.0, hysteresis_rad, delay_s + 10.99e-6]);
+        let known = Known { without_filter_s: delay_s, half_difference_s: 0.0, filter_s: 10e-6 };
         let by_speed = BySpeed::of(&points, &solved);
         let found = by_speed.quantities(Some(POINT_RAD), Some(known));
         for (i, [rpm, _, _, _, missing_s]) in (1..).zip(TABLES) {

@@ -1,14 +1,13 @@
 //! Delay of the encoder under test: its difference to the reference over the speed (eq. 4.4 and 4.5, tables 4.2 and
 //! 4.3 of the thesis).
 
-use super::by_speed::{BySpeed, Known, Point};
+use super::by_speed::{BySpeed, Known, Lines, Point};
 use super::quantities::{insufficient_data, quantity};
 use super::sweeps::sweeps;
 use super::{ACCELERATION, both_ways, counts, meta, point_rad, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
-use crate::findings::solve;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -44,6 +43,13 @@ impl Procedure for EncoderDelay {
                 Parameter::number("dwell_s", "Minimum dwell time at each speed", "s", 1.5, [0.2, 60.0]),
                 Parameter::count("repeats", "Repeats", 2, [1, 20]),
                 Parameter::number("delay_without_filter_s", "Delay without filter (0: unknown)", "s", 0.0, [0.0, 1e-2]),
+                Parameter::number(
+                    "half_difference_without_filter_s",
+                    "Half the delay difference of the directions without filter",
+                    "s",
+                    0.0,
+                    [-1e-2, 1e-2],
+                ),
                 Parameter::number("filter_delay_s", "Filter delay (data sheet)", "s", 10e-6, [0.0, 1e-2]),
                 ACCELERATION,
                 sample_rate(250.0),
@@ -73,7 +79,7 @@ impl Procedure for EncoderDelay {
 
     fn finds(&self) -> Vec<Findable> {
         findable(&[
-            ("s", "delay filter_delay delay_# delay_difference_# missing_delay_#"),
+            ("s", "delay delay_mean half_difference filter_delay delay_# delay_difference_# missing_delay_#"),
             ("rad", "offset hysteresis disparity_#"),
             ("rad/s", "speed_#"),
             ("", "disparity_points_# points_per_rpm_#"),
@@ -83,28 +89,41 @@ impl Procedure for EncoderDelay {
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
         let points: Vec<Point> =
             sweeps(run).iter().filter_map(|sweep| Some((sweep.speed_rad_s, sweep.shape()?.mean_rad))).collect();
-        // Offset, half the hysteresis against the motion, delay.
-        let rows: Vec<[f64; 3]> = points.iter().map(|(v, _)| [1.0, -v.signum(), -v]).collect();
-        let means: Vec<f64> = points.iter().map(|(_, mean)| *mean).collect();
-        let Some(solved) = solve(&rows, &means) else {
+        let Some(lines) = Lines::of(&points) else {
             let what = "Delay and offset cannot be distinguished, because fewer than two speeds were measured in both \
                         directions.";
             return insufficient_data(what, "Let the run finish, with at least two speeds.");
         };
-        let [offset_rad, hysteresis_rad, delay_s] = solved.values;
+        let solved = lines.solved;
+        let [offset_rad, hysteresis_rad, delay_s, half_difference_s] = solved.values;
+        let by_speed = BySpeed::of(&points, &lines);
+        let [mean_s, mean_reach_s] = by_speed.mean_delay();
         let mut quantities = vec![
             quantity(["delay", "t_d", "Delay of the encoder under test", "s"], delay_s, Some(solved.ci95(2))),
             quantity(["offset", "ξ", "Offset at rest", "rad"], offset_rad, Some(solved.ci95(0))),
             quantity(["hysteresis", "h", "Half the hysteresis", "rad"], hysteresis_rad, Some(solved.ci95(1))),
+            quantity(
+                ["delay_mean", "Δt", "Mean delay of all speeds, with hysteresis", "s"],
+                mean_s,
+                Some([mean_s - mean_reach_s, mean_s + mean_reach_s]),
+            ),
         ];
+        quantities.extend(lines.difference.map(|[value, reach]| {
+            let name = ["half_difference", "δ", "Half the difference of the delay, positive − negative direction", "s"];
+            quantity(name, value, Some([value - reach, value + reach]))
+        }));
         let known = Known {
             without_filter_s: values.number("delay_without_filter_s"),
+            half_difference_s: values.number("half_difference_without_filter_s"),
             filter_s: values.number("filter_delay_s"),
         };
         let known = Some(known).filter(|known| known.without_filter_s > 0.0);
-        let by_speed = BySpeed::of(&points, &solved);
         quantities.extend(by_speed.quantities(point_rad(run), known));
         let mut summary = format!("The encoder under test lags by {:.2} µs.", 1e6 * delay_s);
+        if lines.differ {
+            let [positive, negative] = [1.0, -1.0].map(|sign| 1e6 * (delay_s + sign * half_difference_s));
+            summary.push_str(&format!(" Positive direction: {positive:.2} µs, negative direction: {negative:.2} µs."));
+        }
         if let Some(known) = known {
             let filter_s = delay_s - known.without_filter_s;
             // The delay without the filter comes from an equal run with the same uncertainty.
@@ -119,19 +138,19 @@ impl Procedure for EncoderDelay {
                 1e6 * known.filter_s
             ));
         }
-        let mut figures = vec![figure(&points, solved.values)];
+        let mut figures = vec![figure(&points, &lines)];
         figures.extend(known.map(|known| by_speed.figure(known)));
         Some(Identification { verdict: Verdict::Identified, summary, quantities, figures, ..Identification::default() })
     }
 }
 
-/// The encoder difference over speed, with the straight line: offset, half the hysteresis, delay.
-fn figure(points: &[Point], [offset_rad, hysteresis_rad, delay_s]: [f64; 3]) -> Figure {
+/// The encoder difference over speed, with the lines of both directions.
+fn figure(points: &[Point], lines: &Lines) -> Figure {
     let speeds: Vec<f64> = points.iter().map(|(v, _)| *v).collect();
     let means: Vec<f64> = points.iter().map(|(_, mean)| *mean).collect();
     let top = speeds.iter().fold(0.0, |top: f64, v| top.max(v.abs()));
     let line: Vec<f64> = [-top, -1e-9, 1e-9, top].to_vec();
-    let fitted = line.iter().map(|v| offset_rad - hysteresis_rad * v.signum() - delay_s * v).collect();
+    let fitted = line.iter().map(|v| lines.at(*v)).collect();
     Figure {
         name: "disparity".into(),
         title: "Encoder difference over speed".into(),
