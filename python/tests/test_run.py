@@ -82,6 +82,20 @@ def test_limits_are_reported_as_junit(lab: jointbench.Lab, tmp_path: Path) -> No
     run = bench.run("friction", unit=unit, limits=limits, repeats=2, load_levels=1).wait(timeout=60)
     assert run.result.limits and run.result.limits.outcome == "fail"
     assert ElementTree.fromstring(run.junit()).findall(".//failure")
+    (yielded,) = (group for group in lab.yields("unit:SN2") if group.group == "part")
+    assert (yielded.part, yielded.units, yielded.passed, yielded.fraction) == ("JA-100", 1, 0, 0.0)
+    chart = lab.chart("friction", "tau_c", "part:JA-100")
+    assert [(point.unit, point.run) for point in chart.points][-1] == ("SN2", run.id)
+    assert (chart.points[-1].value, chart.unit, chart.pending) == (run.result["tau_c"].value, "Nm", 0)
+    with pytest.raises(jointbench.Refused, match="tau_x"):
+        lab.chart("friction", "tau_x", "part:JA-100")
+
+
+def test_trends_have_the_results_of_runs(lab: jointbench.Lab, measured: int) -> None:
+    trends = lab.trends("unit:SN1 kind:friction")
+    assert [(run.run, run.unit) for run in trends.runs] == [(measured, "SN1")]
+    assert trends.runs[0].quantities == lab.run(measured).result.quantities
+    assert lab.trends("unit:none").runs == []
 
 
 def test_a_file_is_imported_with_its_metadata(lab: jointbench.Lab, measured: int, tmp_path: Path) -> None:

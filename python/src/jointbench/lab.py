@@ -7,11 +7,12 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeVar
 from urllib.parse import quote
 
 from . import models
 from ._connection import Connection, environment_token
+from ._waiting import poll
 from .bench import Bench
 from .errors import NoDaemon
 from .run import Run
@@ -19,6 +20,9 @@ from .run import Run
 DEFAULT_URL = "http://127.0.0.1:8080"
 # The most that the daemon lists in one answer.
 PAGE = 500
+
+# An answer that the daemon computes in several requests.
+Computed = TypeVar("Computed", models.Trends, models.ControlChart)
 
 
 def connect(url: str | None = None, token: str | None = None) -> Lab:
@@ -90,6 +94,29 @@ class Lab:
     def units(self, search: str = "") -> list[models.UnitSummary]:
         """Units under test with their verdicts, newest runs first, at most 1000."""
         return self._connection.get(models.UnitList, "/units", search=search).units
+
+    def yields(self, search: str = "") -> list[models.FirstPassYield]:
+        """First-pass yield of each procedure, by part, revision and batch, for example of `part:JA-100`."""
+        return self._connection.get(models.UnitList, "/units", search=search).yields
+
+    def chart(self, procedure: str, quantity: str, search: str = "") -> models.ControlChart:
+        """Individuals control chart of a quantity over units, with the capability for the limits of their runs."""
+        return self._computed(
+            models.ControlChart, "/units/chart", procedure=procedure, quantity=quantity, search=search
+        )
+
+    def trends(self, search: str = "") -> models.Trends:
+        """Quantities of the newest 500 complete runs, oldest first, for example of `unit:SN1 kind:friction`."""
+        return self._computed(models.Trends, "/trends", search=search)
+
+    def _computed(self, kind: type[Computed], path: str, **query: str) -> Computed:
+        """The answer when the results of all its runs are computed."""
+
+        def complete() -> Computed | None:
+            answer = self._connection.get(kind, path, **query)
+            return None if answer.pending else answer
+
+        return poll(complete, lambda: None, None, None, path)
 
     def import_run(
         self,
