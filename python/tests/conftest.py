@@ -30,9 +30,9 @@ pace = 1.0
 class Daemon:
     """The program of JOINTBENCH_PROGRAM, or the installed one. Killed by `close`."""
 
-    def __init__(self, folder: Path, **environment: str) -> None:
+    def __init__(self, folder: Path, benches: str = BENCHES, **environment: str) -> None:
         config = folder / "bench.toml"
-        config.write_text(BENCHES, encoding="utf-8")
+        config.write_text(benches, encoding="utf-8")
         program = os.environ.get("JOINTBENCH_PROGRAM", "jointbench")
         arguments = ["serve", "--listen", "127.0.0.1:0", "--config", str(config), "--data", str(folder / "data")]
         with (folder / "log").open("w") as log:
