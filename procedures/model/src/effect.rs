@@ -45,7 +45,7 @@ impl<'e> EffectInfo<'e> {
     }
 
     /// `a_2` is the second parameter of the family `a` and has its properties.
-    fn parameter(&self, name: &str) -> Option<&'e ParameterInfo> {
+    pub(crate) fn parameter(&self, name: &str) -> Option<&'e ParameterInfo> {
         let family = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
         let find = |name: &str| self.parameters.iter().find(|p| p.name == name);
         find(name).or_else(|| find(family))
@@ -241,6 +241,21 @@ pub trait Effect: Sync {
     /// Whether the effect is an offset term: it has the coefficient one and no parameters.
     fn is_offset(&self) -> bool {
         false
+    }
+
+    /// Whether a user has set parameters of the effect.
+    fn is_set(&self) -> bool {
+        false
+    }
+
+    /// Every coefficient of the only form, with the value of those that are fixed. Empty: none is fixed.
+    fn coefficients(&self) -> &[(String, Option<f64>)] {
+        &[]
+    }
+
+    /// The sum of the columns whose coefficients are fixed; [`Effect::columns`] does not contain them.
+    fn fixed_part(&self, _form: &str, _shape: &[f64], _view: &View) -> Option<Vec<f64>> {
+        None
     }
 
     /// The first missing column that the effect needs.

@@ -138,6 +138,22 @@ pub enum ModelError {
         /// The expected range in words.
         why: String,
     },
+    /// A fixed value, a bound or a start value that no fit can follow.
+    #[error("parameter {effect}.{name}: {why}")]
+    BadSetting {
+        /// Id of the effect.
+        effect: String,
+        /// Name of the parameter.
+        name: String,
+        /// Reason in words, with the remedy.
+        why: String,
+    },
+    /// The tests of a diagnosis fit every parameter freely.
+    #[error(
+        "a model with fixed or bounded parameters is not diagnosed, because the tests fit every parameter freely; diagnose \
+         the model without these settings"
+    )]
+    NotDiagnosed,
     /// A stored fit contains a form that this version of the effect does not have.
     #[error("the stored fit has no form {form} of effect {effect}: it was made by another version; fit the run again")]
     UnknownForm {

@@ -12,7 +12,7 @@ use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport, TradeOff};
 use crate::words::figure;
-use crate::{ModelError, ModelSpec, Options, OwnEffect, ResidualKind, export};
+use crate::{ModelError, ModelSpec, Options, OwnEffect, ResidualKind, export, settings};
 use jointbench_instrument::RunTable;
 
 /// Fits the effects of a model to a run.
@@ -54,7 +54,13 @@ pub fn fit(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Fit, M
 /// As [`fit`], for a run that is preprocessed once for several models: for a long run this is most of the
 /// computation.
 pub fn fit_prepared(prepared: &Prepared, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
-    report(&TwoStageModel::new(prepared, spec, options)?)
+    if spec.settings.is_empty() {
+        return report(&TwoStageModel::new(prepared, spec, options)?);
+    }
+    let applied = settings::apply(prepared, spec, options)?;
+    let mut fit = report(&TwoStageModel::new(prepared, &applied.spec, options)?)?;
+    applied.mark(&mut fit);
+    Ok(fit)
 }
 
 /// The report of a fitted model.
@@ -72,7 +78,11 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         terms.push(term);
         parameters.extend(found);
     }
-    let undetermined = stated_inertia(&mut terms, &mut parameters, prepared);
+    let is_set = |effect: &str| assembly.spec.settings.iter().any(|setting| setting.effect == effect);
+    let undetermined = match is_set(INERTIA) {
+        true => None,
+        false => stated_inertia(&mut terms, &mut parameters, prepared),
+    };
     let nuisance = nuisance(main, &prepared.unit());
     parameters.extend(assembly.hidden.iter().flat_map(|h| unseen(assembly, &h.effect, &h.why)));
     let order = |effect: &str| assembly.effects.iter().position(|e| e == effect);
@@ -88,6 +98,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         kind: prepared.kind,
         effects: assembly.effects.clone(),
         own,
+        settings: assembly.spec.settings.clone(),
         rms: (linear.sse / n).sqrt(),
         validation_rms: (validation_losses(main).iter().sum::<f64>() / n).sqrt(),
         effects_rms: nuisance.as_ref().map(|nuisance| nuisance.effects_rms),
@@ -115,13 +126,15 @@ fn fitted_terms(assembly: &TwoStageModel) -> (Vec<TermReport>, Vec<Parameter>, V
         parameters.extend(found.parameters);
         trade_offs.extend(found.trade_offs);
         for (term, coefficients) in part.terms.iter().zip(part.linear().coefficients) {
-            let names = term.form.linear.iter().copied().chain(term.form.shape.iter().map(|s| s.name));
+            let (linear, fixed) = settings::whole(term, coefficients, assembly.prepared.motion);
+            parameters.extend(fixed);
+            let names = linear.iter().map(|(name, _)| name.as_str()).chain(term.form.shape.iter().map(|s| s.name));
             terms.push(TermReport {
                 effect: term.id().into(),
                 form: term.form.name.into(),
                 shape: term.shape.clone(),
-                linear: coefficients,
                 names: names.map(String::from).collect(),
+                linear: linear.into_iter().map(|(_, value)| value).collect(),
             });
         }
     }
@@ -149,11 +162,12 @@ fn notes(assembly: &TwoStageModel, nuisance: Option<&Nuisance>, undetermined: Op
     notes
 }
 
+const INERTIA: &str = "inertia";
+
 /// A steady-state run accelerates only between its plateaus, in steps of the set-point. The torque of a step passes
 /// between two samples, so that the fitted inertia is too small by an unknown amount. If the set-up states the inertia,
 /// it is used. The interval reaches from zero to twice its value, and contains all of the fitted one.
 fn stated_inertia(terms: &mut [TermReport], parameters: &mut [Parameter], prepared: &Prepared) -> Option<String> {
-    const INERTIA: &str = "inertia";
     let stated = prepared.main.view.constants.rotor_inertia.filter(|_| prepared.main.settled)?;
     let p = parameters.iter_mut().find(|p| p.effect == INERTIA)?;
     let half = p.ci95.map(|end| (end - stated).abs()).into_iter().fold(stated, f64::max);

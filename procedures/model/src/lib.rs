@@ -24,6 +24,8 @@ mod report;
 mod residual_analysis;
 mod residuals;
 mod selection;
+mod set_effect;
+mod settings;
 pub mod signal;
 mod spec;
 mod stats;

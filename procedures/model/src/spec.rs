@@ -1,8 +1,11 @@
 //! Inputs of fits and diagnoses: a model as a kind and a set of effects, and the options.
 
 use crate::effect::Effect;
+use crate::report::setting::ParameterSetting;
+use crate::set_effect::SetEffect;
 use crate::thresholds::{ALPHA, FLIPS, PRACTICAL_SHARE};
 use crate::user_effects;
+use crate::words::list;
 use crate::{ModelError, OwnEffect};
 use jointbench_instrument::{Kind, RunTable};
 use serde::{Deserialize, Serialize};
@@ -17,6 +20,12 @@ pub struct ModelSpec {
     /// User effects: the model may contain them, and a diagnosis may suggest them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<OwnEffect>,
+    /// Fixed values, bounds and start values of parameters.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub settings: Vec<ParameterSetting>,
+    /// The effects whose parameters are set, in the form of one fit.
+    #[serde(skip)]
+    pub(crate) set: Vec<SetEffect>,
 }
 
 impl ModelSpec {
@@ -32,7 +41,8 @@ impl ModelSpec {
         mut own: Vec<OwnEffect>,
     ) -> Result<Self, ModelError> {
         own.retain(|effect| effect.kind() == kind);
-        let spec = Self { kind, effects: effects.into_iter().map(Into::into).collect(), own };
+        let effects = effects.into_iter().map(Into::into).collect();
+        let spec = Self { kind, effects, own, settings: Vec::new(), set: Vec::new() };
         if spec.effects.is_empty() {
             return Err(ModelError::EmptyModel);
         }
@@ -59,14 +69,50 @@ impl ModelSpec {
         Self::new(kind, list.split(',').map(str::trim).filter(|id| !id.is_empty()))
     }
 
+    /// The same model with fixed values, bounds and start values of parameters.
+    ///
+    /// # Errors
+    /// [`ModelError::BadSetting`] for a setting that no fit can follow.
+    pub fn with_settings(mut self, settings: Vec<ParameterSetting>) -> Result<Self, ModelError> {
+        for (i, setting) in settings.iter().enumerate() {
+            let refused = |why: String| ModelError::BadSetting {
+                effect: setting.effect.clone(),
+                name: setting.name.clone(),
+                why,
+            };
+            if !self.contains(&setting.effect) {
+                return Err(refused("the model does not contain the effect; add it, or remove the setting".into()));
+            }
+            let info = self.find(&setting.effect)?.info();
+            let Some(parameter) = info.parameter(&setting.name) else {
+                let names: Vec<String> = info.parameters.iter().map(|p| p.name.to_string()).collect();
+                return Err(refused(match names.is_empty() {
+                    true => "the effect has no parameters".into(),
+                    false => format!("the effect has no such parameter; it has {}", list(&names)),
+                }));
+            };
+            let twice = |other: &&ParameterSetting| other.effect == setting.effect && other.name == setting.name;
+            if settings[..i].iter().any(|other| twice(&other)) {
+                return Err(refused("it is set twice; give all its settings once".into()));
+            }
+            setting.check((parameter.min, parameter.max)).map_err(refused)?;
+        }
+        self.settings = settings;
+        Ok(self)
+    }
+
     /// Every effect that a model of this kind may contain.
     pub fn known(&self) -> impl Iterator<Item = &dyn Effect> {
-        user_effects::with_own(self.kind, &self.own)
+        let as_set = |id: &str| self.set.iter().find(|set| set.info().id == id).map(|set| set as &dyn Effect);
+        user_effects::with_own(self.kind, &self.own).map(move |effect| as_set(effect.info().id).unwrap_or(effect))
     }
 
     /// The effect with an id. [`ModelError::UnknownEffect`] lists the known ids.
     pub fn find(&self, id: &str) -> Result<&dyn Effect, ModelError> {
-        user_effects::find_with_own(self.kind, &self.own, id)
+        match self.set.iter().find(|set| set.info().id == id) {
+            Some(set) => Ok(set),
+            None => user_effects::find_with_own(self.kind, &self.own, id),
+        }
     }
 
     /// Whether the effect is in the model.

@@ -655,27 +655,6 @@ class NewExperiment(BaseModel):
     bench: str
 
 
-class NewModel(BaseModel):
-    """A model to fit: a run and a set of effects."""
-
-    model_config = ConfigDict(
-        extra='forbid',
-    )
-    effects: list[str]
-    exclude: list[Exclusion] | None = None
-    """Intervals to exclude from the fit; those of the parent if omitted."""
-
-    more_runs: list[int] | None = None
-    """Further runs of the same kind and joint for a combined fit, in chronological order."""
-
-    parent: int | None = None
-    """Parent version."""
-
-    run: int
-    tried: bool | None = None
-    """Trial: the version is not listed as a model until it is kept."""
-
-
 class NewNote(BaseModel):
     model_config = ConfigDict(
         extra='forbid',
@@ -733,7 +712,33 @@ NotifyEvent = TypeAliasType("NotifyEvent", Literal['finished', 'failed', 'unsafe
 """What a person or a script may want to know."""
 
 
-ParameterState = TypeAliasType("ParameterState", Literal['ok', 'at_bound', 'impossible', 'unidentified'])
+class ParameterSetting(BaseModel):
+    """What is set for one parameter, in the unit of the parameter. At least one of the values is given."""
+
+    model_config = ConfigDict(
+        extra='forbid',
+    )
+    effect: str
+    """Effect of the model."""
+
+    fixed: float | None = None
+    """The value, which is not fitted."""
+
+    max: float | None = None
+    """Largest value that the fit may find."""
+
+    min: float | None = None
+    """Smallest value that the fit may find."""
+
+    name: str
+    start: float | None = None
+    """
+    Start value of the search for a nonlinear parameter. Refused for a linear one: least squares finds it without a
+    search.
+    """
+
+
+ParameterState = TypeAliasType("ParameterState", Literal['ok', 'at_bound', 'fixed', 'impossible', 'unidentified'])
 
 
 ParameterType = TypeAliasType("ParameterType", Literal['number', 'integer'])
@@ -1508,7 +1513,10 @@ class FirstPassYield(BaseModel):
 
 class FittedParameter(BaseModel):
     ci95: tuple[float | None, float | None]
-    """95 % confidence interval over segments or repeats; `null` without a bound."""
+    """
+    95 % confidence interval over segments or repeats; `null` without a bound. Both ends of a fixed parameter are its
+    value.
+    """
 
     effect: str
     name: str
@@ -1673,6 +1681,30 @@ class LiveMessage10(BaseModel):
 class MadeToken(Token):
     secret: str
     """Returned only once and not stored."""
+
+
+class NewModel(BaseModel):
+    """A model to fit: a run and a set of effects."""
+
+    model_config = ConfigDict(
+        extra='forbid',
+    )
+    effects: list[str]
+    exclude: list[Exclusion] | None = None
+    """Intervals to exclude from the fit; those of the parent if omitted."""
+
+    more_runs: list[int] | None = None
+    """Further runs of the same kind and joint for a combined fit, in chronological order."""
+
+    parameters: list[ParameterSetting] | None = None
+    """Fixed values, bounds and start values of parameters; those of the parent for the same effects if omitted."""
+
+    parent: int | None = None
+    """Parent version."""
+
+    run: int
+    tried: bool | None = None
+    """Trial: the version is not listed as a model until it is kept."""
 
 
 class NewRun(BaseModel):
@@ -2102,6 +2134,9 @@ class Fit(BaseModel):
     residual: ResidualKind
     rms: float
     """Training error (RMS)."""
+
+    settings: list[ParameterSetting] | None = None
+    """Fixed values, bounds and start values of parameters that were set for the fit."""
 
     terms: list[Term]
     """Internal parameters of the effects, to evaluate the model."""

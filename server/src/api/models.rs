@@ -39,9 +39,7 @@ pub async fn create(
     Query(query): Query<DetachQuery>,
     Json(new): Json<NewModel>,
 ) -> Created<Model> {
-    let fit = async move {
-        lab.create_model(&new.runs(), &new.effects, new.parent, new.exclude, new.tried, &caller.name).await
-    };
+    let fit = async move { lab.create_model(new, &caller.name).await };
     created(cancel_on_disconnect(presence, query, fit).await?)
 }
 

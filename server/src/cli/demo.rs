@@ -10,7 +10,7 @@ use super::serve::{runtime, settings};
 use crate::config::{BenchDescription, Description, Notify};
 use crate::daemon::{Daemon, shutdown_signal};
 use crate::lab::{LOCAL, Lab};
-use crate::view::{Model, NewRun, Run, RunState, Suggestion, reread};
+use crate::view::{Model, NewModel, NewRun, Run, RunState, Suggestion, reread};
 use hidden::{Hidden, Setup};
 use jointbench_devices::MockSettings;
 use std::time::Instant;
@@ -115,7 +115,7 @@ async fn measure(lab: &Lab, &Setup { bench, procedure, .. }: &Setup) -> Result<R
 async fn improve(lab: &Lab, run: &Run, known: &[&str]) -> Result<Improved, Exit> {
     let meta: jointbench_instrument::Meta = reread(&run.meta)?;
     let initial: Vec<String> = meta.baseline.into_iter().chain(known.iter().map(|id| (*id).to_owned())).collect();
-    let mut versions = vec![lab.create_model(&[run.summary.id], &initial, None, None, false, LOCAL).await?];
+    let mut versions = vec![lab.create_model(NewModel::free(&[run.summary.id], &initial, None), LOCAL).await?];
     let mut confounded = Vec::new();
     loop {
         let model = &versions[versions.len() - 1];
@@ -136,8 +136,8 @@ async fn improve(lab: &Lab, run: &Run, known: &[&str]) -> Result<Improved, Exit>
         println!();
         println!("   → add {} and refit", best.effect);
         let effects: Vec<String> = model.effects.iter().cloned().chain([best.effect.clone()]).collect();
-        let next = lab.create_model(&[run.summary.id], &effects, Some(model.id), None, false, LOCAL).await?;
-        versions.push(next);
+        let next = NewModel::free(&[run.summary.id], &effects, Some(model.id));
+        versions.push(lab.create_model(next, LOCAL).await?);
     }
 }
 

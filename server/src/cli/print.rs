@@ -38,11 +38,8 @@ pub fn fit(fit: &Fit) {
             words::figure(rms, &fit.unit)
         );
     }
-    for pair in &fit.trade_offs {
-        println!(
-            "note      parameter trade-off: {} and {} (correlation {:.2})",
-            pair.first, pair.second, pair.correlation
-        );
+    for jointbench_model::TradeOff { first, second, correlation } in &fit.trade_offs {
+        println!("note      parameter trade-off: {first} and {second} (correlation {correlation:.2})");
     }
     for note in &fit.notes {
         println!("note      {note}");
@@ -173,12 +170,13 @@ pub fn parameters(parameters: &[Parameter]) {
     println!("{:effect$}  {:name$}  {:>11}  {:unit$}  95 % interval", "effect", "parameter", "value", "unit");
     for parameter in parameters {
         let (value, interval) = with_interval(parameter.value, parameter.ci95);
-        let state = state(parameter);
+        let interval = if parameter.state == ParameterState::Fixed { "fixed".to_owned() } else { interval };
         println!(
-            "{:effect$}  {:name$}  {value:>11}  {:unit$}  {interval}{state}",
+            "{:effect$}  {:name$}  {value:>11}  {:unit$}  {interval}{}",
             parameter.effect,
             parameter.name,
-            shown(&parameter.unit)
+            shown(&parameter.unit),
+            state(parameter)
         );
     }
 }
@@ -186,7 +184,7 @@ pub fn parameters(parameters: &[Parameter]) {
 /// The state of a parameter in words.
 fn state(parameter: &Parameter) -> String {
     match (parameter.state, &parameter.note) {
-        (ParameterState::Ok, _) => String::new(),
+        (ParameterState::Ok | ParameterState::Fixed, _) => String::new(),
         (_, Some(note)) => format!("  {note}"),
         (ParameterState::AtBound, None) => "  at bound".to_owned(),
         (ParameterState::Impossible, None) => "  impossible".to_owned(),

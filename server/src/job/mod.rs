@@ -19,7 +19,7 @@ pub use parameters::{Alignment, ExportRequest, FileFormat, ImportRequest, Offer,
 pub use process::{Jobs, Streamed};
 pub(crate) use reply::{Head, Refusal};
 
-use crate::view::{EffectTrial, Exclusion, Region};
+use crate::view::{EffectTrial, Exclusion, ParameterSetting, Region};
 use jointbench_procedure::DeferredPlan;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -32,6 +32,7 @@ pub enum Job {
         runs: Vec<i64>,
         effects: Vec<String>,
         excluded: Vec<Exclusion>,
+        settings: Vec<ParameterSetting>,
         offer: Option<Offer>,
     },
     Diagnose {

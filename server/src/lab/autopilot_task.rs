@@ -6,8 +6,8 @@
 use super::computation::with_retries;
 use super::{Answer, Lab, LabError};
 use crate::view::{
-    AutopilotAction, AutopilotState, AutopilotStep, Experiment, Finding, LiveMessage, Model, NewAutopilot, NewRun, Run,
-    RunState, Suggestion, reread,
+    AutopilotAction, AutopilotState, AutopilotStep, Experiment, Finding, LiveMessage, Model, NewAutopilot, NewModel,
+    NewRun, Run, RunState, Suggestion, reread,
 };
 use jointbench_instrument::Meta;
 use jointbench_procedure::Control;
@@ -230,7 +230,7 @@ impl AutopilotTask {
             Some(parent) => Some(self.lab.model(parent).await?.validation_rms),
             None => None,
         };
-        let fit = || self.lab.create_model(&self.runs, effects, parent, None, false, &self.by);
+        let fit = || self.lab.create_model(NewModel::free(&self.runs, effects, parent), &self.by);
         let model = with_retries(fit).await?;
         let step = AutopilotStep { before_rms, ..AutopilotStep::new(AutopilotAction::Fit, "") };
         let found = self.diagnosed(&model, step).await?;
@@ -239,7 +239,7 @@ impl AutopilotTask {
 
     async fn add(&mut self, before: &Model, best: &Suggestion) -> Answer<(Model, Finding)> {
         let effects: Vec<String> = before.effects.iter().cloned().chain([best.effect.clone()]).collect();
-        let fit = || self.lab.create_model(&self.runs, &effects, Some(before.id), None, false, &self.by);
+        let fit = || self.lab.create_model(NewModel::free(&self.runs, &effects, Some(before.id)), &self.by);
         let model = with_retries(fit).await?;
         let tied = match best.confounded_with.as_slice() {
             [] => String::new(),

@@ -26,7 +26,9 @@ impl Lab {
     /// Computes a job in this process. It only reads the store.
     pub(crate) async fn answer(&self, job: Job) -> Answer<Vec<u8>> {
         match job {
-            Job::Fit { runs, effects, excluded, offer } => self.fit_here(&runs, &effects, &excluded, offer).await,
+            Job::Fit { runs, effects, excluded, settings, offer } => {
+                self.fit_here(&runs, &effects, &excluded, &settings, offer).await
+            }
             Job::Diagnose { model, offer } => json(&self.diagnose_here(model, offer).await?),
             Job::NextRun { diagnosis, offer } => json(&self.next_run_here(diagnosis, offer).await?),
             Job::Residuals { model } => self.residuals_here(model).await,

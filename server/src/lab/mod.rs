@@ -21,6 +21,7 @@ mod models;
 pub mod names;
 mod notes;
 mod notifications;
+mod parameter_settings;
 mod queue;
 mod report;
 mod resume;

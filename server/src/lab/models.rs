@@ -7,7 +7,8 @@ use super::{Answer, Lab, LabError, Offer, next_run};
 use crate::job::Job;
 use crate::store::{ModelRecord, NewModel, Subject, packed, unpacked};
 use crate::view::{
-    self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ResidualSet, diagnosis_view, finite, model_view, reread,
+    self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ParameterSetting, ResidualSet, diagnosis_view, finite,
+    model_view, reread,
 };
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, OwnEffect};
@@ -63,20 +64,13 @@ impl Fitted {
 impl Lab {
     /// Fits effects to runs of one joint together and stores the fit, with its diagnosis, as a version of the first
     /// run. The default exclusions are those of the parent.
-    pub async fn create_model(
-        &self,
-        runs: &[i64],
-        effects: &[String],
-        parent: Option<i64>,
-        exclude: Option<Vec<Exclusion>>,
-        tried: bool,
-        by: &str,
-    ) -> Answer<Model> {
-        let Some((&run, more_runs)) = runs.split_first() else {
-            return Err(LabError::Invalid("give the run to fit the model to".into()));
-        };
-        let excluded = self.exclusions(run, parent, exclude).await?;
-        let spec = self.spec(self.kind_of_ended(runs).await?, effects, Some(run)).await?;
+    pub async fn create_model(&self, asked: view::NewModel, by: &str) -> Answer<Model> {
+        let (run, runs, parent, effects) = (asked.run, asked.runs(), asked.parent, asked.effects);
+        let more_runs = asked.more_runs.as_slice();
+        let excluded = self.exclusions(run, parent, asked.exclude).await?;
+        let spec = self.spec(self.kind_of_ended(&runs).await?, &effects, Some(run)).await?;
+        let settings = self.settings(parent, &effects, asked.parameters).await?;
+        let spec = spec.with_settings(reread(&settings)?)?;
         let _turn = match parent {
             None => Some(self.inner.turns.of(Turn::First(run)).await),
             Some(_) => None,
@@ -86,13 +80,13 @@ impl Lab {
         {
             return Ok(model_view(there)?);
         }
-        let offer = self.offer(runs, None).await?;
-        let job = Job::Fit { runs: runs.to_vec(), effects: effects.to_vec(), excluded: excluded.clone(), offer };
+        let offer = self.offer(&runs, None).await?;
+        let job = Job::Fit { runs, effects, excluded: excluded.clone(), settings, offer };
         let answer = self.compute_json(job).await?;
         let end = answer.iter().position(|byte| *byte == b'\n').unwrap_or(answer.len());
         let (mut fitted, residuals) = (parsed::<Fitted>(&answer[..end])?, answer.get(end + 1..).unwrap_or_default());
         let (diagnosis, excluded) = (fitted.diagnosis.take(), reread(&excluded)?);
-        let new = fitted.version(run, more_runs, excluded, parent, tried, by);
+        let new = fitted.version(run, more_runs, excluded, parent, asked.tried, by);
         // A version is valid without residuals; a request for them returns the reason.
         let residuals = Some((RESIDUALS, residuals)).filter(|(_, packed)| !packed.is_empty());
         let record = self.inner.store.save_fitted(&new, residuals, diagnosis.as_ref()).await?;
@@ -141,11 +135,13 @@ impl Lab {
         runs: &[i64],
         effects: &[String],
         excluded: &[Exclusion],
+        settings: &[ParameterSetting],
         offer: Option<Offer>,
     ) -> Answer<Vec<u8>> {
         let whole = self.tables(runs).await?;
         let table = exclusions::without(whole.clone(), excluded)?;
         let spec = self.spec(table.kind(), effects, runs.first().copied()).await?;
+        let spec = spec.with_settings(reread(&settings)?)?;
         let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
         let options = Options::default();
         let chosen = reread(&options)?;
@@ -194,11 +190,11 @@ impl Lab {
         for version in self.inner.store.models(run).await?.into_iter().rev() {
             let is_alike =
                 version.parent.is_none() && version.more_runs == more_runs && version.effects == spec.effects;
-            if is_alike
-                && reread::<_, Vec<Exclusion>>(&version.excluded)? == excluded
-                && reread::<_, Fit>(&version.fit)?.own.iter().all(|own| spec.own.contains(own))
-            {
-                return Ok(Some(version));
+            if is_alike && reread::<_, Vec<Exclusion>>(&version.excluded)? == excluded {
+                let fit: Fit = reread(&version.fit)?;
+                if fit.settings == spec.settings && fit.own.iter().all(|own| spec.own.contains(own)) {
+                    return Ok(Some(version));
+                }
             }
         }
         Ok(None)
@@ -245,6 +241,9 @@ impl Lab {
     /// users' effects that the run uses.
     pub async fn diagnose(&self, model: i64) -> Answer<Diagnosis> {
         let record = self.inner.store.model(model).await?;
+        if !reread::<_, Fit>(&record.fit)?.settings.is_empty() {
+            return Err(ModelError::NotDiagnosed.into());
+        }
         if let Some(kept) = self.diagnosis_kept(&record).await? {
             return Ok(kept);
         }

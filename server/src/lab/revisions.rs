@@ -48,6 +48,8 @@ impl Lab {
         let refit = move |effect: &str| {
             let others = record.effects.iter().filter(|one| *one != effect);
             let spec = ModelSpec::with_own(table.kind(), others, fit.own.clone())?;
+            let settings = fit.settings.iter().filter(|setting| setting.effect != effect).cloned().collect();
+            let spec = spec.with_settings(settings)?;
             jointbench_model::fit(&table, &spec, &Options::default())
         };
         let effects = fit.effects.clone();
@@ -94,7 +96,7 @@ impl Lab {
         let fitted = self.fitted_table(&record).await?;
         let own = self.user_effects_with(&before, effect).await?;
         let effects = record.effects.iter().map(String::as_str).chain([effect]);
-        let spec = ModelSpec::with_own(before.kind, effects, own)?;
+        let spec = ModelSpec::with_own(before.kind, effects, own)?.with_settings(before.settings.clone())?;
         blocking(move || {
             let options = Options::default();
             let after = jointbench_model::fit(&fitted, &spec, &options)?;

@@ -100,10 +100,11 @@ impl Report {
                 tr { th { "Effect" } th { "Parameter" } th.figure { "Value" } th.figure { "95 % interval" } td { } }
                 @for parameter in &model.fit.parameters {
                     @let ends = parameter.ci95[0].zip(parameter.ci95[1]).map(|(low, high)| [low, high]);
-                    @let (value, interval) = with_interval(parameter.value, ends, &parameter.unit);
+                    @let is_fixed = parameter.state == ParameterState::Fixed;
+                    @let (value, interval) = with_interval(parameter.value, ends.filter(|_| !is_fixed), &parameter.unit);
                     tr {
                         td { (self.titled(&parameter.effect)) } td { (parameter.name) }
-                        td.figure { (value) } td.figure { (interval.unwrap_or_default()) }
+                        td.figure { (value) } td.figure { @if is_fixed { "fixed" } @else { (interval.unwrap_or_default()) } }
                         td { @if parameter.state != ParameterState::Ok { (parameter.note.clone().unwrap_or_default()) } }
                     }
                 }

@@ -21,9 +21,34 @@ pub struct NewModel {
     /// Intervals to exclude from the fit; those of the parent if omitted.
     #[serde(default)]
     pub exclude: Option<Vec<Exclusion>>,
+    /// Fixed values, bounds and start values of parameters; those of the parent for the same effects if omitted.
+    #[serde(default)]
+    pub parameters: Option<Vec<ParameterSetting>>,
     /// Trial: the version is not listed as a model until it is kept.
     #[serde(default)]
     pub tried: bool,
+}
+
+/// What is set for one parameter, in the unit of the parameter. At least one of the values is given.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterSetting {
+    /// Effect of the model.
+    pub effect: String,
+    pub name: String,
+    /// The value, which is not fitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<f64>,
+    /// Smallest value that the fit may find.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<f64>,
+    /// Largest value that the fit may find.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<f64>,
+    /// Start value of the search for a nonlinear parameter. Refused for a linear one: least squares finds it without a
+    /// search.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<f64>,
 }
 
 /// An interval of a measurement that is excluded from the fit.
@@ -38,6 +63,19 @@ pub struct Exclusion {
 }
 
 impl NewModel {
+    /// A regular version with all parameters free; the first run is that of the version.
+    pub fn free(runs: &[i64], effects: &[String], parent: Option<i64>) -> Self {
+        Self {
+            run: runs.first().copied().unwrap_or_default(),
+            more_runs: runs.iter().skip(1).copied().collect(),
+            effects: effects.to_vec(),
+            parent,
+            exclude: None,
+            parameters: Some(Vec::new()),
+            tried: false,
+        }
+    }
+
     /// Every run to look at, in order.
     pub fn runs(&self) -> Vec<i64> {
         std::iter::once(self.run).chain(self.more_runs.iter().copied()).collect()
@@ -98,6 +136,9 @@ pub struct Fit {
     /// User-defined effects at the time of the fit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<EffectDefinition>,
+    /// Fixed values, bounds and start values of parameters that were set for the fit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub settings: Vec<ParameterSetting>,
     /// Training error (RMS).
     pub rms: f64,
     /// Validation error (cross-validated RMS).
@@ -138,7 +179,8 @@ pub struct FittedParameter {
     pub name: String,
     pub value: f64,
     pub unit: String,
-    /// 95 % confidence interval over segments or repeats; `null` without a bound.
+    /// 95 % confidence interval over segments or repeats; `null` without a bound. Both ends of a fixed parameter are its
+    /// value.
     #[schema(value_type = Vec<Option<f64>>, min_items = 2, max_items = 2)]
     pub ci95: [Option<f64>; 2],
     pub state: ParameterState,
@@ -151,8 +193,10 @@ pub struct FittedParameter {
 #[serde(rename_all = "snake_case")]
 pub enum ParameterState {
     Ok,
-    /// The best value lies at the edge of what is physically sensible.
+    /// The best value lies at the edge of what is physically sensible, or at a bound that was set.
     AtBound,
+    /// The value was set and not fitted.
+    Fixed,
     /// The whole interval of a coefficient contradicts physics, or the range that was given for it.
     Impossible,
     /// The interval is as wide as the value.

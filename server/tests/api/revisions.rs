@@ -162,3 +162,51 @@ fn an_imported_model_brings_its_own_effects_along() {
     );
     assert_eq!(own(), [(json!("rub"), json!(1))]);
 }
+
+#[test]
+fn set_parameters_hold_are_inherited_and_reappear() {
+    let Two { daemon, run, bare, .. } = two_versions();
+    let effects = json!(["load_transmission", "coulomb", "viscous"]);
+    let ask = |body: Value| daemon.post("/api/v1/models", &body.to_string());
+    let fixed = json!([{"effect": "coulomb", "name": "tau_c", "fixed": 0.02}]);
+    let asked = json!({"run": run, "effects": effects, "parent": bare["id"], "parameters": fixed});
+    let (status, set) = ask(asked.clone());
+    assert_eq!((status, &set["fit"]["settings"], &set["idle"]), (201, &fixed, &json!(false)), "{set}");
+    let parameter = |model: &Value, name: &str| {
+        let all = model["fit"]["parameters"].as_array().unwrap();
+        all.iter().find(|p| p["name"] == name).unwrap().clone()
+    };
+    let coulomb = parameter(&set, "tau_c");
+    assert_eq!((&coulomb["value"], &coulomb["state"]), (&json!(0.02), &json!("fixed")));
+    assert_eq!(parameter(&set, "c_v")["state"], "ok");
+    // A child has the settings of its parent for the same effects, unless the request has others.
+    let (_, child) = ask(json!({"run": run, "effects": ["coulomb", "viscous"], "parent": set["id"]}));
+    assert_eq!(child["fit"]["settings"], fixed, "{child}");
+    let (_, free) = ask(json!({"run": run, "effects": effects, "parent": set["id"], "parameters": []}));
+    assert_eq!((parameter(&free, "tau_c"), &free["fit"]["settings"]), (parameter(&bare, "tau_c"), &Value::Null));
+    // The settings are part of exports and reports, and the file can be imported.
+    let file = text(&daemon, &format!("/api/v1/models/{}/export?format=json", set["id"]));
+    let file: Value = serde_json::from_str(&file).unwrap();
+    assert_eq!(file["fit"]["settings"], fixed);
+    let (status, imported) = daemon.post("/api/v1/models/import", &json!({"run": run, "model": file}).to_string());
+    assert_eq!((status, &imported["model"]["fit"]["settings"]), (201, &fixed), "{imported}");
+    let report = text(&daemon, &format!("/api/v1/runs/{run}/report?format=html&model={}", set["id"]));
+    assert!(report.contains("<td class=\"figure\">fixed</td>"), "{report}");
+    // A setting that no fit can follow is refused with the reason, and no version is stored.
+    let versions = || daemon.get(&format!("/api/v1/models?run={run}")).1.as_array().unwrap().len();
+    let before = versions();
+    for (setting, reason) in [
+        (json!({"effect": "gravity", "name": "g_c", "fixed": 1.0}), "the model does not contain the effect"),
+        (json!({"effect": "coulomb", "name": "tau", "fixed": 1.0}), "it has tau_c"),
+        (json!({"effect": "coulomb", "name": "tau_c", "min": 2.0, "max": 1.0}), "min 2 is larger than max 1"),
+        (json!({"effect": "coulomb", "name": "tau_c", "start": 0.1}), "a start value has no influence"),
+    ] {
+        let (status, problem) = ask(json!({"run": run, "effects": effects, "parameters": [setting]}));
+        assert_eq!(status, 422, "{problem}");
+        assert!(problem["detail"].as_str().unwrap().contains(reason), "{problem}");
+    }
+    assert_eq!(versions(), before);
+    let (status, problem) = daemon.post("/api/v1/diagnoses", &json!({"model": set["id"]}).to_string());
+    assert_eq!(status, 422, "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("diagnose the model without these settings"), "{problem}");
+}

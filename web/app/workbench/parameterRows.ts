@@ -10,7 +10,7 @@ export interface ParameterRow {
 	flags: string[];
 }
 
-const STATE_TEXTS: Partial<Record<Parameter['state'], string>> = { at_bound: 'at its bound', impossible: 'contradicts physics', unidentified: 'not decided by this data' };
+const STATE_TEXTS: Partial<Record<Parameter['state'], string>> = { at_bound: 'at its bound', fixed: 'fixed', impossible: 'contradicts physics', unidentified: 'not decided by this data' };
 
 /** Correlation from which two parameters are flagged as a trade-off. */
 const MIN_CORRELATION = 0.9;

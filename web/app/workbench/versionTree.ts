@@ -1,4 +1,4 @@
-import type { Model } from '../api/types';
+import type { Model, ParameterSetting } from '../api/types';
 import { idText } from '../format/label';
 
 /** The versions from the root of the tree to a version, as the waterfall shows them. */
@@ -18,7 +18,8 @@ export function childWith(models: readonly Model[], parent: Model | null, effect
 		(model) =>
 			(model.parent ?? null) === (parent?.id ?? null) &&
 			(parent ? sameData(parent, model) : model.more_runs.length + model.excluded.length === 0) &&
-			[...model.effects].sort().join() === wanted,
+			[...model.effects].sort().join() === wanted &&
+			settingsKey(settingsOf(model)) === settingsKey(settingsOf(parent).filter(({ effect }) => effects.includes(effect))),
 	);
 }
 
@@ -27,6 +28,12 @@ export function sameData(one: Model, other: Model): boolean {
 	const exclusionKey = ({ excluded }: Model) => excluded.map(({ from_s, to_s }) => `${from_s}:${to_s}`).join();
 	return one.run === other.run && one.more_runs.join() === other.more_runs.join() && exclusionKey(one) === exclusionKey(other);
 }
+
+/** Fixed values, bounds and start values of the parameters of a version. */
+export const settingsOf = (model: Model | null): readonly ParameterSetting[] => model?.fit.settings ?? [];
+
+const settingsKey = (settings: readonly ParameterSetting[]): string =>
+	settings.map(({ effect, name, fixed, min, max, start }) => [effect, name, fixed, min, max, start].join(' ')).sort().join();
 
 /** Only tried or with almost no gain, and not kept: no page shows it as the model of the run. */
 export const isTrial = ({ tried, idle }: Model): boolean => tried || idle;
@@ -39,6 +46,7 @@ export function stepName(model: Model, before?: Model, titleOf = idText): string
 	if (before && before.excluded.length !== model.excluded.length) {
 		return before.excluded.length < model.excluded.length ? 'without some samples' : 'with samples again';
 	}
+	if (before && settingsKey(settingsOf(before)) !== settingsKey(settingsOf(model))) return settingsOf(model).length > 0 ? 'parameters set' : 'parameters free';
 	return model.more_runs.length > 0 ? `with run ${model.more_runs.join(', ')}` : 'same effects';
 }
 

@@ -1,7 +1,7 @@
 import { untrack } from 'svelte';
 import { api } from '../api/client';
 import { type ApiError, toApiError } from '../api/apiError';
-import type { Exclusion, Model, Run } from '../api/types';
+import type { Exclusion, Model, ParameterSetting, Run } from '../api/types';
 import { formatChange, formatQuantity } from '../format/number';
 import { idText } from '../format/label';
 import { parameterSymbol } from '../format/symbol';
@@ -17,7 +17,8 @@ import { regionSamples } from '../residual/regionSamples';
 import { isOfJoint } from './joint';
 import { defaultAxes } from './rankedAxes';
 import { readRegion } from './region';
-import { MIN_GAIN, childWith, gain, isTrial, sameData, undecided, gainText } from './versionTree';
+import { withSetting } from './parameterSettings';
+import { MIN_GAIN, childWith, gain, isTrial, sameData, settingsOf, undecided, gainText } from './versionTree';
 
 /** The model of one run in the workbench. Call during component initialization. */
 export function openWorkbench(id: number) {
@@ -193,6 +194,17 @@ export function openWorkbench(id: number) {
 		await show(made, from);
 		if (noticeText) notice = { text: `${noticeText} Undo with z.`, good: true };
 	}
+	/** Fits again with what is set for one parameter; `null` frees it. The other settings stay. */
+	async function setParameter(of: Pick<ParameterSetting, 'effect' | 'name'>, setting: ParameterSetting | null): Promise<void> {
+		const from = model;
+		if (!from) return;
+		const parameters = withSetting(settingsOf(from), of, setting);
+		const what = `${titleOf(of.effect)} ${of.name} ${setting ? 'set' : 'free'}`;
+		const made = await runFit(`Refitting with ${what}`, () => api.fit({ run: id, effects: from.effects, parent: from.id, more_runs: from.more_runs, parameters }));
+		if (!made) return;
+		await show(made, from);
+		notice = { text: `${what}. Undo with z.`, good: true };
+	}
 	const others = $derived(model?.more_runs ?? []);
 	/** Additional runs in the address: used once, afterwards the address names the version. */
 	const additionalRuns = () => readComparedRuns(router.query.get('more')).filter((one) => one !== id);
@@ -278,6 +290,7 @@ export function openWorkbench(id: number) {
 		fitFirst,
 		addRun,
 		removeRun,
+		setParameter,
 		undo,
 		redo,
 		/** Quantities that the run itself has identified. */

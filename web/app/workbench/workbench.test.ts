@@ -11,7 +11,7 @@ import { branches, pathTo, childWith, gain, stepName, undecided } from './versio
 import { barsOf, effectLosses, lossMark, axisTop } from './waterfall';
 
 const version = (id: number, parent: number | null, effects: string[], held: number, added: string[] = []): Model =>
-	({ id, parent, effects, added, removed: [], run: 1, more_runs: [], excluded: [], validation_rms: held, rms: held * 0.9 }) as unknown as Model;
+	({ id, parent, effects, added, removed: [], run: 1, more_runs: [], excluded: [], validation_rms: held, rms: held * 0.9, fit: { parameters: [] } }) as unknown as Model;
 
 const models = [
 	version(1, null, ['coulomb'], 10),
@@ -29,6 +29,18 @@ describe('the tree of versions', () => {
 	it('visits a set that was fitted before instead of fitting it again', () => {
 		expect(childWith(models, models[1]!, ['load_linear', 'coulomb', 'stribeck'])?.id).toBe(4);
 		expect(childWith(models, models[2]!, ['load_linear', 'coulomb', 'stribeck'])).toBeUndefined();
+	});
+
+	it('holds no version for the same effects with other settings of their parameters', () => {
+		const fixed = { effect: 'coulomb', name: 'tau_c', fixed: 0.03 };
+		const withSettings = (model: Model): Model => ({ ...model, fit: { ...model.fit, settings: [fixed] } });
+		const [parent, child] = [version(1, null, ['coulomb'], 2), version(2, 1, ['coulomb', 'viscous'], 1)];
+		const wanted = ['coulomb', 'viscous'];
+		expect(childWith([parent, withSettings(child)], parent, wanted)).toBeUndefined();
+		expect(childWith([parent, withSettings(child)], withSettings(parent), wanted)?.id).toBe(2);
+		expect(childWith([parent, child], withSettings(parent), ['viscous', 'coulomb'])).toBeUndefined();
+		expect(stepName(withSettings(version(3, 1, ['coulomb'], 2)), parent)).toBe('parameters set');
+		expect(stepName(version(3, 1, ['coulomb'], 2), withSettings(parent))).toBe('parameters free');
 	});
 
 	it('holds no version for the same that was fitted on more runs', () => {

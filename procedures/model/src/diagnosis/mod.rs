@@ -57,6 +57,7 @@ const MOST_EFFECTS: usize = 6;
 /// assert_eq!(found.suggestions[0].effect, "gravity");
 /// ```
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
+    refuse_settings(spec)?;
     let prepared = prepare(run, options)?;
     let found = Findings::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
     let mut fit = report(&found.start)?;
@@ -109,6 +110,11 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     })
 }
 
+/// The tests compare fits in which every parameter is free.
+fn refuse_settings(spec: &ModelSpec) -> Result<(), ModelError> {
+    if spec.settings.is_empty() { Ok(()) } else { Err(ModelError::NotDiagnosed) }
+}
+
 /// Diagnoses, adds the best effect and refits until no candidate passes or `max_effects` were added.
 ///
 /// `on_step` gets each step when it is made.
@@ -119,6 +125,7 @@ pub fn discover(
     max_effects: usize,
     mut on_step: impl FnMut(&Step),
 ) -> Result<Discovery, ModelError> {
+    refuse_settings(spec)?;
     let prepared = prepare(run, options)?;
     let mut steps = vec![step(&TwoStageModel::new(&prepared, spec, options)?, None)];
     on_step(&steps[0]);

@@ -107,6 +107,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
         kind,
         effects,
         own,
+        settings: Vec::new(),
         rms: 1.0,
         validation_rms: 1.1,
         effects_rms: None,

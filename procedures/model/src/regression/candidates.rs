@@ -74,7 +74,7 @@ impl<'e> CandidateSet<'e> {
                 library.candidates.par_extend(form.grid.par_chunks(ABREAST).flat_map_iter(|shapes| {
                     let at_points = shapes.iter().map(|shape| effect.columns(form.name, shape, &problem.view));
                     let at_points: Vec<Columns> = at_points.collect();
-                    let each = at_points.first().map_or(1, Vec::len).max(1);
+                    let each = at_points.first().map_or(0, Vec::len);
                     let rows = problem.reduce.apply_all(at_points.into_iter().flatten().collect());
                     let candidate = |(shape, columns): (&Vec<f64>, &[Vec<f64>])| Regressor {
                         effect,
@@ -82,7 +82,9 @@ impl<'e> CandidateSet<'e> {
                         shape: shape.clone(),
                         columns: columns.iter().map(|c| c.iter().map(|v| *v as f32).collect()).collect(),
                     };
-                    shapes.iter().zip(rows.chunks(each)).map(candidate).collect::<Vec<_>>()
+                    let of_shape = |at: usize| &rows[at * each..(at + 1) * each];
+                    let each_shape = shapes.iter().enumerate().map(|(at, shape)| (shape, of_shape(at)));
+                    each_shape.map(candidate).collect::<Vec<_>>()
                 }));
             }
         }

@@ -1,7 +1,7 @@
 //! Canonical fit: a set of effects gives the same model, independent of the order in which they were added.
 
 use crate::Options;
-use crate::effect::Effect;
+use crate::effect::{Effect, Form, Shape};
 use crate::preprocess::Problem;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::form_selection::{extend, reselect_forms};
@@ -44,9 +44,11 @@ pub fn fit_canonical<'p>(
     model
 }
 
-/// Whether the effect has only one form and one grid point.
+/// Whether the effect has only one form and one grid point. The single grid point of a set effect may be the start of a
+/// search.
 fn is_fixed(effect: &dyn Effect, problem: &Problem) -> bool {
-    matches!(&effect.forms(&problem.view)[..], [form] if form.grid.len() == 1)
+    let is_start = |form: &Form| effect.is_set() && form.shape.iter().any(Shape::is_smooth);
+    matches!(&effect.forms(&problem.view)[..], [form] if form.grid.len() == 1 && !is_start(form))
 }
 
 /// The best grid point of each form of an effect, with its partial R².

@@ -1,5 +1,7 @@
 //! A model on one problem: effects with their forms, nonlinear parameters and columns at the rows.
 
+pub use crate::regression::term::{Term, allows, columns, fixed_part};
+
 use crate::effect::{Columns, Effect, Form, ShapeSearch};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::cholesky::{Cholesky, projections};
@@ -9,63 +11,6 @@ use crate::thresholds::NEGLIGIBLE_RMS;
 use jointbench_instrument::Kind;
 use rayon::prelude::*;
 use std::sync::Arc;
-
-/// One effect of the model in one form.
-#[derive(Clone)]
-pub struct Term<'e> {
-    pub effect: &'e dyn Effect,
-    pub form: Arc<Form<'e>>,
-    pub shape: Vec<f64>,
-    pub columns: Columns,
-}
-
-impl<'e> Term<'e> {
-    pub fn new(effect: &'e dyn Effect, form: impl Into<Arc<Form<'e>>>, shape: Vec<f64>, problem: &Problem) -> Self {
-        let form = form.into();
-        let columns = columns(effect, form.name, &shape, problem);
-        Self { effect, form, shape, columns }
-    }
-
-    pub fn id(&self) -> &'e str {
-        self.effect.info().id
-    }
-
-    /// Nonlinear parameters that are refined continuously.
-    pub(in crate::regression) fn free(&self) -> impl Iterator<Item = usize> {
-        let free: Vec<usize> = (0..self.shape.len()).filter(|i| self.form.shape[*i].is_smooth()).collect();
-        free.into_iter()
-    }
-
-    /// Whether a refined nonlinear parameter other than an exponent lies at the bound of the identifiable range.
-    pub fn is_at_edge(&self) -> bool {
-        let sudden = self.effect.exponent_parameter();
-        let mut slots = self.form.shape.iter().zip(&self.shape);
-        slots.any(|(shape, value)| shape.is_smooth() && sudden != Some(shape.name) && shape.is_edge(*value))
-    }
-
-    /// Whether the coefficients are physically possible.
-    pub fn allows(&self, coefficients: &[f64]) -> bool {
-        allows(self.effect, &self.form, coefficients)
-    }
-
-    /// Number of free parameters, linear and nonlinear.
-    pub fn size(&self) -> usize {
-        self.columns.len() + self.form.shape.iter().filter(|s| s.min < s.max).count()
-    }
-}
-
-/// Whether these coefficients of an effect are physically possible.
-pub fn allows(effect: &dyn Effect, form: &Form, coefficients: &[f64]) -> bool {
-    let info = effect.info();
-    form.linear.iter().zip(coefficients).all(|(name, value)| {
-        info.parameters.iter().find(|p| p.name == *name).is_none_or(|p| (p.min..=p.max).contains(value))
-    })
-}
-
-/// Columns of an effect at the rows of a problem.
-pub fn columns(effect: &dyn Effect, form: &str, shape: &[f64], problem: &Problem) -> Columns {
-    problem.reduce.apply_all(effect.columns(form, shape, &problem.view))
-}
 
 /// A model on one problem.
 #[derive(Clone)]
@@ -199,9 +144,19 @@ impl<'p> LinearModel<'p> {
         kind != Kind::Encoder && rms < NEGLIGIBLE_RMS * spread
     }
 
-    /// The response minus the offset terms.
+    /// The response minus the offset terms and the fixed parts of the terms.
     pub fn response(&self) -> Vec<f64> {
-        self.problem.target.iter().zip(&self.given).map(|(y, g)| y - g).collect()
+        self.response_without(self.terms.iter())
+    }
+
+    /// The response minus the offset terms and the fixed parts of some terms.
+    fn response_without<'t>(&self, terms: impl Iterator<Item = &'t Term<'p>>) -> Vec<f64>
+    where
+        'p: 't,
+    {
+        let mut response: Vec<f64> = self.problem.target.iter().zip(&self.given).map(|(y, g)| y - g).collect();
+        terms.for_each(|term| subtract(&mut response, &term.fixed));
+        response
     }
 
     pub fn columns(&self) -> Vec<&[f64]> {
@@ -228,7 +183,8 @@ impl<'p> LinearModel<'p> {
         }
         let fixed = (0..self.terms.len()).filter(|i| !free.contains(i)).flat_map(|i| &self.terms[i].columns);
         let basis = Basis::of(fixed);
-        let rest = basis.rest(&self.response());
+        let still = (0..self.terms.len()).filter(|i| !free.contains(i)).map(|i| &self.terms[i]);
+        let rest = basis.rest(&self.response_without(still));
         let mut moving: Vec<Term<'p>> = free.iter().map(|i| self.terms[*i].clone()).collect();
         varpro(&mut moving, &basis, &rest, self.problem);
         for (i, term) in free.into_iter().zip(moving) {
@@ -237,8 +193,12 @@ impl<'p> LinearModel<'p> {
     }
 }
 
-/// ∂(Σ coefficient·column) by a step of each free nonlinear parameter (see [`Shape::moved`]), by central differences.
-/// The reduction of columns to rows is linear, so that the sum is reduced only once.
+fn subtract(from: &mut [f64], part: &[f64]) {
+    from.iter_mut().zip(part).for_each(|(y, part)| *y -= part);
+}
+
+/// ∂(Σ coefficient·column + fixed part) by a step of each free nonlinear parameter (see [`Shape::moved`]), by central
+/// differences. The reduction of columns to rows is linear, so that the sum is reduced only once.
 ///
 /// [`Shape::moved`]: crate::effect::Shape::moved
 pub(in crate::regression) fn slopes(term: &Term, coefficients: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
@@ -247,11 +207,14 @@ pub(in crate::regression) fn slopes(term: &Term, coefficients: &[f64], problem: 
         let at = |sign: f64| {
             let mut shape = term.shape.clone();
             shape[k] = term.form.shape[k].moved(shape[k], sign * STEP);
-            term.effect.columns(term.form.name, &shape, &problem.view)
+            let fixed = term.effect.fixed_part(term.form.name, &shape, &problem.view);
+            (term.effect.columns(term.form.name, &shape, &problem.view), fixed)
         };
-        let (up, down) = (at(1.0), at(-1.0));
+        let ((mut up, fixed_up), (mut down, fixed_down)) = (at(1.0), at(-1.0));
+        up.extend(fixed_up);
+        down.extend(fixed_down);
         let mut slope = vec![0.0; up.first().map_or(0, Vec::len)];
-        for ((u, d), f) in up.iter().zip(&down).zip(coefficients) {
+        for ((u, d), f) in up.iter().zip(&down).zip(coefficients.iter().chain([&1.0])) {
             let scale = f / (2.0 * STEP);
             slope.iter_mut().zip(u.iter().zip(d)).for_each(|(s, (u, d))| *s += scale * (u - d));
         }
@@ -280,9 +243,11 @@ fn reduce(terms: &[Term], basis: &Basis, rest: &[f64]) -> Reduced {
         }
     }
     let spd = Cholesky::new(&gram, p, 1e-12);
-    let side: Vec<f64> = columns.iter().map(|c| dot(c, rest)).collect();
-    let coefficients = spd.solve(&side);
     let mut residual = rest.to_vec();
+    let fixed = terms.iter().filter(|term| !term.fixed.is_empty());
+    fixed.for_each(|term| subtract(&mut residual, &basis.rest(&term.fixed)));
+    let side: Vec<f64> = columns.iter().map(|c| dot(c, &residual)).collect();
+    let coefficients = spd.solve(&side);
     for (c, f) in columns.iter().zip(&coefficients) {
         residual.iter_mut().zip(c).for_each(|(r, c)| *r -= f * c);
     }
@@ -304,7 +269,7 @@ fn narrow(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) ->
                 for sign in [-1.0, 1.0] {
                     let mut trial = terms.to_vec();
                     trial[i].shape[k] = (trial[i].shape[k] + sign * reach).clamp(bounds.min, bounds.max);
-                    trial[i].columns = columns(trial[i].effect, trial[i].form.name, &trial[i].shape, problem);
+                    trial[i].evaluate(problem);
                     let reduced = reduce(&trial, basis, rest);
                     if reduced.sse < best.sse {
                         terms.clone_from_slice(&trial);
@@ -363,7 +328,7 @@ pub fn varpro(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem
             }
             for term in &mut trial {
                 if !term.shape.is_empty() {
-                    term.columns = columns(term.effect, term.form.name, &term.shape, problem);
+                    term.evaluate(problem);
                 }
             }
             let reduced = reduce(&trial, basis, rest);

@@ -13,5 +13,6 @@ pub(crate) mod linear_model;
 pub(crate) mod partial_regression;
 pub(crate) mod significance;
 pub(crate) mod solution;
+pub(crate) mod term;
 pub(crate) mod two_stage_model;
 pub(crate) mod weights;

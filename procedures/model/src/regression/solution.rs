@@ -89,14 +89,10 @@ impl Solution {
     pub fn of(model: &LinearModel) -> Option<Arc<Self>> {
         let form_error = model.problem.form_error.as_deref()?;
         let make = || Self::weighted(model, form_error, weighed(model, form_error), None);
-        // The name of a user effect does not identify its formula, so that its solution is not cached.
-        match model
-            .terms
-            .iter()
-            .map(|term| term.id())
-            .chain(model.offsets.iter().map(|e| e.info().id))
-            .all(is_of_library)
-        {
+        // The name of a user effect does not identify its formula, nor the values of set parameters, so that such
+        // solutions are not cached.
+        let mut ids = model.terms.iter().map(|term| term.id()).chain(model.offsets.iter().map(|e| e.info().id));
+        match ids.all(is_of_library) && model.terms.iter().all(|term| term.effect.coefficients().is_empty()) {
             true => Some(model.problem.memo.of(name(model), make)),
             false => Some(Arc::new(make())),
         }

@@ -6,7 +6,7 @@ use crate::preprocess::{Prepared, Problem};
 use crate::regression::candidates::CandidateSet;
 use crate::regression::canonical_fit::{enter, fit_canonical};
 use crate::regression::hysteresis_form::form_of;
-use crate::regression::linear_model::{LinearModel, Term, columns};
+use crate::regression::linear_model::{LinearModel, Term, columns, fixed_part};
 use crate::regression::solution::PRESLIDING;
 use crate::report::reasons::Invisible;
 use crate::{Effect, ModelError, ModelSpec, Options};
@@ -128,7 +128,7 @@ impl<'p> TwoStageModel<'p> {
         }
         for part in std::iter::once(&self.main).chain(&self.moving) {
             for (term, coefficients) in part.terms.iter().zip(part.linear().coefficients) {
-                add(&mut sum, &columns(term.effect, term.form.name, &term.shape, problem), &coefficients);
+                add_term(&mut sum, term, &coefficients, problem);
             }
         }
         sum
@@ -147,8 +147,7 @@ impl<'p> TwoStageModel<'p> {
             }
         }
         for (term, coefficients) in self.main.terms.iter().zip(self.main.linear().coefficients) {
-            let columns = columns(term.effect, term.form.name, &term.shape, moving.problem);
-            add(&mut moving.given, &columns, &coefficients);
+            add_term(&mut moving.given, term, &coefficients, moving.problem);
         }
     }
 
@@ -188,8 +187,7 @@ impl<'p> TwoStageModel<'p> {
         if let Some(moving) = &self.moving {
             let fitted = moving.terms.iter().zip(moving.linear().coefficients);
             for (term, coefficients) in fitted.filter(|(term, _)| term.effect.regime() == Regime::Transient) {
-                let columns = columns(term.effect, term.form.name, &term.shape, self.main.problem);
-                add(&mut ramp_offset, &columns, &coefficients);
+                add_term(&mut ramp_offset, term, &coefficients, self.main.problem);
             }
         }
         add(&mut self.main.given, &[std::mem::replace(&mut self.ramp_offset, ramp_offset.clone())], &[-1.0]);
@@ -213,6 +211,12 @@ impl<'p> TwoStageModel<'p> {
         next.refresh_ramp_offset();
         next
     }
+}
+
+/// Adds the contribution of a term at the rows of a problem.
+fn add_term(sum: &mut [f64], term: &Term, coefficients: &[f64], problem: &Problem) {
+    add(sum, &columns(term.effect, term.form.name, &term.shape, problem), coefficients);
+    add(sum, &[fixed_part(term, problem)], &[1.0]);
 }
 
 fn add(sum: &mut [f64], columns: &[Vec<f64>], coefficients: &[f64]) {

@@ -1,6 +1,7 @@
 //! A fitted model.
 
 use crate::OwnEffect;
+use crate::report::setting::ParameterSetting;
 use jointbench_instrument::{Kind, Motion};
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -24,6 +25,9 @@ pub struct Fit {
     /// Definitions of the user effects that the fit contains.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<OwnEffect>,
+    /// Fixed values, bounds and start values that a user has set.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub settings: Vec<ParameterSetting>,
     /// Training error: RMS of the residual on the fitted data, in `unit`.
     pub rms: f64,
     /// Validation error: RMS on data left out of the fit; the other conditions predict every condition.
@@ -88,8 +92,10 @@ pub struct Parameter {
 pub enum ParameterState {
     /// The run determines the value, and the value is physically possible.
     Ok,
-    /// The estimate is at a bound of the physically plausible range.
+    /// The estimate is at a bound of the physically plausible range, or at a bound that a user has set.
     AtBound,
+    /// A user has fixed the value. It is no estimate, and its interval has no width.
+    Fixed,
     /// The whole interval of a coefficient is outside its physical range, or outside the range of the user.
     Impossible,
     /// The data does not determine the parameter: its interval is as wide as the value.

@@ -6,6 +6,7 @@ pub(crate) mod fit;
 pub(crate) mod maps;
 pub(crate) mod reasons;
 pub(crate) mod residuals;
+pub(crate) mod setting;
 pub(crate) mod text;
 pub(crate) mod upper_limits;
 
@@ -21,4 +22,5 @@ pub use crate::report::fit::{
 pub use crate::report::maps::{AxisMap, MapBin, MapCell, PairMap, Region, ResidualMaps};
 pub use crate::report::reasons::{AdditionReason, Invisible, InvisibleReason, LeftOut, RejectionReason, RemovalReason};
 pub use crate::report::residuals::{Axis, ResidualSet};
+pub use crate::report::setting::ParameterSetting;
 pub use crate::report::text::TextPart;
