@@ -26,7 +26,8 @@ pub struct RunQuery {
     /// `after:2026-01-31`; all must match.
     pub search: Option<String>,
     /// Sort column: `started`, `state`, `procedure`, `bench`, `duration`, `rows`, `safe`, `error` (validation error of
-    /// the latest active model version) or `coulomb`; with a minus sign largest first. Newest first if omitted.
+    /// the latest active model version), `coulomb`, or a quantity of the result as `quantity:tau_c`; with a minus sign
+    /// largest first. Runs without the value are last. Newest first if omitted.
     pub sort: Option<String>,
     /// The search is incomplete: unknown terms are ignored and reported instead of rejected.
     pub typing: bool,

@@ -123,9 +123,12 @@ impl Lab {
         let found: Identification = self.compute(Job::Identify { run: id, step }).await?;
         let verdict = found.result.verdict;
         let limits = found.limits.as_ref().map(|check| word(check.outcome));
-        let is_kept = record.verdict.as_ref() == Some(&word(verdict)) && record.limits == limits;
+        let values = values_by_name(&found.result.quantities);
+        let is_kept = record.verdict.as_ref() == Some(&word(verdict))
+            && record.limits == limits
+            && self.inner.store.quantities_kept(id).await?.as_ref() == Some(&values);
         if record.state.is_final() && !is_kept {
-            match self.inner.store.keep_verdict(id, &word(verdict), limits.as_deref()).await {
+            match self.inner.store.keep_verdict(id, &word(verdict), limits.as_deref(), &values).await {
                 Ok(()) => self.hub().publish(LiveMessage::Verdict { run: id, verdict }),
                 // The result is valid although its verdict is not stored.
                 Err(fault) => {
@@ -235,6 +238,15 @@ impl Lab {
             tracing::warn!(run.id = run, %fault, "the notifications of the run wait longer");
         }
     }
+}
+
+/// The finite values of quantities, ordered by name; of two with one name the first.
+fn values_by_name(quantities: &[Quantity]) -> Vec<(String, f64)> {
+    let finite = quantities.iter().filter(|one| one.value.is_finite());
+    let mut values: Vec<(String, f64)> = finite.map(|one| (one.name.clone(), one.value)).collect();
+    values.sort_by(|a, b| a.0.cmp(&b.0));
+    values.dedup_by(|later, first| later.0 == first.0);
+    values
 }
 
 /// The result of a run compared with its limits.

@@ -34,6 +34,7 @@ const FILES: &[(&str, &str)] = &[
     ("0024_limit_outcomes.sql", include_str!("../../../migrations/0024_limit_outcomes.sql")),
     ("0025_queue.sql", include_str!("../../../migrations/0025_queue.sql")),
     ("0026_notifications.sql", include_str!("../../../migrations/0026_notifications.sql")),
+    ("0027_run_quantities.sql", include_str!("../../../migrations/0027_run_quantities.sql")),
 ];
 
 #[derive(Debug)]

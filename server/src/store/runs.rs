@@ -81,11 +81,35 @@ impl Store {
         insert_run(&mut *self.writer.acquire().await?, new).await
     }
 
-    /// Stores the verdict of the procedure on an ended run, and the outcome of its limits.
-    pub async fn keep_verdict(&self, run: RunId, verdict: &str, limits: Option<&str>) -> Result<(), StoreError> {
-        let keep = sqlx::query("INSERT OR REPLACE INTO verdicts (run, verdict, limits) VALUES (?, ?, ?)");
-        keep.bind(run).bind(verdict).bind(limits).execute(&self.writer).await?;
-        Ok(())
+    /// Stores the verdict of the procedure on an ended run, the outcome of its limits, and the values of its quantities.
+    pub async fn keep_verdict(
+        &self,
+        run: RunId,
+        verdict: &str,
+        limits: Option<&str>,
+        quantities: &[(String, f64)],
+    ) -> Result<(), StoreError> {
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let keep =
+            sqlx::query("INSERT OR REPLACE INTO verdicts (run, verdict, limits, with_quantities) VALUES (?, ?, ?, 1)");
+        keep.bind(run).bind(verdict).bind(limits).execute(&mut *writer).await?;
+        sqlx::query("DELETE FROM run_quantities WHERE run = ?").bind(run).execute(&mut *writer).await?;
+        for (name, value) in quantities {
+            let keep = sqlx::query("INSERT OR IGNORE INTO run_quantities (run, name, value) VALUES (?, ?, ?)");
+            keep.bind(run).bind(name).bind(value).execute(&mut *writer).await?;
+        }
+        Ok(writer.commit().await?)
+    }
+
+    /// The stored values of the quantities of a run by name. `None` if they were never stored.
+    pub async fn quantities_kept(&self, run: RunId) -> Result<Option<Vec<(String, f64)>>, StoreError> {
+        let query = "SELECT with_quantities FROM verdicts WHERE run = ?";
+        let with_quantities: Option<bool> = sqlx::query_scalar(query).bind(run).fetch_optional(&self.readers).await?;
+        if with_quantities != Some(true) {
+            return Ok(None);
+        }
+        let query = "SELECT name, value FROM run_quantities WHERE run = ? ORDER BY name";
+        Ok(Some(sqlx::query_as(query).bind(run).fetch_all(&self.readers).await?))
     }
 
     /// Number of ended runs for each bench, procedure and state.
@@ -95,10 +119,10 @@ impl Store {
         Ok(rows.into_iter().map(|(bench, procedure, state, n)| ([bench, procedure, state], n as u64)).collect())
     }
 
-    /// Ended runs without a stored verdict, newest first.
+    /// Ended runs without a stored verdict or without stored quantities, newest first.
     pub async fn unjudged(&self, limit: u32) -> Result<Vec<RunId>, StoreError> {
         let query = "SELECT id FROM runs_told WHERE finished_at IS NOT NULL AND rows > 0 AND procedure <> 'import' \
-            AND id NOT IN (SELECT run FROM verdicts) ORDER BY id DESC LIMIT ?";
+            AND id NOT IN (SELECT run FROM verdicts WHERE with_quantities) ORDER BY id DESC LIMIT ?";
         Ok(sqlx::query_scalar(query).bind(limit).fetch_all(&self.readers).await?)
     }
 

@@ -137,6 +137,23 @@ fn a_result_is_shown_with_earlier_results() {
     let all = trends["runs"].as_array().unwrap();
     assert_eq!((status, all.len()), (200, 3), "{trends}");
     assert!(all.iter().all(|one| one["temperature_c"].as_f64().is_some_and(|c| (15.0..60.0).contains(&c))), "{trends}");
+    // The list is sorted by the same values; the aborted run has none and is last.
+    let value = |run: &Value| {
+        let quantities = run["quantities"].as_array().unwrap();
+        quantities.iter().find(|one| one["name"] == "tau_c").unwrap()["value"].as_f64().unwrap()
+    };
+    let mut rising: Vec<(f64, i64)> = all.iter().map(|one| (value(one), one["run"].as_i64().unwrap())).collect();
+    rising.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let listed = |sort: &str| -> Vec<i64> {
+        let (status, list) = daemon.get(&format!("/api/v1/runs?sort={sort}"));
+        assert_eq!(status, 200, "{list}");
+        list["runs"].as_array().unwrap().iter().map(|run| run["id"].as_i64().unwrap()).collect()
+    };
+    let ids: Vec<i64> = rising.iter().map(|one| one.1).collect();
+    assert_eq!(listed("quantity:tau_c"), [ids.clone(), vec![aborted]].concat());
+    assert_eq!(listed("-quantity:tau_c"), [ids.into_iter().rev().collect(), vec![aborted]].concat());
+    assert_eq!(listed("quantity:none"), [third, second, aborted, first], "without values the newest is first");
+    assert_eq!(daemon.get("/api/v1/runs?sort=quantity:").0, 422);
 }
 
 #[test]

@@ -57,6 +57,13 @@ it('orders by a column, the other way round, and no longer', () => {
 	expect([sortOrder('-error', 'error'), sortOrder('error', 'error'), sortOrder('error', 'rows'), sortOrder(null, 'note')]).toEqual(['descending', 'ascending', 'none', null]);
 });
 
+it('orders by a quantity of the result', () => {
+	const column = { quantity: 'tau_c' };
+	expect([null, '-quantity:tau_c', 'quantity:tau_c', '-quantity:c_v'].map((sort) => nextSort(sort, column))).toEqual(['-quantity:tau_c', 'quantity:tau_c', null, '-quantity:tau_c']);
+	expect([sortOrder('-quantity:tau_c', column), sortOrder('quantity:c_v', column)]).toEqual(['descending', 'none']);
+	expect(['-quantity:tau_c', 'quantity:c_v', 'quantities'].map(readSort)).toEqual(['-quantity:tau_c', 'quantity:c_v', null]);
+});
+
 it('remembers the base, and lets the address have the last word', () => {
 	const kept = storage();
 	expect(readBase(null, kept)).toBeNull();

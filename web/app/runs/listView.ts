@@ -60,20 +60,28 @@ export function toggleBase(base: number | null, id: number, kept: Pick<Storage, 
 const SORTS: Partial<Record<Column | 'state', string>> = { state: 'state', procedure: 'procedure', bench: 'bench', started: 'started', duration: '-duration', rows: '-rows', safe: 'safe', error: '-error' };
 const reversed = (sort: string) => (sort.startsWith('-') ? sort.slice(1) : `-${sort}`);
 
+const QUANTITY_PREFIX = 'quantity:';
+const isQuantitySort = (sort: string) => sort.replace(/^-/, '').startsWith(QUANTITY_PREFIX);
+
+/** A sortable column: one of the list, or a quantity by its name. */
+export type SortColumn = Column | 'state' | { quantity: string };
+
+const ownOrder = (column: SortColumn): string | undefined => (typeof column === 'object' ? `-${QUANTITY_PREFIX}${column.quantity}` : SORTS[column]);
+
 /** The order of an address; `null` for a column without a head, such as `-coulomb` of earlier versions. */
 export const readSort = (address: string | null): string | null =>
-	address !== null && Object.values(SORTS).some((own) => address === own || address === reversed(own)) ? address : null;
+	address !== null && (Object.values(SORTS).some((own) => address === own || address === reversed(own)) || isQuantitySort(address)) ? address : null;
 
 /** Present sort order of a column; `null` if it cannot be sorted. */
-export function sortOrder(sort: string | null, column: Column | 'state'): 'ascending' | 'descending' | 'none' | null {
-	const own = SORTS[column];
+export function sortOrder(sort: string | null, column: SortColumn): 'ascending' | 'descending' | 'none' | null {
+	const own = ownOrder(column);
 	if (own === undefined) return null;
 	return sort === own || sort === reversed(own) ? (sort.startsWith('-') ? 'descending' : 'ascending') : 'none';
 }
 
 /** Order after another click on a column: its own order, then reversed, then newest first. */
-export function nextSort(sort: string | null, column: Column | 'state'): string | null {
-	const own = SORTS[column]!;
+export function nextSort(sort: string | null, column: SortColumn): string | null {
+	const own = ownOrder(column)!;
 	return sort === own ? reversed(own) : sort === reversed(own) ? null : own;
 }
 

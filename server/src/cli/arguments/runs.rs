@@ -15,7 +15,7 @@ pub struct Runs {
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
     pub limit: u32,
     /// started, state, procedure, bench, duration, rows, safe, error (validation error of the latest active model
-    /// version) or coulomb; --sort=-error lists the largest first [default: newest first]
+    /// version), coulomb, or a quantity of the result as quantity:tau_c; --sort=-error lists the largest first [default: newest first]
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     pub sort: Option<String>,
     /// Print JSON

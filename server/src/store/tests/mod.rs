@@ -6,6 +6,7 @@ mod keeping;
 mod losing;
 mod notifying;
 mod opening;
+mod sorting;
 mod verifying;
 mod viewing;
 
