@@ -14,7 +14,7 @@ use std::fmt;
 #[derive(Clone)]
 enum Whole {
     Library(&'static dyn Effect),
-    Own(OwnEffect),
+    Own(Box<OwnEffect>),
 }
 
 /// A form with fixed coefficients.
@@ -42,7 +42,7 @@ pub struct SetEffect {
 impl SetEffect {
     pub fn new(kind: Kind, own: &[OwnEffect], id: &str, nonlinear: Vec<ParameterSetting>) -> Result<Self, ModelError> {
         let whole = match own.iter().find(|own| own.id() == id) {
-            Some(own) => Whole::Own(own.clone()),
+            Some(own) => Whole::Own(Box::new(own.clone())),
             None => Whole::Library(effects::find(kind, id)?),
         };
         Ok(Self { whole, nonlinear, pinned: None })
@@ -56,7 +56,7 @@ impl SetEffect {
     fn whole(&self) -> &dyn Effect {
         match &self.whole {
             Whole::Library(effect) => *effect,
-            Whole::Own(effect) => effect,
+            Whole::Own(effect) => effect.as_ref(),
         }
     }
 

@@ -189,7 +189,7 @@ fn set_parameters_hold_are_inherited_and_reappear() {
     let file: Value = serde_json::from_str(&file).unwrap();
     assert_eq!(file["fit"]["settings"], fixed);
     let (status, imported) = daemon.post("/api/v1/models/import", &json!({"run": run, "model": file}).to_string());
-    assert_eq!((status, &imported["model"]["fit"]["settings"]), (201, &fixed), "{imported}");
+    assert_eq!((status, &imported["fit"]["settings"]), (201, &fixed), "{imported}");
     let report = text(&daemon, &format!("/api/v1/runs/{run}/report?format=html&model={}", set["id"]));
     assert!(report.contains("<td class=\"figure\">fixed</td>"), "{report}");
     // A setting that no fit can follow is refused with the reason, and no version is stored.

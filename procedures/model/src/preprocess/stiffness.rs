@@ -34,10 +34,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let mut signals = Signals::new(run.len());
     signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
     let is_held = moves_by_twist_only(&target, link);
-    let count = |angle: &[f64]| if is_held { count_of_held(angle, torque) } else { encoder_count(angle) };
-    let counts = [count(column("motor_position_rad")) / gear, count(link)];
-    // Standard deviation of a uniform distribution over a count.
-    let rounding = if is_held { counts[0].hypot(counts[1]) / 12f64.sqrt() } else { 0.0 };
+    let quantization = quantization(column("motor_position_rad"), link, torque, gear, is_held);
     if is_held {
         signals.set(Signal::Direction, segments::trend(torque));
     }
@@ -59,7 +56,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         repeat,
         derived_velocity,
         time_s,
-        constants: Constants { is_held, rounding, half_counts: 0.5 * (counts[0] + counts[1]), ..Constants::default() },
+        constants: Constants { is_held, ..quantization },
     };
     let smooth = smooth(&source, torque);
     source.signals.set(Signal::Load, smooth);
@@ -77,6 +74,15 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         format!("motor and link have another zero in every repeat ({apart} RMS apart), as encoders that are zeroed before each: it is subtracted")
     }));
     Ok(prepared)
+}
+
+/// The constants of the set-up with the quantization error of the twist, from the counts of both encoders.
+fn quantization(motor: &[f64], link: &[f64], torque: &[f64], gear: f64, is_held: bool) -> Constants {
+    let count = |angle: &[f64]| if is_held { count_of_held(angle, torque) } else { encoder_count(angle) };
+    let (motor, link) = (count(motor) / gear, count(link));
+    // Standard deviation of a uniform distribution over a count.
+    let rounding = if is_held { motor.hypot(link) / 12f64.sqrt() } else { 0.0 };
+    Constants { rounding, half_counts: 0.5 * (motor + link), ..Constants::default() }
 }
 
 /// The count of an encoder that moves by a few counts [rad], a power of two in a turn: the readings are multiples of

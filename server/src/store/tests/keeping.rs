@@ -227,7 +227,7 @@ fn runs_are_judged_once_and_what_is_on_is_not() {
         }
         store.create_run(&new_run()).await.unwrap();
         assert_eq!(store.unjudged(9).await.unwrap(), [3, 1]);
-        store.keep_verdict(3, "identified", Some("pass")).await.unwrap();
+        store.keep_verdict(3, "identified", Some("pass"), &[]).await.unwrap();
         assert_eq!(store.unjudged(9).await.unwrap(), [1]);
     });
 }
