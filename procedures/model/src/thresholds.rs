@@ -77,7 +77,7 @@ thresholds! {
     COMPARABLE_SPEED = 2.0, "ratio of speeds", "a wave is expected only at speeds up to this ratio: beyond it, the drive controller dominates", "`--test beats`";
     BETWEEN_LEGS = NEARLY_ALL, "fraction of squared column", "from this fraction on a column differs from leg to leg and hardly within one", "`--test legs`";
     STEP_OVER_READINGS = 2.0, "standard deviations", "a step in time of this size is none of the scatter of the readings", "`--test legs`";
-    SIMPLER_GAIN = NEARLY_ALL, "fraction of gain", "a simpler effect is as good where it brings this fraction of the gain of the best", "`evaluate --part hidden,null`";
+    SIMPLER_GAIN = 0.8, "fraction of gain", "a simpler effect is as good where it brings this fraction of the gain of the best", "`evaluate --part hidden,null`";
     MOST_EXCHANGES = 2.0, "exchanges", "added effects that may be swapped for others", "`evaluate --part hidden,null`";
     STAND_IN_LOSS = NEARLY_ALL, "ratio of squared validation errors", "a candidate above this ratio to a model that was given up only stands in for it", "`evaluate --part hidden,null`";
     BIASED_COEFFICIENT = 0.25, "fraction of coefficient", "a coefficient that moves by this fraction with an effect is biased without it", "mock joint A, seeds 17001 to 17012";
@@ -87,12 +87,13 @@ thresholds! {
     DELAY_ROWS = 1.5, "rows", "a delay is longer than this: of which moment of its row a reading is is unknown", "seven mock runs, 0.9 to 1.1 rows late";
     DELAY_POWER = 0.43, "half widths of the 95 % interval", "added to the delay threshold for 80 % power", "z₀.₈ / z₀.₉₇₅";
     DETECTION_POWER = 1.3, "standard errors", "added to the critical size for 80 % power (z₀.₈ = 0.84, the rest for the scatter of the standard error)", "`evaluate --part detectable`";
-    NEEDED_WHERE_OPEN = HALF, "increase of squared validation error", "an effect at a bound, of uncertain size, or with unexplained structure, stays where removing it costs this much", "`evaluate --part hidden,null`";
+    NEEDED_WHERE_OPEN = TENTH, "increase of squared validation error", "an effect at a bound, or with unexplained structure, stays where removing it costs this much", "`evaluate --part hidden,null`";
+    NEEDED_WITHOUT_SIZE = HALF, "increase of squared validation error", "the same of an effect whose coefficients could all be zero", "`evaluate --part hidden,null`";
     NEEDED_WITHOUT_SIZE_AND_SHAPE = 1.0, "increase of squared validation error", "the same of an effect of neither size nor shape", "`evaluate --part hidden,null`";
     STRUCTURE_SHARE = 0.15, "fraction of squared validation error", "a residual map that removes more is structure", "null runs: at most 2 %; well-explained runs: 11 %";
     WHOLE_EXPLANATION = MOST, "fraction of what any function of the axis explains", "an effect that explains less is only a part of the missing effect", "`--test humps`";
     PERIODS_SEEN = 2.0, "periods", "a wave that was seen less often is a curve over the angle", "`--test waves`";
-    WHOLE_CURVE = NEARLY_ALL, "fraction of what any function of the axis explains", "the bound for such a wave", "`--test waves`";
+    WHOLE_CURVE = 0.98, "fraction of what any function of the axis explains", "the bound for such a wave", "`--test waves`";
     FOLLOWED_RAD = 1.0, "rad", "a wave that advances further from sample to sample is not followed, and between two means it may be an alias", "`--test beats`";
     REPEATABLE_SHARE = HALF, "fraction of squared error", "more in common to all repeats is structure", "`evaluate --part hidden,null`";
     FLOOR_RATIO = 1.3, "ratio of RMS", "a validation error beyond this multiple of the noise floor is structure", "`evaluate --part hidden,null`";

@@ -36,7 +36,9 @@ pub enum StoreError {
     NoRun(RunId),
     #[error("search term {term}: {what}")]
     Search { term: String, what: String },
-    #[error("runs cannot be ordered by {name:?}; they can by {known}, with a minus sign the largest first")]
+    #[error(
+        "the runs have no column {name:?} to sort by: choose {known}; a minus sign in front lists the largest first"
+    )]
     Order { name: String, known: String },
     #[error("there is no model version {0}")]
     NoModel(i64),

@@ -18,7 +18,7 @@ fn every_refusal_is_a_problem_document() {
         (daemon.get("/api"), 404, "not_found", "openapi.json"),
         (daemon.get("/api/v1/runs/one"), 400, "malformed", "one"),
         (daemon.get("/api/v1/runs?limit=many"), 400, "malformed", "limit"),
-        (daemon.get("/api/v1/runs?sort=-temp"), 422, "invalid", "they can by started, state"),
+        (daemon.get("/api/v1/runs?sort=-temp"), 422, "invalid", "to sort by: choose started, state"),
         (daemon.get("/api/v1/effects?kind=belt"), 422, "invalid", "friction, encoder"),
         (started("{"), 400, "malformed", "JSON"),
         (started(r#"{"bench": "joint-a-mock"}"#), 400, "malformed", "procedure"),

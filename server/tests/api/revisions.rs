@@ -190,7 +190,7 @@ fn set_parameters_hold_are_inherited_and_reappear() {
     assert_eq!(file["fit"]["settings"], fixed);
     let (status, imported) = daemon.post("/api/v1/models/import", &json!({"run": run, "model": file}).to_string());
     assert_eq!((status, &imported["fit"]["settings"]), (201, &fixed), "{imported}");
-    let report = text(&daemon, &format!("/api/v1/runs/{run}/report?format=html&model={}", set["id"]));
+    let report = text(&daemon, &format!("/api/v1/runs/{run}/report?model={}", set["id"]));
     assert!(report.contains("<td class=\"figure\">fixed</td>"), "{report}");
     // A setting that no fit can follow is refused with the reason, and no version is stored.
     let versions = || daemon.get(&format!("/api/v1/models?run={run}")).1.as_array().unwrap().len();

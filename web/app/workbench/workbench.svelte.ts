@@ -82,15 +82,18 @@ export function openWorkbench(id: number) {
 	const region = $derived(readRegion(regionText));
 	const selectedSamples = $derived(residuals.data ? regionSamples(residuals.data.set, region, side, ramps) : null);
 	const defaultAxisNames = $derived(residuals.data ? defaultAxes(residuals.data.set, run.data?.kind) : []);
+	/** The tests of a diagnosis fit every parameter freely, so that a model with fixed or bounded parameters has none. */
+	const hasDiagnosis = $derived(settingsOf(model).length === 0);
 	const diagnosis = resource(
-		() => (model ? `${model.id} ${lab.effects}` : null),
+		() => (model && hasDiagnosis ? `${model.id} ${lab.effects}` : null),
 		(_key, signal) => api.diagnose(model?.id ?? 0, signal),
 	);
 
 	/** All data that determines the layout has arrived once. Before that, nothing that it would move is displayed. */
 	let isLaidOut = $state(false);
 	$effect(() => {
-		isLaidOut ||= model !== null && [run, effects, residuals, diagnosis, similarRuns].every((one) => one.data ?? one.error) && !result.loading;
+		const awaited = [run, effects, residuals, similarRuns, ...(hasDiagnosis ? [diagnosis] : [])];
+		isLaidOut ||= model !== null && awaited.every((one) => one.data ?? one.error) && !result.loading;
 	});
 
 	const isOwn = (effect: string) => effects.data?.some((one) => one.id === effect && one.definition) ?? false;
@@ -375,6 +378,9 @@ export function openWorkbench(id: number) {
 		/** The displayed residuals belong to the displayed version. */
 		get residualsAreCurrent() {
 			return !isAwaited && residuals.data?.version === model?.id;
+		},
+		get hasDiagnosis() {
+			return hasDiagnosis;
 		},
 		/** The displayed diagnosis belongs to the displayed version. */
 		get diagnosisIsCurrent() {

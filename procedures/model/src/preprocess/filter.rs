@@ -126,21 +126,6 @@ pub fn derivative(time_s: &[f64], values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Derivative on even samples by central differences of fourth order, of second order next to the ends, and one-sided
-/// at the ends (Fornberg 1988). At the frequency f its relative error is (2πf·step)⁴/30. That of second order is
-/// (2πf·step)²/6, which makes an inertia too large: 1.2 % at 6 Hz and 200 samples in a second.
-pub fn even_derivative(step_s: f64, values: &[f64]) -> Vec<f64> {
-    let n = values.len();
-    let between = |low: usize, high: usize| (values[high] - values[low]) / ((high - low).max(1) as f64 * step_s);
-    (0..n)
-        .map(|i| {
-            let is_inside = i >= 2 && i + 2 < n;
-            let nearest = between(i.saturating_sub(1), (i + 1).min(n - 1));
-            if is_inside { (4.0 * nearest - between(i - 2, i + 2)) / 3.0 } else { nearest }
-        })
-        .collect()
-}
-
 /// Applies a function to every recording on its own and joins the results.
 pub fn by_recording(
     values: &[f64],
@@ -158,18 +143,6 @@ pub fn by_recording(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn two_derivatives_of_a_wave_of_six_hertz_keep_its_size() {
-        let (step_s, pulsation) = (5e-3, std::f64::consts::TAU * 6.0);
-        let wave: Vec<f64> = (0..200).map(|i| (pulsation * step_s * f64::from(i)).sin()).collect();
-        let twice = even_derivative(step_s, &even_derivative(step_s, &wave));
-        for (acceleration, position) in twice.iter().zip(&wave).skip(4).take(192) {
-            assert!((acceleration / (pulsation * pulsation) + position).abs() < 1e-4);
-        }
-        assert_eq!(even_derivative(step_s, &[1.0]), [0.0]);
-        assert_eq!(even_derivative(0.5, &[1.0, 2.0, 3.0]), [2.0, 2.0, 2.0]);
-    }
 
     fn wave(n: usize, share_of_nyquist: f64) -> Vec<f64> {
         (0..n).map(|i| (PI * share_of_nyquist * i as f64).sin()).collect()

@@ -261,7 +261,7 @@ fn runs_are_ordered_by_what_they_are_asked_to_be() {
             assert_eq!(found, ids, "{asked}");
         }
         let refused = Order::parse("-temp").unwrap_err().to_string();
-        assert!(refused.contains("by \"temp\"; they can by started, state"), "{refused}");
+        assert!(refused.contains("column \"temp\" to sort by: choose started, state"), "{refused}");
     });
 }
 

@@ -3,7 +3,7 @@
 use crate::linear::basis::dot;
 use crate::preprocess::design::replicates::{Same, are_apart};
 use crate::preprocess::design::{blocks, replicates, segments};
-use crate::preprocess::filter::{LowPass, by_recording, even_derivative};
+use crate::preprocess::filter::{LowPass, by_recording, derivative};
 use crate::preprocess::form_error::{ErrorColumn, FormError, FormErrorKind};
 use crate::preprocess::friction::bristles;
 use crate::preprocess::friction::signals::{Work, pad};
@@ -68,7 +68,7 @@ impl Layout {
             rows: rows.clone().into(),
             starts: even.starts.clone().into(),
         };
-        let slope = |values: &[f64]| by_recording(values, &even.starts, |_, v| even_derivative(even.step_s, v));
+        let slope = |values: &[f64]| by_recording(values, &even.starts, |range, v| derivative(&even.time_s[range], v));
         let of = |signal| work.signals.find(signal).map(<[f64]>::to_vec).unwrap_or_default();
         let snap = slope(&of(Signal::Jerk));
         let mut slopes = vec![of(Signal::Acceleration), of(Signal::Jerk), snap];

@@ -2,7 +2,7 @@
 
 use crate::ModelError;
 use crate::preprocess::design::segments;
-use crate::preprocess::filter::{LowPass, by_recording, even_derivative};
+use crate::preprocess::filter::{LowPass, by_recording, derivative};
 use crate::preprocess::friction::bristles;
 use crate::preprocess::friction::work_rate::{Even, even};
 use crate::preprocess::sample_s;
@@ -102,7 +102,7 @@ pub fn read(run: &RunTable) -> Result<Work, ModelError> {
     if signals.find(Signal::Link).is_none() {
         signals.set(Signal::Link, position.iter().map(|q| q / gear).collect());
     }
-    let slope = |values: &[f64]| by_recording(values, &even.starts, |_, v| even_derivative(even.step_s, v));
+    let slope = |values: &[f64]| by_recording(values, &even.starts, |range, v| derivative(&even.time_s[range], v));
     let velocity = slope(&position);
     let acceleration = slope(&velocity);
     let encoder_step = bristles::encoder_step(run.column("motor_position_rad").unwrap_or_default());

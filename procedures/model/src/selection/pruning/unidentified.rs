@@ -6,7 +6,7 @@ use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState};
 use crate::selection::floating_search::FloatingSearch;
-use crate::thresholds::{NEEDED_WHERE_OPEN, NEEDED_WITHOUT_SIZE_AND_SHAPE};
+use crate::thresholds::{NEEDED_WHERE_OPEN, NEEDED_WITHOUT_SIZE, NEEDED_WITHOUT_SIZE_AND_SHAPE};
 
 /// Doubts about an effect that the data leaves open.
 #[derive(Clone, Copy, Default)]
@@ -51,9 +51,9 @@ pub fn is_identified<'p>(with: &LinearModel<'p>, term: &Term<'p>, prepared: &Pre
 }
 
 /// An added effect whose size or shape the data does not determine, and whose removal hardly increases the validation
-/// error. If both are open, another cause is possible: then the effect has to be worth half of the error, otherwise a
-/// third. With structure from outside the library no size counts as identified, because a part of that structure can
-/// be in it.
+/// error. If both are open, another cause is possible: then the effect has to be worth half of the error. If its size
+/// can be zero for any shape, it has to be worth a third. With structure from outside the library no size counts as
+/// identified, because a part of that structure can be in it.
 pub fn unidentified<'p>(search: &FloatingSearch<'_, 'p>) -> Option<&'p str> {
     let prepared = search.prepared;
     let parameters = intervals(&search.now, prepared.motion).parameters;
@@ -64,6 +64,7 @@ pub fn unidentified<'p>(search: &FloatingSearch<'_, 'p>) -> Option<&'p str> {
         let is_removed = match undetermined.coefficients && undetermined.shape {
             // An effect with open size and shape is removed if another effect is confounded with it.
             true => more < NEEDED_WITHOUT_SIZE_AND_SHAPE || !search.stand_ins(term).is_empty(),
+            false if undetermined.size => more < NEEDED_WITHOUT_SIZE,
             false => (search.unmodelled_structure || undetermined.any()) && more < NEEDED_WHERE_OPEN,
         };
         is_removed.then_some((term.id(), more))
