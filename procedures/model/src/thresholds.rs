@@ -1,9 +1,9 @@
 //! Every threshold of the diagnosis: value, unit, meaning, and what it was calibrated on.
 //!
-//! Most decisions that compare shares use one of four levels, which are tuned for none of them. Numerical guards and
-//! published quantiles stay where they are used. `evaluate` is `cargo run --release -p jointbench-model --example
-//! evaluate --`, `--test` a test of this crate. The tables in docs/diagnosis.md are printed from these lists, and a
-//! test holds both together.
+//! Thresholds that are fractions share four round levels where no recording or simulated run decides otherwise.
+//! Numerical guards and published quantiles stay where they are used. `evaluate` is `cargo run --release -p
+//! jointbench-model --example evaluate --`, `--test` a test of this crate. The tables in docs/diagnosis.md are printed
+//! from these lists, and a test holds both together.
 
 /// A share that several decisions use.
 pub struct Level {
