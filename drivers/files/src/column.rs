@@ -117,16 +117,23 @@ impl Column {
         self.found.append(found, rows);
     }
 
-    /// Removes the rows from this one on.
-    pub fn truncate(&mut self, rows: usize) {
+    /// Removes all rows but these, in ascending order.
+    pub fn keep(&mut self, kept: &[usize]) {
+        if self.values.is_empty() {
+            return;
+        }
+        let place = |row: usize| kept.binary_search(&row).ok();
+        let moved = |cell: Cell| place(cell.row).map(|row| Cell { row, ..cell });
         let found = &mut self.found;
-        found.wrong.retain(|cell| cell.row < rows);
-        let gone = found.wrong_rows.split_off(found.wrong_rows.partition_point(|row| *row < rows));
-        let values = self.values.split_off(rows.min(self.values.len()));
-        let empty = values.iter().filter(|value| value.is_nan()).count().saturating_sub(gone.len());
-        found.missing = found.missing.saturating_sub(empty);
-        found.first_missing = found.first_missing.take().filter(|cell| cell.row < rows);
-        found.numbers = found.numbers.saturating_sub(values.len() - empty - gone.len());
+        found.wrong = std::mem::take(&mut found.wrong).into_iter().filter_map(moved).collect();
+        found.wrong_rows = found.wrong_rows.iter().filter_map(|row| place(*row)).collect();
+        for cell in [&mut found.first_missing, &mut found.doubtful, &mut found.three_decimals] {
+            *cell = cell.take().and_then(moved);
+        }
+        self.values = kept.iter().map(|row| self.values[*row]).collect();
+        let empty = self.values.iter().filter(|value| value.is_nan()).count();
+        found.missing = empty.saturating_sub(found.wrong_rows.len());
+        found.numbers = (self.values.len() - empty).saturating_sub(found.truths);
     }
 
     /// Treats cells of this value as empty.

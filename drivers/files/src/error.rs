@@ -1,6 +1,9 @@
 //! Why and where a file is refused.
 
 use crate::ProposedOption;
+use crate::note::plural;
+use crate::omitted_rows::rows_text;
+use crate::raw::RawTable;
 use crate::text::Decimal;
 use jointbench_instrument::{Kind, TableFault};
 use std::{fmt, io};
@@ -62,13 +65,15 @@ pub enum FileFault {
     NotText(u8),
     #[error("there are column names and no sample below them: was the table cut off, or is it still being written?")]
     NoRows,
-    #[error("{first}; and {} more rows are wrong: {}{gaps}", .rows - 1, shown_rows(.more, .rows - 1))]
+    #[error("{first}{}", rows_after_first(.more, .rows - 1, .gaps))]
     Rows {
         first: Box<FileFault>,
         more: Vec<Wrong>,
         rows: usize,
         /// Columns with empty cells, and the number of rows without empty cells; empty if there are no empty cells.
         gaps: String,
+        /// The rows as an option names them, if they are few.
+        omitted: Option<String>,
     },
     #[error("numbers stand where the line of column names is expected; a {kind} run needs {}", kind.required_columns().join(", "))]
     NoNames { kind: Kind, options: Vec<ProposedOption> },
@@ -118,6 +123,10 @@ pub enum FileFault {
     Unmapped { wanted: String, there: Vec<String> },
     #[error("column {wanted} cannot be omitted, as it is not in the file: it has {}", .there.join(", "))]
     NotLeft { wanted: String, there: Vec<String> },
+    #[error("row {wanted} cannot be omitted: the rows of the file are {first} to {last}")]
+    NotOmitted { wanted: u64, first: u64, last: u64 },
+    #[error("all rows are omitted: keep some of them")]
+    AllOmitted,
     #[error("the scale names column {wanted}, which is not in the table: it has {}", .there.join(", "))]
     Unscaled { wanted: String, there: Vec<String> },
     #[error("{0}")]
@@ -130,6 +139,15 @@ pub struct Wrong {
     pub line: u64,
     pub column: Option<String>,
     pub fault: FileFault,
+}
+
+fn rows_after_first(more: &[Wrong], count: usize, gaps: &str) -> String {
+    let verb = match count {
+        0 => return String::new(),
+        1 => "is",
+        _ => "are",
+    };
+    format!("; and {} {verb} wrong: {}{gaps}", plural(count, "more row"), shown_rows(more, count))
 }
 
 fn shown_rows(more: &[Wrong], count: usize) -> String {
@@ -168,7 +186,7 @@ fn shown(found: &str) -> String {
 }
 
 impl FileFault {
-    /// Options that accept cells without a number.
+    /// Options that accept cells without a number, else the option that omits the wrong rows.
     fn options_of_cells(&self) -> Vec<ProposedOption> {
         let cell = |fault: &Self| if let Self::NotNumber { found } = fault { Some(found.clone()) } else { None };
         let cells: Option<Vec<String>> = match self {
@@ -177,7 +195,11 @@ impl FileFault {
             }
             fault => cell(fault).map(|cell| vec![cell]),
         };
-        let Some(cells) = cells else { return Vec::new() };
+        let omitted = match self {
+            Self::Rows { omitted, .. } => omitted.iter().map(|rows| ProposedOption::new("omit_rows", rows)).collect(),
+            _ => Vec::new(),
+        };
+        let Some(cells) = cells else { return omitted };
         // A cell with a digit is a number in another notation.
         let is_short = |cell: &str| cell.chars().count() <= CODE && !cell.contains(|c: char| c.is_ascii_digit());
         let mut codes: Vec<&str> = cells.iter().map(|cell| cell.trim()).collect();
@@ -185,7 +207,7 @@ impl FileFault {
         codes.sort_unstable();
         codes.dedup();
         if !codes.iter().all(|cell| is_short(cell)) {
-            return Vec::new();
+            return omitted;
         }
         let (Some(first), more) = (codes.first(), codes.iter().skip(1)) else {
             return vec![ProposedOption::flag("leave_empty_rows")];
@@ -210,15 +232,15 @@ impl FileError {
         self
     }
 
-    /// `wrong`: the first of `rows` wrong rows, at least one. The error has the position of the first one.
-    pub(crate) fn of_rows(file: &str, mut wrong: Vec<Wrong>, rows: usize, gaps: String, is_text: bool) -> Self {
+    /// `wrong`: the first of the wrong rows, at least one; `rows`: the numbers of all. The error has the position of the first one.
+    pub(crate) fn of_rows(file: &str, mut wrong: Vec<Wrong>, rows: &[u64], gaps: String, table: &RawTable) -> Self {
         let Wrong { line, column, fault } = wrong.remove(0);
-        let fault = match rows {
-            1 => fault,
-            _ => FileFault::Rows { first: Box::new(fault), more: wrong, rows, gaps },
-        };
+        // Where most rows are wrong, the file is read in a wrong way.
+        let are_few = 2 * rows.len() < table.rows + table.odd.len();
+        let (first, omitted) = (Box::new(fault), rows_text(rows).filter(|_| are_few));
+        let fault = FileFault::Rows { first, more: wrong, rows: rows.len(), gaps, omitted };
         let place = Place { file: file.to_owned(), column, ..Place::default() };
-        let place = match is_text {
+        let place = match table.is_text {
             true => Place { line: Some(line), ..place },
             false => Place { row: Some(line), ..place },
         };
@@ -258,7 +280,7 @@ impl FileError {
         match (&self.fault, options) {
             (_, options) if options.is_empty() => String::new(),
             (FileFault::Proposed { .. }, options) => format!(": {}", options.join(" ")),
-            (FileFault::Rows { gaps, .. }, options) if !gaps.is_empty() => {
+            (FileFault::Rows { gaps, rows: 2.., .. }, options) if !gaps.is_empty() => {
                 format!(". Use {}, or --leave NAME to omit a column", options.join(" or "))
             }
             (_, options) => format!(". Use {}", options.join(" or ")),

@@ -1,11 +1,13 @@
 //! Conversion of a table with other names or units to a run table.
 
 use crate::Bounds;
+use crate::omitted_rows::parse_rows;
 use crate::text::Decimal;
 use crate::unit::Unit;
 use jointbench_instrument::Meta;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 /// Options for the import of a file.
@@ -23,6 +25,9 @@ pub struct ReadOptions {
     pub leave: Vec<String>,
     /// A row with an empty cell is omitted and becomes a gap in time. Their number is a fact of the run.
     pub leave_empty_rows: bool,
+    /// Lines of a text or rows of a columnar file to omit, with any content, as messages count them. Their number is a fact
+    /// of the run.
+    pub omit_rows: Vec<RangeInclusive<u64>>,
     /// Codes for an empty cell: words such as `OVLD`, numbers such as `-9999`. `none`: no number is a code.
     pub missing: Vec<String>,
     /// Units of the file: (name in the run table, unit).
@@ -88,6 +93,8 @@ pub struct Choices {
     /// Names in the file.
     pub leave: Vec<String>,
     pub leave_empty_rows: bool,
+    /// Lines of a text or rows of a columnar file, such as `17`, `40-52` or `900-`.
+    pub omit_rows: Vec<String>,
     /// Codes for an empty cell, such as `-9999`.
     pub missing: Vec<String>,
     /// Names, separated by commas.
@@ -111,6 +118,7 @@ impl Choices {
             ("unit", &self.unit),
             ("unwrap", &self.unwrap),
             ("leave", &self.leave),
+            ("omit_rows", &self.omit_rows),
             ("missing", &self.missing),
             ("decimal", &self.decimal),
         ] {
@@ -140,6 +148,7 @@ impl Choices {
             "unit" => self.unit.push(text),
             "unwrap" => self.unwrap.push(text),
             "leave" => self.leave.push(text),
+            "omit_rows" => self.omit_rows.push(text),
             "missing" => self.missing.push(text),
             "decimal" => self.decimal.push(text),
             "rate" => self.rate = number(&text)?,
@@ -164,6 +173,7 @@ impl Choices {
             unwrap: self.unwrap.iter().map(|text| parse_unwrap(text)).collect::<Result<_, _>>()?,
             leave: each(&self.leave),
             leave_empty_rows: self.leave_empty_rows,
+            omit_rows: self.omit_rows.iter().map(|text| parse_rows(text)).collect::<Result<Vec<_>, _>>()?.concat(),
             missing: each(&self.missing),
             names: self.names.iter().flat_map(|names| names.split(',')).map(|name| name.trim().to_owned()).collect(),
             decimal: self.decimal.iter().map(|text| parse_decimal(text)).collect::<Result<_, _>>()?,
@@ -199,6 +209,8 @@ pub enum OptionFault {
     Unwrap(String),
     #[error("“{0}”: expected point or comma, for all columns or for one of the file, such as current_ma=comma")]
     Decimal(String),
+    #[error("“{0}”: expected rows as messages count them, such as 17, 40-52 or 900- (to the end), with commas between")]
+    Rows(String),
     #[error("{0} is no rate: expected a number of rows a second above 0")]
     Rate(f64),
     #[error("time comes from one place: choose one of --rate, --time-from-rate, --spread-time and --operating-points")]

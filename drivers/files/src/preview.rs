@@ -1,7 +1,7 @@
 //! The preview of a file before its import: its columns, their interpretation, and proposals.
 
 use crate::column::Column;
-use crate::error::FileError;
+use crate::error::{FileError, FileFault};
 use crate::guess::{Proposal, guess, guess_kind};
 use crate::naming::{Named, matches};
 use crate::note::Note;
@@ -47,17 +47,39 @@ pub struct PreviewFault {
     /// Line of a text, row of a columnar file.
     pub line: Option<u64>,
     pub column: Option<String>,
+    /// The first of the wrong rows.
+    pub rows: Vec<WrongRow>,
+    /// Number of all wrong rows.
+    pub row_count: usize,
     pub options: Vec<ProposedOption>,
+}
+
+/// A row that is no sample, and its first fault.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WrongRow {
+    /// Line of a text, row of a columnar file.
+    pub line: u64,
+    pub column: Option<String>,
+    pub message: String,
 }
 
 impl From<&FileError> for PreviewFault {
     fn from(error: &FileError) -> Self {
-        PreviewFault {
-            message: error.cause(),
-            line: error.place.line.or(error.place.row),
-            column: error.column().map(str::to_owned),
-            options: error.options(),
-        }
+        let (line, column) = (error.place.line.or(error.place.row), error.column().map(str::to_owned));
+        let rows = match (&error.fault, line) {
+            (FileFault::Rows { first, more, .. }, Some(line)) => {
+                let row = |line: u64, column: &Option<String>, fault: &FileFault| WrongRow {
+                    line,
+                    column: column.clone(),
+                    message: fault.to_string(),
+                };
+                let more = more.iter().map(|wrong| row(wrong.line, &wrong.column, &wrong.fault));
+                std::iter::once(row(line, &column, first)).chain(more).collect()
+            }
+            _ => Vec::new(),
+        };
+        let row_count = if let FileFault::Rows { rows, .. } = error.fault { rows } else { 0 };
+        PreviewFault { message: error.cause(), line, column, rows, row_count, options: error.options() }
     }
 }
 

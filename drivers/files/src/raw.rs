@@ -40,6 +40,7 @@ pub(crate) struct RawTable {
     pub named_again: Vec<usize>,
     /// The remaining rows of the file, if some were omitted.
     pub places: Option<Vec<usize>>,
+    pub omitted: usize,
     pub decimal: Decimal,
     pub meta: Option<Meta>,
     pub notes: Vec<Note>,
@@ -61,11 +62,28 @@ impl RawTable {
     /// Position of a row: its line in a text, else its number from 1.
     pub fn located(&self, file: &str, row: usize) -> Place {
         let place = Place { file: file.to_owned(), ..Place::default() };
-        let row = self.places.as_ref().map_or(row, |places| places[row]);
+        let number = Some(self.number_of(row));
         match self.is_text {
-            true => Place { line: self.lines.of(row), ..place },
-            false => Place { row: Some(row as u64 + 1), ..place },
+            true => Place { line: number, ..place },
+            false => Place { row: number, ..place },
         }
+    }
+
+    /// Line of a row in a text, else its number in the file from 1.
+    pub fn number_of(&self, row: usize) -> u64 {
+        let row = self.places.as_ref().map_or(row, |places| places[row]);
+        if self.is_text { self.lines.of(row).unwrap_or_default() } else { row as u64 + 1 }
+    }
+
+    /// Omits all rows but these, in ascending order.
+    pub fn keep(&mut self, kept: Vec<usize>) {
+        self.columns.iter_mut().for_each(|column| column.keep(&kept));
+        self.named_again.iter_mut().for_each(|row| *row = kept.partition_point(|place| place < row));
+        self.rows = kept.len();
+        self.places = Some(match self.places.take() {
+            Some(places) => kept.into_iter().map(|row| places[row]).collect(),
+            None => kept,
+        });
     }
 
     /// Gives a unique name to columns with a missing or repeated name.
@@ -140,9 +158,8 @@ impl RawTable {
         if count == 0 || count > FOOTER_LINES || end < 2 * count || below.iter().any(|odd| odd.is_row) {
             return;
         }
-        self.columns.iter_mut().for_each(|column| column.truncate(end));
+        self.keep((0..end).collect());
         self.odd.retain(|odd| odd.line <= last);
-        self.rows = end;
         let lines = plural(count, "line");
         self.notes.push(Note::new(format!("{lines} below the last row skipped, from line {}", last + 1)));
     }
@@ -225,7 +242,7 @@ impl RawTable {
             fault: FileFault::Width { expected: names, found: odd.cells },
         };
         let mut shown: Vec<Wrong> = self.odd.iter().take(crate::error::SHOWN_ROWS).map(width).collect();
-        let line = |row: usize| if self.is_text { self.lines.of(row).unwrap_or_default() } else { row as u64 + 1 };
+        let line = |row: usize| self.number_of(row);
         for column in self.columns.iter().filter(|column| is_needed(&column.name)) {
             let missing = column.found.first_missing.iter().filter(|_| !leave_empty);
             shown.extend(column.found.wrong.iter().chain(missing).map(|cell| Wrong {
@@ -247,7 +264,7 @@ impl RawTable {
         shown.truncate(crate::error::SHOWN_ROWS);
         match rows.len() {
             0 => Ok(()),
-            count => Err(FileError::of_rows(file, shown, count, self.gaps(is_needed), self.is_text)),
+            _ => Err(FileError::of_rows(file, shown, &rows, self.gaps(is_needed), self)),
         }
     }
 }

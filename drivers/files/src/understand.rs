@@ -13,9 +13,6 @@ use jointbench_instrument::{Meta, Motion, RunTable, TableFault, Trace};
 /// The fact that lets a run have lengths and forces.
 const LINEAR: &str = "\"motion\": \"linear\" in the meta file";
 
-/// The fact with the number of rows that were omitted because of empty cells.
-pub const LEFT_OUT_ROWS: &str = "left_out_rows";
-
 /// The interpretation of a file.
 #[derive(Debug)]
 pub struct Understood {
@@ -43,6 +40,7 @@ impl RawTable {
         let in_file = |fault: FileFault| fault.in_file(file);
         self.name_all();
         self.leave(options).map_err(in_file)?;
+        self.omit_rows(file, &mut meta, options)?;
         self.settle_missing(file, options)?;
         self.rename(options).map_err(in_file)?;
         let mut notes = std::mem::take(&mut self.notes);
@@ -65,7 +63,7 @@ impl RawTable {
         self.settle_units(options, meta.motion).map_err(|fault| fault.at_line(file, self.names_line))?;
         self.scale(options, meta.motion).map_err(in_file)?;
         if options.leave_empty_rows {
-            self.leave_empty_rows(&mut meta);
+            self.omit_empty_rows(&mut meta);
         }
         if let Some((place, note)) = meta.kind.and_then(|kind| contradiction::idle_velocity(&self.columns, kind)) {
             left.push(self.columns.remove(place).name);
@@ -265,27 +263,6 @@ impl RawTable {
             contradiction::unwrap(&mut self.columns[place].values, *period);
         }
         Ok(())
-    }
-
-    /// The number of omitted rows is a fact of the run.
-    fn leave_empty_rows(&mut self, meta: &mut Meta) {
-        let whole = |row: &usize| self.columns.iter().all(|column| !column.values[*row].is_nan());
-        let places: Vec<usize> = (0..self.rows).filter(whole).collect();
-        let left = self.rows - places.len();
-        if left == 0 {
-            return;
-        }
-        for column in &mut self.columns {
-            column.values = places.iter().map(|row| column.values[*row]).collect();
-        }
-        meta.other.insert(LEFT_OUT_ROWS.to_owned(), left.into());
-        self.notes.push(Note::with(
-            format!("rows omitted for an empty cell: {}", counted(left)),
-            ProposedOption::flag("leave_empty_rows"),
-        ));
-        self.named_again = self.named_again.iter().map(|row| places.partition_point(|place| place < row)).collect();
-        self.rows = places.len();
-        self.places = Some(places);
     }
 }
 

@@ -92,6 +92,9 @@ pub struct ImportForm {
     leave: Option<Vec<String>>,
     /// Whether to omit rows with an empty cell (rejected otherwise). The run states their number.
     leave_empty_rows: Option<bool>,
+    /// Lines of a text or rows of a columnar file to omit, such as `17`, `40-52` or `900-`; repeatable. The run states their
+    /// number.
+    omit_rows: Option<Vec<String>>,
     /// What stands for an empty cell, such as `OVLD` or `-9999`; `none`: no number does; may be repeated.
     missing: Option<Vec<String>>,
     /// `column=unit`, such as `motor_position_rad=deg`; may be repeated.

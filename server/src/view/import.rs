@@ -87,12 +87,29 @@ pub struct ImportRefusal {
     /// Line of a text, row of a columnar file.
     pub line: Option<u64>,
     pub column: Option<String>,
+    /// The first of the rows that are no samples.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub rows: Vec<ImportWrongRow>,
+    /// Number of all rows that are no samples.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub row_count: usize,
     /// Remedy, as an option of the command line.
     pub options: Vec<String>,
     /// The same in parts, without instructions in words.
     #[serde(default)]
     #[schema(required = true)]
     pub proposed: Vec<ProposedImport>,
+}
+
+/// A row that is no sample, and its first fault.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImportWrongRow {
+    /// Line of a text, row of a columnar file: a value for `omit_rows`.
+    pub line: u64,
+    pub column: Option<String>,
+    pub message: String,
 }
 
 impl From<files::Preview> for ImportPreview {
@@ -110,6 +127,7 @@ impl From<files::Preview> for ImportPreview {
             option: one.option.as_ref().map(|option| option.text.clone()),
             proposed: one.option.and_then(ProposedImport::of),
         };
+        let row = |one: files::WrongRow| ImportWrongRow { line: one.line, column: one.column, message: one.message };
         ImportPreview {
             kind: preview.kind.to_string(),
             rows: preview.rows,
@@ -121,6 +139,8 @@ impl From<files::Preview> for ImportPreview {
                 said: one.message,
                 line: one.line,
                 column: one.column,
+                rows: one.rows.into_iter().map(row).collect(),
+                row_count: one.row_count,
                 options: one.options.iter().map(|option| option.text.clone()).collect(),
                 proposed: one.options.into_iter().filter_map(ProposedImport::of).collect(),
             }),

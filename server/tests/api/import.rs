@@ -63,6 +63,29 @@ fn rows_with_empty_cells_stay_out_where_that_is_asked_for() {
 }
 
 #[test]
+fn rows_that_are_no_samples_are_listed_and_omitted_by_their_lines() {
+    let daemon = TestDaemon::start();
+    let samples: String =
+        (0..20).map(|row| format!("{},{},0.2\n", 0.01 * f64::from(row), 0.1 * f64::from(row))).collect();
+    let log = format!("time_s,motor_position_rad,motor_current_a\n{samples}")
+        .replace("0.05,0.5,0.2", "0.05,0.5,0.2.1")
+        .replace("0.09,0.9,0.2", "0.09,0.9");
+    let (status, preview) = send(&daemon, "/api/v1/runs/import/preview", &log, &[("meta", META)]);
+    let refused = &preview["refused"];
+    assert_eq!((status, &refused["row_count"]), (200, &2.into()), "{preview}");
+    assert_eq!((&refused["rows"][0]["line"], &refused["rows"][1]["line"]), (&7.into(), &11.into()), "{preview}");
+    assert_eq!(
+        refused["proposed"][0]["parts"],
+        serde_json::json!([{"name": "omit_rows", "value": "7,11"}]),
+        "{preview}"
+    );
+    let (status, run) = upload(&daemon, &log, &[("meta", META), ("omit_rows", "7,11"), ("omit_rows", "20-")]);
+    assert_eq!((status, &run["rows"]), (201, &16.into()), "{run}");
+    let (status, problem) = upload(&daemon, &log, &[("meta", META), ("omit_rows", "40")]);
+    assert!(status == 422 && problem["detail"].as_str().unwrap().contains("row 40 cannot be omitted"), "{problem}");
+}
+
+#[test]
 fn what_goes_out_comes_in_again_unchanged() {
     let daemon = TestDaemon::start();
     let (status, run) = upload(&daemon, GOOD, &[("meta", META), ("scale", "motor_current_a=2")]);

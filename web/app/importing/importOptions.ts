@@ -53,6 +53,8 @@ export function optionValueText(part: string, value: string): string {
 			return `make ${column} continuous`;
 		case 'leave':
 			return `omit ${value}`;
+		case 'omit_rows':
+			return `omit lines ${value.replaceAll('-', '–').replaceAll(',', ', ')}`;
 		case 'decimal':
 			return what ? `${column}: decimal ${what}` : `decimal ${value}`;
 		case 'missing':

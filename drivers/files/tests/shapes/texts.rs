@@ -281,3 +281,55 @@ fn a_conversion_keeps_a_column_with_few_gaps() {
     assert_eq!(table.trace.column("force").unwrap(), [1.0, 2.0, 3.0, 4.0, 5.0]);
     assert!(table.trace.column("remark").is_none() && table.left == ["remark"], "{:?}", table.left);
 }
+
+#[test]
+fn rows_are_omitted_by_their_lines() {
+    let good = |row: usize| format!("{},{},0.1\n", 0.01 * row as f64, 0.02 * row as f64);
+    let mut lines: Vec<String> = (0..40).map(good).collect();
+    lines[4] = "0.04,0.08,12.3.4\n".into();
+    lines[9] = "0.09,0.18\n".into();
+    lines[20] = "marker,pressed,by hand\n".into();
+    let text = format!("# bench 3\ntime_s,motor_position_rad,motor_current_a\n{}", lines.concat());
+    let omit = |rows: &str| take(&text, &Choices { omit_rows: vec![rows.into()], ..Choices::default() });
+
+    // The lines of a text, as an editor counts them: the first sample is line 3.
+    refused(&text, &["run.csv, line 23: a row of words stands between the rows"]);
+    let message = omit("23").unwrap_err().to_string();
+    assert!(message.contains("run.csv, line 7, column motor_current_a"), "{message}");
+    assert!(message.contains("and 1 more row is wrong: line 12:"), "{message}");
+    assert!(message.ends_with("Use --omit-rows 7,12"), "{message}");
+
+    let (run, notes) = omit("7, 12, 23").unwrap();
+    assert_eq!((run.len(), &run.meta().other[jointbench_files::LEFT_OUT_ROWS]), (37, &3.into()));
+    assert!(notes.iter().any(|note| note.message == "3 rows omitted as asked"), "{notes:?}");
+    let times = run.column("time_s").unwrap();
+    assert_eq!((times[3], times[4], times[36]), (0.03, 0.05, 0.39));
+
+    // A start and an end; a fault after omitted rows is still at its own line.
+    let (run, _) = omit("1-24, 30-").unwrap();
+    assert_eq!(run.len(), 5);
+    let late = text.replace("0.3,0.6,0.1", "0.3,0.6,1..2");
+    let message =
+        take(&late, &Choices { omit_rows: vec!["3-23".into()], ..Choices::default() }).unwrap_err().to_string();
+    assert!(message.contains("run.csv, line 33, column motor_current_a"), "{message}");
+
+    for (rows, word) in
+        [("43-50", "row 43 cannot be omitted: the rows of the file are 3 to 42"), ("1-", "all rows are omitted")]
+    {
+        let message = omit(rows).unwrap_err().to_string();
+        assert!(message.contains(word), "{message}");
+    }
+}
+
+#[test]
+fn omitted_and_empty_rows_are_counted_together() {
+    let mut lines: Vec<String> =
+        (0..30).map(|row| format!("{},{},0.1\n", 0.01 * row as f64, 0.02 * row as f64)).collect();
+    lines[3] = "0.03,0.06,\n".into();
+    lines[8] = "0.08,0.16,\n".into();
+    let text = format!("time_s,motor_position_rad,motor_current_a\n{}", lines.concat());
+    let choices = Choices { omit_rows: vec!["2-4".into(), "5".into()], leave_empty_rows: true, ..Choices::default() };
+    let (run, _) = take(&text, &choices).unwrap();
+    assert_eq!((run.len(), &run.meta().other[jointbench_files::LEFT_OUT_ROWS]), (25, &5.into()));
+    assert_eq!(run.column("time_s").unwrap()[3..5], [0.07, 0.09]);
+}

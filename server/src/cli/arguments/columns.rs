@@ -26,6 +26,10 @@ pub struct Columns {
     /// Omit rows with an empty cell (rejected otherwise) and print their number
     #[arg(long, overrides_with = "leave_empty_rows")]
     pub leave_empty_rows: bool,
+    /// Omit lines of a text (rows of a columnar file) as messages count them, such as 17,40-52 or 900- (to the end); may be
+    /// given again
+    #[arg(long, value_name = "LINES")]
+    pub omit_rows: Vec<String>,
     /// What stands for an empty cell, such as OVLD or -9999 (none: no number does); may be given again
     #[arg(long, value_name = "CELL", allow_hyphen_values = true)]
     pub missing: Vec<String>,
@@ -61,6 +65,7 @@ impl Columns {
             unwrap: self.unwrap.clone(),
             leave: self.leave.clone(),
             leave_empty_rows: self.leave_empty_rows,
+            omit_rows: self.omit_rows.clone(),
             missing: self.missing.clone(),
             names: self.names.clone(),
             decimal: self.decimal.clone(),
