@@ -25,7 +25,7 @@ pub fn figure(value: f64, unit: &str) -> String {
     let (scale, prefix) = prefix_of(size, unit);
     let scaled = value * scale;
     if scaled != 0.0 && scaled.abs() < 0.01 {
-        return format!("{scaled:.2e} {prefix}{unit}").trim_end().to_owned();
+        return format!("{} {prefix}{unit}", small(scaled)).trim_end().to_owned();
     }
     let digits = match scaled.abs() {
         s if s >= 100.0 => 0,
@@ -33,6 +33,17 @@ pub fn figure(value: f64, unit: &str) -> String {
         _ => 2,
     };
     format!("{scaled:.digits$} {prefix}{unit}").trim_end().to_owned()
+}
+
+/// Three digits of a number below 0.01: `0.00206`, and `4.10 × 10⁻⁵` below 0.001.
+pub fn small(value: f64) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let text = format!("{value:.2e}");
+    let (Some((digits, exponent)), true) = (text.split_once("e-"), value.abs() < 9.995e-4) else {
+        return format!("{value:.5}");
+    };
+    let exponent = exponent.bytes().map(|digit| DIGITS[usize::from(digit - b'0')]);
+    format!("{digits} × 10⁻{}", exponent.collect::<String>())
 }
 
 /// The prefixed unit of one figure, for others in the same sentence.
@@ -63,7 +74,7 @@ impl Scale {
             s if s >= 1.0 || s == 0.0 => 2,
             s if s >= 0.1 => 3,
             s if s >= 0.01 => 4,
-            _ => return format!("{scaled:.2e}"),
+            _ => return small(scaled),
         };
         format!("{scaled:.digits$}")
     }
@@ -124,7 +135,7 @@ mod tests {
         assert_eq!(figure(-0.00612, "Nm"), "-6.12 mNm");
         assert_eq!(figure(95.106, "kg"), "95.1 kg");
         assert_eq!(figure(0.226, "1"), "0.23");
-        assert_eq!(figure(-0.00123, "kg·m²"), "-1.23e-3 kg·m²");
+        assert_eq!(figure(-0.00123, "kg·m²"), "-0.00123 kg·m²");
         assert_eq!(percent(0.184), "18 %");
         assert_eq!(list(&["a", "b", "c"]), "a, b and c");
     }
@@ -135,7 +146,8 @@ mod tests {
         assert_eq!((scale.figure(3.24e-3), scale.figure(0.629e-3)), ("3.24 mNm".into(), "0.629 mNm".into()));
         assert_eq!(scale.figure(3.28e-5), "0.0328 mNm");
         assert_eq!(Scale::of(95.1, "1").figure(0.5), "0.500");
-        assert_eq!(Scale::of(1.0, "Nm").figure(4e-4), "4.00e-4 Nm");
+        assert_eq!(Scale::of(1.0, "Nm").figure(4e-4), "4.00 × 10⁻⁴ Nm");
+        assert_eq!([small(9.994e-4), small(9.996e-4), small(-1.2e-12)], ["9.99 × 10⁻⁴", "0.00100", "-1.20 × 10⁻¹²"]);
     }
 
     #[test]

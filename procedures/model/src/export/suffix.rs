@@ -23,11 +23,20 @@ pub fn named(name: &str, unit: &str) -> String {
 
 /// Text in ASCII that does not end a C comment.
 pub fn ascii(text: &str) -> String {
+    const POWERS: [char; 11] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹', '⁻'];
     let mut plain = String::with_capacity(text.len());
+    let mut is_power = false;
     for c in text.chars() {
+        if let Some(power) = POWERS.iter().position(|power| *power == c) {
+            if !std::mem::replace(&mut is_power, true) {
+                plain.push('^');
+            }
+            plain.push(char::from(b"0123456789-"[power]));
+            continue;
+        }
+        is_power = false;
         match c {
-            '²' => plain.push_str("^2"),
-            '³' => plain.push_str("^3"),
+            '×' => plain.push('*'),
             '·' => plain.push('*'),
             '−' | '–' => plain.push('-'),
             '…' => plain.push_str("..."),
@@ -50,5 +59,6 @@ mod tests {
             assert_eq!(of(unit), suffix);
         }
         assert_eq!(named("direction", "1"), "direction");
+        assert_eq!(ascii("4.00 × 10⁻¹² kg·m²"), "4.00 * 10^-12 kg*m^2");
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::linear::basis::dot;
 use crate::stats::summary::peak;
+use crate::words::figure;
 use jointbench_instrument::{Kind, RunTable};
 
 /// Largest current relative to the rated current, and the share of the rated current below which the torque is small.
@@ -48,15 +49,17 @@ pub fn beyond(run: &RunTable) -> Option<String> {
     let held = held(current, run.column("brake_torque_nm")?)?;
     if let Some(rated_a) = rated_a.filter(|rated_a| largest < HARDLY * rated_a) {
         return Some(format!(
-            "brake_current_a reaches {largest:.2e} A only, the torque follows it, and the brake is rated for {rated_a} A: one \
-             of them has another unit"
+            "brake_current_a reaches {} only, the torque follows it, and the brake is rated for {rated_a} A: one of them has \
+             another unit",
+            figure(largest, "A")
         ));
     }
     let [least, most] = HELD;
     (!(least / MARGIN..=most * MARGIN).contains(&held)).then(|| {
         format!(
-            "brake_torque_nm rises by {held:.2e} Nm for each A of brake_current_a, and hysteresis brakes hold {least} to {most} \
-             Nm for each: one of the two has another unit (mA, mNm?)"
+            "brake_torque_nm rises by {} for each A of brake_current_a, and hysteresis brakes hold {least} to {most} Nm for \
+             each: one of the two has another unit (mA, mNm?)",
+            figure(held, "Nm")
         )
     })
 }
