@@ -120,6 +120,6 @@ def test_an_example_runs(example: Path, daemon: Daemon, tmp_path: Path) -> None:
         [sys.executable, example], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=400
     )
     assert done.returncode == 0, done.stderr
-    assert "Coulomb friction: " in done.stdout and "Missing effect: stribeck" in done.stdout
+    assert "Coulomb friction (motor): " in done.stdout and "Missing effect: stribeck" in done.stdout
     assert "step " in done.stderr
     assert list(tmp_path.glob("diagnosis-*.png"))

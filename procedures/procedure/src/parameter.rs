@@ -1,8 +1,11 @@
 //! Parameters of a procedure: the form of the dashboard, and the check of a request.
 
 use serde::Serialize;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+
+/// Most points of a curve.
+const MOST_POINTS: usize = 10_000;
 
 /// One parameter of a procedure, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -13,13 +16,13 @@ pub struct Parameter {
     pub title: &'static str,
     /// SI symbol; empty for a share or a count.
     pub unit: &'static str,
-    /// Value if none is given.
+    /// Value if none is given; a curve is empty then.
     pub default: f64,
     /// Lowest allowed value.
     pub min: f64,
     /// Highest allowed value.
     pub max: f64,
-    /// Whether the value must be whole.
+    /// A number, a whole number or a curve.
     #[serde(rename = "type")]
     pub kind: ParameterKind,
 }
@@ -32,6 +35,9 @@ pub enum ParameterKind {
     Number,
     /// A whole number in the range.
     Integer,
+    /// Set-points that a user brings: pairs of a time in s, from 0 and rising, and a value in the range. Between the points
+    /// are straight lines.
+    Curve,
 }
 
 impl Parameter {
@@ -52,19 +58,57 @@ impl Parameter {
         Self { name, title, unit: "", default: default as f64, min: min as f64, max: max as f64, kind }
     }
 
+    /// A curve over time with values within `[min, max]`.
+    pub const fn curve(name: &'static str, title: &'static str, unit: &'static str, [min, max]: [f64; 2]) -> Self {
+        Self { name, title, unit, default: 0.0, min, max, kind: ParameterKind::Curve }
+    }
+
+    fn setting(&self, given: Option<&Value>) -> Result<Setting, ParameterFault> {
+        match (self.kind, given) {
+            (ParameterKind::Curve, given) => self.check_curve(given).map(Setting::Curve),
+            (_, None) => Ok(Setting::Number(self.default)),
+            (_, Some(given)) => self.check(given).map(Setting::Number),
+        }
+    }
+
     fn check(&self, given: &Value) -> Result<f64, ParameterFault> {
+        let is_whole = self.kind == ParameterKind::Integer;
         let fault = || ParameterFault::OutOfRange {
             name: self.name,
             given: given.to_string(),
-            kind: match self.kind {
-                ParameterKind::Number => "a number",
-                ParameterKind::Integer => "a whole number",
-            },
-            range: format!("{} to {} {}", self.min, self.max, self.unit).trim_end().to_owned(),
+            kind: if is_whole { "a whole number" } else { "a number" },
+            range: self.range(),
         };
         let value = given.as_f64().ok_or_else(fault)?;
-        let whole = self.kind == ParameterKind::Number || value.fract() == 0.0;
-        if whole && (self.min..=self.max).contains(&value) { Ok(value) } else { Err(fault()) }
+        let fits = !is_whole || value.fract() == 0.0;
+        if fits && (self.min..=self.max).contains(&value) { Ok(value) } else { Err(fault()) }
+    }
+
+    fn check_curve(&self, given: Option<&Value>) -> Result<Vec<[f64; 2]>, ParameterFault> {
+        let fault = |what: String| ParameterFault::Curve { name: self.name, what };
+        let Some(given) = given else { return Ok(Vec::new()) };
+        let form = || fault("expected a list of pairs [time in s, value]".into());
+        let points: Vec<[f64; 2]> = serde_json::from_value(given.clone()).map_err(|_| form())?;
+        if points.len() > MOST_POINTS {
+            return Err(fault(format!("{} points: at most {MOST_POINTS} are expected", points.len())));
+        }
+        if points.first().is_some_and(|[t_s, _]| *t_s != 0.0) {
+            return Err(fault("the time begins at 0 s".into()));
+        }
+        if let Some(pair) = points.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+            return Err(fault(format!(
+                "the time rises from point to point; {} s follows {} s",
+                pair[1][0], pair[0][0]
+            )));
+        }
+        match points.iter().find(|[_, value]| !(self.min..=self.max).contains(value)) {
+            Some([t_s, value]) => Err(fault(format!("{value} at {t_s} s: expected {}", self.range()))),
+            None => Ok(points),
+        }
+    }
+
+    fn range(&self) -> String {
+        format!("{} to {} {}", self.min, self.max, self.unit).trim_end().to_owned()
     }
 }
 
@@ -83,6 +127,14 @@ pub enum ParameterFault {
         /// Lowest and highest value with the unit.
         range: String,
     },
+    /// The points of a curve are no set-points over time.
+    #[error("parameter {name}: {what}")]
+    Curve {
+        /// Name of the parameter.
+        name: &'static str,
+        /// The fault, with place and expectation.
+        what: String,
+    },
     /// The procedure has no such parameter.
     #[error("unknown parameter {name}: expected one of {}", .known.join(", "))]
     Unknown {
@@ -95,7 +147,14 @@ pub enum ParameterFault {
 
 /// Checked values: every parameter of the schema is present and within its range.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Values(BTreeMap<&'static str, f64>);
+pub struct Values(BTreeMap<&'static str, Setting>);
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+enum Setting {
+    Number(f64),
+    Curve(Vec<[f64; 2]>),
+}
 
 impl Values {
     /// Adds the defaults and checks the given values.
@@ -104,25 +163,39 @@ impl Values {
             let known = schema.iter().map(|p| p.name).collect();
             return Err(ParameterFault::Unknown { name: name.clone(), known });
         }
-        let value = |p: &Parameter| given.get(p.name).map_or(Ok(p.default), |v| p.check(v)).map(|v| (p.name, v));
-        Ok(Self(schema.iter().map(value).collect::<Result<_, _>>()?))
+        let setting = |p: &Parameter| p.setting(given.get(p.name)).map(|setting| (p.name, setting));
+        Ok(Self(schema.iter().map(setting).collect::<Result<_, _>>()?))
     }
 
     /// # Panics
-    /// If the schema has no such parameter: a programming error of the procedure.
+    /// If the schema has no such number: a programming error of the procedure.
     pub fn number(&self, name: &str) -> f64 {
-        self.0[name]
+        match &self.0[name] {
+            Setting::Number(value) => *value,
+            Setting::Curve(_) => panic!("parameter {name} is a curve"),
+        }
     }
 
     /// # Panics
-    /// If the schema has no such parameter: a programming error of the procedure.
+    /// If the schema has no such number: a programming error of the procedure.
     pub fn count(&self, name: &str) -> u32 {
-        self.0[name] as u32
+        self.number(name) as u32
+    }
+
+    /// The points of a curve: time in s and value. Empty if none was given.
+    ///
+    /// # Panics
+    /// If the schema has no such curve: a programming error of the procedure.
+    pub fn curve(&self, name: &str) -> &[[f64; 2]] {
+        match &self.0[name] {
+            Setting::Curve(points) => points,
+            Setting::Number(_) => panic!("parameter {name} is a number"),
+        }
     }
 
     /// For the run's provenance: the values used, including defaults.
     pub fn to_json(&self) -> Map<String, Value> {
-        self.0.iter().map(|(name, value)| ((*name).to_owned(), Value::from(*value))).collect()
+        self.0.iter().map(|(name, setting)| ((*name).to_owned(), json!(setting))).collect()
     }
 }
 
@@ -130,9 +203,10 @@ impl Values {
 mod tests {
     use super::*;
 
-    const SCHEMA: [Parameter; 2] = [
+    const SCHEMA: [Parameter; 3] = [
         Parameter::number("top_speed_rad_s", "Highest motor speed", "rad/s", 180.0, [1.0, 1000.0]),
         Parameter::count("repeats", "Repeats of the profile", 2, [2, 20]),
+        Parameter::curve("reference", "Reference", "rad/s", [-2.0, 2.0]),
     ];
 
     fn parse(text: &str) -> Result<Values, String> {
@@ -143,6 +217,23 @@ mod tests {
     fn defaults_fill_what_is_not_given() {
         let values = parse(r#"{"repeats": 3}"#).unwrap();
         assert_eq!((values.number("top_speed_rad_s"), values.count("repeats")), (180.0, 3));
+        assert!(values.curve("reference").is_empty());
+    }
+
+    #[test]
+    fn a_curve_is_kept_as_it_is_given() {
+        let values = parse(r#"{"reference": [[0, 0], [0.5, 2], [1.5, -0.25]]}"#).unwrap();
+        assert_eq!(values.curve("reference"), [[0.0, 0.0], [0.5, 2.0], [1.5, -0.25]]);
+        assert_eq!(Values::parse(&SCHEMA, &values.to_json()).unwrap(), values);
+        for (given, message) in [
+            ("[0, 1]", "parameter reference: expected a list of pairs [time in s, value]"),
+            ("\"fast\"", "parameter reference: expected a list of pairs [time in s, value]"),
+            ("[[0.1, 0]]", "parameter reference: the time begins at 0 s"),
+            ("[[0, 0], [1, 0], [1, 1]]", "parameter reference: the time rises from point to point; 1 s follows 1 s"),
+            ("[[0, 0], [1, 3]]", "parameter reference: 3 at 1 s: expected -2 to 2 rad/s"),
+        ] {
+            assert_eq!(parse(&format!(r#"{{"reference": {given}}}"#)).unwrap_err(), message);
+        }
     }
 
     #[test]
@@ -157,7 +248,7 @@ mod tests {
                 r#"{"top_speed_rad_s": "fast"}"#,
                 "parameter top_speed_rad_s = \"fast\": expected a number from 1 to 1000 rad/s",
             ),
-            (r#"{"speed": 1}"#, "unknown parameter speed: expected one of top_speed_rad_s, repeats"),
+            (r#"{"speed": 1}"#, "unknown parameter speed: expected one of top_speed_rad_s, repeats, reference"),
         ] {
             assert_eq!(parse(given).unwrap_err(), message);
         }

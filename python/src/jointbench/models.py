@@ -358,6 +358,12 @@ class ImportForm(BaseModel):
     names: str | None = None
     """Names of the columns with commas between, for a table without a line of names."""
 
+    omit_rows: list[str] | None = None
+    """
+    Lines of a text or rows of a columnar file to omit, such as `17`, `40-52` or `900-`; repeatable. The run states their
+    number.
+    """
+
     operating_points: bool | None = None
     """Whether each row is the mean of one steady operating point: a table of conditions without a time."""
 
@@ -401,6 +407,16 @@ class ImportProposal(BaseModel):
     """Name in the file."""
 
     unit: str | None = None
+
+
+class ImportWrongRow(BaseModel):
+    """A row that is no sample, and its first fault."""
+
+    column: str | None = None
+    line: Annotated[int, Field(ge=0)]
+    """Line of a text, row of a columnar file: a value for `omit_rows`."""
+
+    message: str
 
 
 class InstrumentFault(BaseModel):
@@ -741,7 +757,7 @@ class ParameterSetting(BaseModel):
 ParameterState = TypeAliasType("ParameterState", Literal['ok', 'at_bound', 'fixed', 'impossible', 'unidentified'])
 
 
-ParameterType = TypeAliasType("ParameterType", Literal['number', 'integer'])
+ParameterType = TypeAliasType("ParameterType", Literal['number', 'integer', 'curve'])
 
 
 class Place(BaseModel):
@@ -804,6 +820,8 @@ class Problem(BaseModel):
 
 class ProcedureParameter(BaseModel):
     default: float
+    """Without meaning for a curve, which is empty by default."""
+
     max: float
     min: float
     name: str
@@ -1574,6 +1592,12 @@ class ImportRefusal(BaseModel):
 
     proposed: list[ProposedImport]
     """The same in parts, without instructions in words."""
+
+    row_count: Annotated[int, Field(ge=0)]
+    """Number of all rows that are no samples."""
+
+    rows: list[ImportWrongRow]
+    """The first of the rows that are no samples."""
 
     said: str
 
@@ -2371,4 +2395,4 @@ class Diagnosis(Finding):
     run: int
 
 
-API_VERSION = "0.1.0"
+API_VERSION = "0.2.0"

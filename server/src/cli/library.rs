@@ -7,6 +7,7 @@ use jointbench_instrument::spelling::instead;
 use jointbench_model::effects::WITH_WEIGHT;
 use jointbench_model::{EffectInfo, effects as effects_of};
 use jointbench_procedure::catalogue;
+use jointbench_procedure::parameter::ParameterKind;
 
 pub fn procedures(asked: Option<&str>) -> Done {
     let Some(asked) = asked else {
@@ -20,7 +21,11 @@ pub fn procedures(asked: Option<&str>) -> Done {
     println!("{}: {}\n{}\n", procedure.id(), procedure.title(), procedure.summary());
     for one in procedure.schema() {
         let unit = if one.unit.is_empty() { String::new() } else { format!(" {}", one.unit) };
-        println!("  --set {}={}{unit}, {} to {}: {}", one.name, one.default, one.min, one.max, one.title);
+        let value = match one.kind {
+            ParameterKind::Curve => "@FILE (CSV: time in s, value)".to_owned(),
+            _ => one.default.to_string(),
+        };
+        println!("  --set {}={value}{unit}, {} to {}: {}", one.name, one.min, one.max, one.title);
     }
     Ok(())
 }

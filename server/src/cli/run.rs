@@ -268,7 +268,12 @@ pub(super) fn parameters(set: &[String]) -> Result<Map<String, Value>, Exit> {
         let (name, value) = pair
             .split_once('=')
             .ok_or_else(|| Exit::bad_input(format!("--set {pair}: expected KEY=VALUE, such as --set repeats=3")))?;
-        let value = serde_json::from_str(value.trim()).unwrap_or_else(|_| Value::from(value.trim()));
+        let value = match value.trim().strip_prefix('@') {
+            Some(file) => serde_json::json!(
+                jointbench_files::read_curve(Path::new(file)).map_err(|fault| Exit::bad_input(fault.to_string()))?
+            ),
+            None => serde_json::from_str(value.trim()).unwrap_or_else(|_| Value::from(value.trim())),
+        };
         parameters.insert(name.trim().to_owned(), value);
     }
     Ok(parameters)
@@ -286,6 +291,11 @@ mod tests {
         assert_eq!(parameters["repeats"], 3);
         assert_eq!(parameters["note"], "warm oil");
         assert_eq!(super::parameters(&["repeats".to_owned()]).unwrap_err().code, 2);
+        let file = tempfile::NamedTempFile::with_suffix(".csv").unwrap();
+        std::fs::write(file.path(), "t,v\n0,0\n1,0.5\n").unwrap();
+        let reference = |path: &std::path::Path| super::parameters(&[format!("reference=@{}", path.display())]);
+        assert_eq!(reference(file.path()).unwrap()["reference"], serde_json::json!([[0.0, 0.0], [1.0, 0.5]]));
+        assert_eq!(reference("missing.csv".as_ref()).unwrap_err().code, 2);
     }
 
     #[test]

@@ -283,6 +283,7 @@ fn parameter_view(parameter: &Parameter, given: &Map<String, Value>) -> view::Pr
         type_: match parameter.kind {
             ParameterKind::Number => view::ParameterType::Number,
             ParameterKind::Integer => view::ParameterType::Integer,
+            ParameterKind::Curve => view::ParameterType::Curve,
         },
     }
 }

@@ -6,7 +6,6 @@ use super::number::with_interval;
 use super::{Report, limits, sign_off};
 use crate::view::{Figure, Identified, LimitCheck, Quantity, Shown, word};
 use jointbench_model::words::Scale;
-use jointbench_procedure::procedure;
 use maud::{Markup, PreEscaped, html};
 
 /// Quantities that have room on the page. The appendix has all of them.
@@ -48,14 +47,13 @@ impl Report {
     fn subject(&self) -> Markup {
         let summary = &self.run.summary;
         let signed = self.signed();
-        let measured = procedure(&summary.procedure).map_or("imported data", |procedure| procedure.title());
         let line = summary.unit.as_ref().map(crate::view::Unit::line);
         let file = self.file().map(str::to_owned);
         let safe = summary.safe.map(|safe| format!(", bench {}", word(safe).replace('_', " "))).unwrap_or_default();
         let facts = [
             ("Unit under test", line),
             ("Operator", signed.operator.map(str::to_owned)),
-            ("Procedure", Some(measured.to_owned())),
+            ("Procedure", Some(summary.procedure_title().to_owned())),
             ("Measured", Some(summary.created_at.clone())),
             ("End state", Some(format!("{}{safe}", word(summary.state).replace('_', " ")))),
             ("Data of the file", file),

@@ -53,7 +53,7 @@ pub struct ResidualMap {
 impl Report {
     pub fn html(&self) -> String {
         let summary = &self.run.summary;
-        let title = format!("Run {}: {} on {}", summary.id, summary.procedure, summary.bench);
+        let title = format!("Run {}: {} on {}", summary.id, summary.procedure_title(), summary.bench);
         html! {
             (DOCTYPE)
             html lang="en" {

@@ -26,6 +26,8 @@ pub fn plain(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
         Value::Null => "–".to_owned(),
+        // The points of a curve.
+        Value::Array(items) if items.iter().any(Value::is_array) => format!("{} points", items.len()),
         Value::Array(items) => items.iter().map(plain).collect::<Vec<_>>().join(", "),
         // A part of a campaign.
         Value::Object(items) if items.contains_key("procedure") => {

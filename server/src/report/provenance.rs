@@ -52,11 +52,10 @@ impl Report {
     fn origins(&self) -> Vec<(&'static str, String)> {
         let summary = &self.run.summary;
         let of = |name: &str| self.run.provenance.get(name).map(plain).filter(|text| !text.is_empty());
-        let procedure = procedure(&summary.procedure).map_or("imported data", |procedure| procedure.title());
         let mut facts = vec![
             ("Run", summary.id.to_string()),
             ("Bench", format!("{} ({})", summary.bench, self.origin().to_lowercase())),
-            ("Procedure", format!("{procedure} ({})", summary.procedure)),
+            ("Procedure", format!("{} ({})", summary.procedure_title(), summary.procedure)),
             ("Started", summary.created_at.clone()),
         ];
         let more = [

@@ -23,6 +23,7 @@ pub struct ProcedureParameter {
     pub title: String,
     /// SI symbol; empty for a fraction or a count.
     pub unit: String,
+    /// Without meaning for a curve, which is empty by default.
     pub default: f64,
     pub min: f64,
     pub max: f64,
@@ -35,6 +36,8 @@ pub struct ProcedureParameter {
 pub enum ParameterType {
     Number,
     Integer,
+    /// A list of pairs of a time in s, from 0 and rising, and a value.
+    Curve,
 }
 
 /// A procedure on a bench, to preview or to run. Omitted parameters take their defaults.

@@ -157,6 +157,13 @@ pub struct Run {
     pub progress: Option<Progress>,
 }
 
+impl RunSummary {
+    /// The procedure as people read it.
+    pub fn procedure_title(&self) -> &'static str {
+        jointbench_procedure::procedure(&self.procedure).map_or("imported data", |procedure| procedure.title())
+    }
+}
+
 impl Run {
     /// How the run ended, in a sentence.
     pub fn ending(&self) -> String {

@@ -20,4 +20,6 @@ it('says what is needed where there is no number', () => {
 
 it('plans again what was planned before', () => {
 	expect(planHref('friction', { top_speed_rad_s: 180, loads: [0, 0.5] })).toBe('/?procedure=friction&p.top_speed_rad_s=180&p.loads=0%2C+0.5');
+	expect(planHref('compensation', { reference: [[0, 0], [1, 0.1]] }, 12)).toBe('/?procedure=compensation&p.reference=run%3A12');
+	expect(planHref('compensation', { reference: [] }, 12)).toBe('/?procedure=compensation&p.reference=');
 });

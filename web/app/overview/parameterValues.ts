@@ -1,5 +1,6 @@
 import { formatAllDigits } from '../format/number';
 import type { ProcedureParameter } from '../api/types';
+import { isCurve } from './curve';
 
 export interface ParsedValue {
 	value: number;
@@ -27,8 +28,12 @@ export function valueText(value: unknown): string {
 	return Array.isArray(value) ? value.join(', ') : String(value);
 }
 
-/** The bench page with a procedure and its settings filled in; it starts nothing. */
-export function planHref(procedure: string, parameters: Record<string, unknown>): string {
-	const settings = Object.entries(parameters).map(([name, value]) => [`p.${name}`, valueText(value)]);
+/**
+ * The bench page with a procedure and its settings filled in; it starts nothing. An address has no room for the points
+ * of a curve: the page takes them from the run.
+ */
+export function planHref(procedure: string, parameters: Record<string, unknown>, run?: number): string {
+	const text = (value: unknown) => (isCurve(value) ? `run:${run}` : valueText(value));
+	const settings = Object.entries(parameters).map(([name, value]) => [`p.${name}`, text(value)]);
 	return `/?${new URLSearchParams([['procedure', procedure], ...settings] as [string, string][]).toString()}`;
 }

@@ -7,6 +7,7 @@ import { SvelteMap } from 'svelte/reactivity';
 import { withBench } from './benches';
 import { LiveFeed } from './liveFeed.svelte';
 import { tokenRequest } from './tokenRequest.svelte';
+import { procedureTitles } from './procedureTitles.svelte';
 import { role } from './role.svelte';
 
 /** After this time without a message the page sends a request. */
@@ -122,6 +123,7 @@ class LabState {
 		this.runStates = {};
 		this.progress = {};
 		void this.requestBenches();
+		void procedureTitles.load();
 		void api.health().then(({ access }) => (role.isReadOnly = access === 'read'), () => {});
 	}
 

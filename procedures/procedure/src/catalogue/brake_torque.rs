@@ -11,7 +11,7 @@ use super::{Findable, Procedure, findable};
 use crate::bench_facts::BenchFacts;
 use crate::brake_model::{BrakeModel, CurrentHistory};
 use crate::catalogue::brake_hysteresis::{BOUND, SETTLED};
-use crate::findings::{Unusable, holds, quantity, scatter, verdict};
+use crate::findings::{Unusable, holds, jackknife95, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -134,6 +134,7 @@ fn random(model: &BrakeModel, torques: u32, rng: &mut ChaCha8Rng) -> Vec<(f64, f
 
 /// A commanded torque with the measured one.
 struct Point {
+    history: i64,
     asked_nm: f64,
     felt_nm: f64,
 }
@@ -153,16 +154,17 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             if (hold.brake - current_a).abs() > SAME_A {
                 break;
             }
-            points.push(Point { asked_nm: *asked_nm, felt_nm: hold.mean(torque, SETTLED) });
+            points.push(Point { history: hold.repeat, asked_nm: *asked_nm, felt_nm: hold.mean(torque, SETTLED) });
         }
     }
     if points.len() < 2 {
         return Err(Unusable::InsufficientData("No random history was completed.", "Repeat the run."));
     }
-    let errors: Vec<f64> = points.iter().map(|point| (point.felt_nm - point.asked_nm) / rated_nm).collect();
-    let worst = errors.iter().map(|error| error.abs()).fold(0.0, f64::max);
-    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
-    let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+    let errors: Vec<(i64, f64)> =
+        points.iter().map(|point| (point.history, (point.felt_nm - point.asked_nm) / rated_nm)).collect();
+    let worst = errors.iter().map(|(_, error)| error.abs()).fold(0.0, f64::max);
+    let (mean, mean_ci95) = over_histories(&errors, |sum, _, n| sum / n);
+    let (rms, rms_ci95) = over_histories(&errors, |_, squares, n| (squares / n).sqrt());
     let good = worst <= BOUND;
     let count = points.len();
     Ok(Identification {
@@ -178,13 +180,27 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         }),
         quantities: vec![
             quantity(["error_max", "e_max", "Maximum error against the sensor, fraction of rated", ""], worst, None),
-            quantity(["error_rms", "e_rms", "RMS error against the sensor, fraction of rated", ""], rms, None),
-            quantity(["error_mean", "ē", "Mean error against the sensor, fraction of rated", ""], mean, None),
+            quantity(["error_rms", "e_rms", "RMS error against the sensor, fraction of rated", ""], rms, rms_ci95),
+            quantity(["error_mean", "ē", "Mean error against the sensor, fraction of rated", ""], mean, mean_ci95),
             quantity(["torques", "n", "Number of torques", ""], count as f64, None),
         ],
         figures: figures(&points),
         ..Identification::default()
     })
+}
+
+/// A figure from the sum, the sum of the squares and the number of the errors, and its 95 % interval over the histories. The
+/// errors of one history are not independent: they have its remanence in common.
+fn over_histories(errors: &[(i64, f64)], figure: fn(f64, f64, f64) -> f64) -> (f64, Option<[f64; 2]>) {
+    let without = |history: Option<i64>| {
+        let others = errors.iter().filter(|(of, _)| Some(*of) != history);
+        let [sum, squares, n] = others.fold([0.0; 3], |[sum, squares, n], (_, e)| [sum + e, squares + e * e, n + 1.0]);
+        figure(sum, squares, n)
+    };
+    let histories = errors.chunk_by(|a, b| a.0 == b.0).map(|part| part[0].0);
+    let (value, parts) = (without(None), histories.map(|history| without(Some(history))).collect::<Vec<f64>>());
+    let reach = jackknife95(&parts);
+    (value, (parts.len() > 2).then_some([value - reach, value + reach]))
 }
 
 fn figures(points: &[Point]) -> Vec<Figure> {

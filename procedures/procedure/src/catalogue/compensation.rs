@@ -20,6 +20,7 @@ use crate::plan::{Drive, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
 use method::{FrictionParameters, Method};
+use reference::Reference;
 use serde_json::{Map, Value};
 
 pub(super) struct Compensation;
@@ -44,8 +45,9 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("load", "Brake current during the reference, fraction of rated", "", 0.0, [0.0, 1.0]),
     Parameter::number("share", "Fraction of the friction that is compensated", "", 0.95, [0.1, 1.0]),
     Parameter::number("amplitude_rad_s", "Amplitude of the reference (link)", "rad/s", 0.15, [0.01, 20.0]),
-    Parameter::number("period_s", "Period of the reference", "s", 6.0, [0.5, 120.0]),
+    Parameter::number("period_s", "Period of the reference", "s", 6.0, reference::PERIOD_S),
     Parameter::number("ramp_s", "Ramp of a trapezoidal reference (0: sinusoid)", "s", 0.0, [0.0, 30.0]),
+    reference::FROM_FILE,
     Parameter::count("periods", "Periods with each method; the first is not evaluated", 2, [2, 100]),
     Parameter::count("rounds", "Rounds of all methods; their scatter gives the intervals", 3, [1, 20]),
     Parameter::number("acceleration_rad_s2", "Acceleration between methods (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
@@ -95,12 +97,12 @@ impl Procedure for Compensation {
         let constants = &bench.constants;
         let rate_hz = values.number("sample_rate_hz");
         let friction = FrictionParameters::new(values, constants);
-        let period = reference::period(values)?;
+        let reference = Reference::of(values)?;
+        let (period, step_s) = (&reference.velocity_rad_s, reference.step_s);
         let (periods, share) = (values.count("periods"), values.number("share"));
-        let step_s = values.number("period_s") / period.len() as f64;
         let setpoints = period.iter().cycle().take(period.len() * periods as usize);
         let velocity = setpoints.fold(Profile::from(0.0), |profile, v| profile.to(constants.gear_ratio * v, step_s));
-        let top_rad_s = values.number("amplitude_rad_s");
+        let top_rad_s = reference.top_rad_s();
         let load_a = self.load_a(values, bench)?;
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
         legs.repeat = NO_METHOD;
@@ -108,7 +110,7 @@ impl Procedure for Compensation {
             legs.change(top_rad_s * constants.gear_ratio, 0.0, load_a);
         }
         let methods = Method::ALL.into_iter().filter(|method| method.is_planned(values));
-        let methods = methods.map(|method| (method, friction.drive(method, share, &period, step_s, periods)));
+        let methods = methods.map(|method| (method, friction.drive(method, share, period, step_s, periods)));
         let mut methods: Vec<(Method, Drive)> = methods.collect();
         for (method, _) in &methods {
             over_compensates(&friction, *method, share, top_rad_s)?;
@@ -140,7 +142,7 @@ impl Procedure for Compensation {
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
-        verdict(identify::identify(values.number("period_s"), run))
+        verdict(identify::identify(reference::period_s(values), run))
     }
 }
 
@@ -254,6 +256,30 @@ mod tests {
     }
 
     #[test]
+    fn a_reference_of_the_user_is_followed_in_every_period() {
+        let own =
+            json!({"periods": 3, "reference": [[0, 0], [1, 0.2], [2, 0.2], [3, 0], [4, -0.1], [8, -0.1], [9, 0]]});
+        let plan = Compensation.plan(own.as_object().unwrap(), &joint_a()).unwrap();
+        let (gear, velocity) = (joint_a().constants.gear_ratio, &plan.steps[0].velocity);
+        assert!((velocity.duration_s() - 27.0).abs() < 1e-6);
+        for (t_s, v) in [(0.5, 0.1), (1.5, 0.2), (6.0, -0.1), (9.0, 0.0), (9.5, 0.1), (24.0, -0.1)] {
+            assert!((velocity.at(t_s) / gear - v).abs() < 1e-3, "{} rad/s at {t_s} s", velocity.at(t_s) / gear);
+        }
+        let refused = |points: Value| {
+            Compensation.plan(json!({"reference": points}).as_object().unwrap(), &joint_a()).unwrap_err().to_string()
+        };
+        for (points, message) in [
+            (json!([[0, 0], [0.2, 0.1], [0.4, 0]]), "reference takes 0.4 s, expected 0.5 to 120 s"),
+            (json!([[0, 0], [1, 0.1], [2, -0.1]]), "reference has -0.1 rad/s at 2 s: begin and end it at rest"),
+            (json!([[0, 0], [1, 0.1], [2, 0]]), "reference has one direction only"),
+            (json!([[0, 0], [1, 30], [2, 0]]), "parameter reference: 30 at 1 s: expected -20 to 20 rad/s"),
+        ] {
+            let refused = refused(points);
+            assert!(refused.contains(message), "{refused}");
+        }
+    }
+
+    #[test]
     fn a_trapezoid_reaches_its_speed_in_its_ramp_and_ends_at_rest() {
         let given = json!({"ramp_s": 0.5, "period_s": 4.0, "amplitude_rad_s": 0.2});
         let plan = Compensation.plan(given.as_object().unwrap(), &joint_a()).unwrap();
@@ -276,7 +302,7 @@ mod tests {
         let planned = |method: Method, stiffness_nm_rad: f64| {
             let values = values(stiffness_nm_rad);
             let friction = FrictionParameters::new(&values, &joint_a().constants);
-            let period = reference::period(&values).unwrap();
+            let period = Reference::of(&values).unwrap().velocity_rad_s;
             match friction.drive(method, 1.0, &period, 0.004, 2) {
                 Drive::Fed(Feedforward::Planned(current_a)) => current_a,
                 drive => panic!("{drive:?}"),

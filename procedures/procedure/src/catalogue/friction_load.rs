@@ -88,10 +88,10 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let mut quantities = Vec::new();
     for (effect, name, words) in [
-        ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction", "Nm"]),
-        ("viscous", "c_v", ["c_v", "c_v", "Viscous friction", "Nm·s/rad"]),
-        ("load_linear", "mu", ["mu", "μ", "Friction per Nm of load, motor side", ""]),
-        ("load_quadratic", "mu_2", ["mu_2", "μ₂", "Friction per Nm² of load, motor side", "1/Nm"]),
+        ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction (motor)", "Nm"]),
+        ("viscous", "c_v", ["c_v", "c_v", "Viscous friction (motor)", "Nm·s/rad"]),
+        ("load_linear", "mu", ["mu", "μ", "Friction per Nm of load (motor)", ""]),
+        ("load_quadratic", "mu_2", ["mu_2", "μ₂", "Friction per Nm² of load (motor)", "1/Nm"]),
     ] {
         if let Some(found) = parameter(&fit, effect, name) {
             let (value, ci95) = interval_of(found, 1.0);
@@ -102,7 +102,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let heaviest = held().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
     let added_nm = laws.added_nm(heaviest / gear);
     let added = added(&table, law, &fit, heaviest / gear);
-    let words_of_added = ["added", "Δτ", "Additional friction at maximum load, motor side", "Nm"];
+    let words_of_added = ["added", "Δτ", "Additional friction at maximum load (motor)", "Nm"];
     quantities.push(match added {
         Some((value, ci95)) => quantity(words_of_added, value, Some(ci95)),
         None => quantity(words_of_added, added_nm, None),

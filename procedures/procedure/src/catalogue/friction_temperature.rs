@@ -159,10 +159,14 @@ fn quantities(fit: &Fit, low_c: f64, high_c: f64) -> Vec<Quantity> {
         quantity(["temperature_high", "T₂", "Maximum temperature", "°C"], high_c, None),
     ];
     for (effect, name, words) in [
-        ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction at 25 °C", "Nm"]),
-        ("viscous", "c_v", ["c_v", "c_v", "Viscous friction at 25 °C", "Nm·s/rad"]),
-        ("temperature_coulomb", "tau_t", ["tau_t", "τ_T", "Coulomb friction, change with temperature", "Nm/K"]),
-        ("temperature_viscous", "c_t", ["c_t", "c_T", "Viscous friction, change with temperature", "Nm·s/(rad·K)"]),
+        ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction (motor) at 25 °C", "Nm"]),
+        ("viscous", "c_v", ["c_v", "c_v", "Viscous friction (motor) at 25 °C", "Nm·s/rad"]),
+        ("temperature_coulomb", "tau_t", ["tau_t", "τ_T", "Coulomb friction (motor), change with temperature", "Nm/K"]),
+        (
+            "temperature_viscous",
+            "c_t",
+            ["c_t", "c_T", "Viscous friction (motor), change with temperature", "Nm·s/(rad·K)"],
+        ),
     ] {
         if let Some(found) = parameter(fit, effect, name) {
             let (value, ci95) = interval_of(found, 1.0);

@@ -226,13 +226,20 @@ impl Lines {
             };
             let offset_ci95 = Some(line.offset_ci95);
             quantities.extend([
-                named("offset", "τ₀", "Friction at zero speed (fitted line)", "Nm", line.offset, offset_ci95),
-                named("slope", "c", "Slope over motor speed", "Nm·s/rad", line.slope, Some(line.slope_ci95)),
+                named("offset", "τ₀", "Friction at zero speed (motor), fitted line", "Nm", line.offset, offset_ci95),
+                named(
+                    "slope",
+                    "c",
+                    "Slope over motor speed (motor torque)",
+                    "Nm·s/rad",
+                    line.slope,
+                    Some(line.slope_ci95),
+                ),
                 named("r2", "r²", "Coefficient of determination", "", line.r2, None),
             ]);
         }
         if let Some((value, ci95)) = self.half_difference {
-            let title = "Friction at zero speed, half difference of both directions";
+            let title = "Friction at zero speed (motor), half difference of both directions";
             quantities.push(quantity(["offset_half_difference", "τ₀", title, "Nm"], value, Some(ci95)));
         }
         quantities

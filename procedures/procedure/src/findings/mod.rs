@@ -17,4 +17,4 @@ pub(crate) use plateaus::{Plateau, plateaus, settled};
 pub(crate) use quantities::{
     Unusable, bounded, combined, curve, directions, interval_of, parameter, quantity, scatter, verdict,
 };
-pub(crate) use solve::{Solved, jackknife95, solve, t95};
+pub(crate) use solve::{Solved, jackknife95, solve, spread_ci95, t95};

@@ -1,7 +1,7 @@
 //! Least squares with few parameters and their intervals.
 
 use nalgebra::{SMatrix, SVector};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 
 /// Parameters with the half widths of their 95 % intervals.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +43,12 @@ pub fn t95(freedom: f64) -> f64 {
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
 }
 
+/// 95 % interval of a standard deviation, for independent normal deviations.
+pub fn spread_ci95(spread: f64, freedom: f64) -> Option<[f64; 2]> {
+    let squares = ChiSquared::new(freedom).ok()?;
+    Some([0.975, 0.025].map(|share| spread * (freedom / squares.inverse_cdf(share)).sqrt()))
+}
+
 /// Half width of a 95 % interval, from the values of a figure without each of several parts (jackknife).
 pub fn jackknife95(without: &[f64]) -> f64 {
     let n = without.len() as f64;
@@ -60,6 +66,14 @@ mod tests {
     fn the_jackknife_of_a_mean_is_its_standard_error() {
         let without = [1.0, 2.0, 3.0, 6.0].map(|value| (12.0 - value) / 3.0);
         assert!((jackknife95(&without) - 3.182 * (14.0f64 / 12.0).sqrt()).abs() < 1e-3);
+    }
+
+    /// Twelve deviations: √(11/21.920) and √(11/3.816), from tables of χ².
+    #[test]
+    fn a_spread_has_the_interval_of_its_distribution() {
+        let [low, high] = spread_ci95(1.0, 11.0).unwrap();
+        assert!((low - 0.70840).abs() < 1e-4 && (high - 1.69788).abs() < 1e-4, "{low} {high}");
+        assert_eq!(spread_ci95(1.0, 0.0), None);
     }
 
     /// y = 1 + 2x with deviations: slope 1.98, offset 1.04, Σ² = 0.036, standard error of the slope √(0.012/10).

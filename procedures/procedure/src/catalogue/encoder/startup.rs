@@ -7,13 +7,12 @@ use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
-use crate::findings::{Mean, scatter};
+use crate::findings::{Mean, scatter, spread_ci95};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{InitialState, Plan, PlanFault};
 use crate::stage_pose::StagePose;
 use jointbench_instrument::{Kind, RunTable};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 pub struct EncoderStartup;
 
@@ -124,7 +123,11 @@ impl Procedure for EncoderStartup {
                     spread_ci95(spread, freedom),
                 ),
                 quantity(["startup_range", "", "Range between power-ups", "rad"], range, None),
-                quantity(["repeatability", "", "Standard deviation without power cycling", "rad"], repeats_to, None),
+                quantity(
+                    ["repeatability", "", "Standard deviation without power cycling", "rad"],
+                    repeats_to,
+                    spread_ci95(repeats_to, pairs),
+                ),
                 quantity(["power_ups", "n", "Number of power-ups", ""], zeros.len() as f64, None),
             ],
             figures: figures(&zeros),
@@ -135,12 +138,6 @@ impl Procedure for EncoderStartup {
 
 fn mean(values: &[f64]) -> Option<f64> {
     (values.len() > 1).then(|| values.iter().sum::<f64>() / values.len() as f64)
-}
-
-/// 95 % interval of a standard deviation, for normal deviations.
-fn spread_ci95(spread: f64, freedom: f64) -> Option<[f64; 2]> {
-    let squares = ChiSquared::new(freedom).ok()?;
-    Some([0.975, 0.025].map(|share| spread * (freedom / squares.inverse_cdf(share)).sqrt()))
 }
 
 fn figures(zeros: &[f64]) -> Vec<Figure> {
@@ -170,16 +167,4 @@ fn figures(zeros: &[f64]) -> Vec<Figure> {
             histogram("power-ups", zeros, 12),
         ),
     ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Twelve deviations: √(11/21.920) and √(11/3.816), from tables of χ².
-    #[test]
-    fn a_spread_has_the_interval_of_its_distribution() {
-        let [low, high] = spread_ci95(1.0, 11.0).unwrap();
-        assert!((low - 0.70840).abs() < 1e-4 && (high - 1.69788).abs() < 1e-4, "{low} {high}");
-    }
 }

@@ -149,12 +149,16 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
     .join("; ");
     let mut quantities = fits.quantities(&sides, gear);
     let [coulomb, viscous] = [
-        ["tau_c_difference", "τ_c⁺ − τ_c⁻", "Coulomb friction, difference between directions", "Nm"],
-        ["c_v_difference", "c_v⁺ − c_v⁻", "Viscous friction, difference between directions", "Nm·s/rad"],
+        ["tau_c_difference", "τ_c⁺ − τ_c⁻", "Coulomb friction (motor), difference between directions", "Nm"],
+        ["c_v_difference", "c_v⁺ − c_v⁻", "Viscous friction (motor), difference between directions", "Nm·s/rad"],
     ];
     quantities.extend([quantity_of(coulomb, differences[0]), quantity_of(viscous, differences[1])]);
     quantities.extend(hidden_nm.map(|most_nm| {
-        quantity(["tau_s_most", "τ_s", "Maximum rise towards zero speed that cannot be excluded", "Nm"], most_nm, None)
+        quantity(
+            ["tau_s_most", "τ_s", "Maximum rise towards zero speed that cannot be excluded (motor)", "Nm"],
+            most_nm,
+            None,
+        )
     }));
     let (is_rise_decided, rise) = rise(whole, hidden_nm, gear);
     let rest = rest(&sides, whole);
@@ -190,13 +194,13 @@ fn named(suffix: &str, mark: &str, direction: Option<&str>, of: &FreeFriction, g
         }
     };
     let mut out = vec![
-        one("tau_c", "τ_c", "Coulomb friction", "Nm", of.coulomb),
-        one("c_v", "c_v", "Viscous friction", "Nm·s/rad", of.viscous),
+        one("tau_c", "τ_c", "Coulomb friction (motor)", "Nm", of.coulomb),
+        one("c_v", "c_v", "Viscous friction (motor)", "Nm·s/rad", of.viscous),
     ];
     if let (Some(stribeck), Some(breakaway)) = (&of.stribeck, of.breakaway()) {
         let link = |v: f64| v / gear;
         out.extend([
-            one("tau_h", "τ_h", "Friction at zero speed", "Nm", breakaway),
+            one("tau_h", "τ_h", "Friction at zero speed (motor)", "Nm", breakaway),
             one(
                 "omega_s",
                 "θ̇_s",
