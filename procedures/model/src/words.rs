@@ -3,8 +3,13 @@
 use jointbench_instrument::Kind;
 use jointbench_instrument::units::quantity_of;
 
-/// Factor and prefix of a unit for which `size` has one to three digits before the point.
-pub fn prefix(size: f64) -> (f64, &'static str) {
+/// Factor and prefix of a unit for which `size` has one to three digits before the point. The prefix of a square is squared:
+/// 1 mrad² is 10⁻⁶ rad², up to six digits before the point.
+pub fn prefix(size: f64, unit: &str) -> (f64, &'static str) {
+    if unit.starts_with("rad²") {
+        let (scale, prefix) = prefix(size.sqrt(), "rad");
+        return (scale * scale, prefix);
+    }
     match size {
         s if s == 0.0 || s >= 1.0 => (1.0, ""),
         s if s >= 1e-3 => (1e3, "m"),
@@ -15,7 +20,7 @@ pub fn prefix(size: f64) -> (f64, &'static str) {
 
 /// Factor and prefix of a value of this size; none for a unit without prefixes.
 pub fn prefix_of(size: f64, unit: &str) -> (f64, &'static str) {
-    if is_prefixed(unit) { prefix(size) } else { (1.0, "") }
+    if is_prefixed(unit) { prefix(size, unit) } else { (1.0, "") }
 }
 
 /// A value with its unit, three digits, and a prefix: `6.1 mNm`. The unit `1` is omitted.
@@ -35,15 +40,18 @@ pub fn figure(value: f64, unit: &str) -> String {
     format!("{scaled:.digits$} {prefix}{unit}").trim_end().to_owned()
 }
 
-/// Three digits of a number below 0.01: `0.00206`, and `4.10 × 10⁻⁵` below 0.001.
-pub fn small(value: f64) -> String {
+/// Three digits of a number below 0.01: `0.00206`, and `4.10·10⁻⁵` below 0.001.
+fn small(value: f64) -> String {
+    if value.abs() < 9.995e-4 { scientific(value, 2) } else { format!("{value:.5}") }
+}
+
+/// A number with a power of ten and this many decimals: `4.10·10⁻⁵`.
+pub fn scientific(value: f64, decimals: usize) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let text = format!("{value:.2e}");
-    let (Some((digits, exponent)), true) = (text.split_once("e-"), value.abs() < 9.995e-4) else {
-        return format!("{value:.5}");
-    };
-    let exponent = exponent.bytes().map(|digit| DIGITS[usize::from(digit - b'0')]);
-    format!("{digits} × 10⁻{}", exponent.collect::<String>())
+    let text = format!("{value:.decimals$e}");
+    let Some((number, exponent)) = text.split_once('e') else { return text };
+    let raised = exponent.chars().map(|c| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]));
+    format!("{number}·10{}", raised.collect::<String>())
 }
 
 /// The prefixed unit of one figure, for others in the same sentence.
@@ -134,6 +142,7 @@ mod tests {
     fn figures_read_well() {
         assert_eq!(figure(-0.00612, "Nm"), "-6.12 mNm");
         assert_eq!(figure(95.106, "kg"), "95.1 kg");
+        assert_eq!(figure(1.17e-4, "rad²"), "117 mrad²");
         assert_eq!(figure(0.226, "1"), "0.23");
         assert_eq!(figure(-0.00123, "kg·m²"), "-0.00123 kg·m²");
         assert_eq!(percent(0.184), "18 %");
@@ -146,8 +155,9 @@ mod tests {
         assert_eq!((scale.figure(3.24e-3), scale.figure(0.629e-3)), ("3.24 mNm".into(), "0.629 mNm".into()));
         assert_eq!(scale.figure(3.28e-5), "0.0328 mNm");
         assert_eq!(Scale::of(95.1, "1").figure(0.5), "0.500");
-        assert_eq!(Scale::of(1.0, "Nm").figure(4e-4), "4.00 × 10⁻⁴ Nm");
-        assert_eq!([small(9.994e-4), small(9.996e-4), small(-1.2e-12)], ["9.99 × 10⁻⁴", "0.00100", "-1.20 × 10⁻¹²"]);
+        assert_eq!(Scale::of(1.0, "Nm").figure(4e-4), "4.00·10⁻⁴ Nm");
+        assert_eq!([small(9.994e-4), small(9.996e-4), small(-1.2e-12)], ["9.99·10⁻⁴", "0.00100", "-1.20·10⁻¹²"]);
+        assert_eq!(scientific(2.5e9, 3), "2.500·10⁹");
     }
 
     #[test]

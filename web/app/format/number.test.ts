@@ -24,6 +24,7 @@ describe('numbers as an instrument shows them', () => {
 	it('chooses one prefix by the largest magnitude', () => {
 		expect(scaleFor('Nm', 0.0214)).toEqual({ factor: 1e3, unit: 'mNm' });
 		expect(scaleFor('Nm', 2)).toEqual({ factor: 1, unit: 'Nm' });
+		expect(formatQuantity(1.17e-4, 'rad²')).toBe('117 mrad²');
 		expect(formatQuantity(0.417, 'Nm')).toBe('417 mNm');
 		expect(formatQuantity(1.507e-4, 'Nm·s/rad')).toBe('151 µNm·s/rad');
 		expect(formatQuantity(0.00785, 'V/(°/s)')).toBe('0.00785 V/(°/s)');

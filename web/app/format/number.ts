@@ -47,10 +47,14 @@ const LARGE = /^(Nm?\/.*|Hz)$/;
 
 /**
  * One prefix for all values that are displayed together, chosen by the largest magnitude: one to three digits before
- * the point, as in the sentences and reports of the daemon.
+ * the point, as in the sentences and reports of the daemon. The prefix of a square is squared: 1 mrad² is 10⁻⁶ rad².
  */
 export function scaleFor(unit: string, largest: number): Scale {
 	const size = Math.abs(largest);
+	if (unit.startsWith('rad²')) {
+		const { factor, unit: prefixed } = scaleFor('rad', Math.sqrt(size));
+		return { factor: factor ** 2, unit: prefixed.replace('rad', unit) };
+	}
 	if (LARGE.test(unit) && size >= 1e4) return size >= 1e7 ? { factor: 1e-6, unit: `M${unit}` } : { factor: 1e-3, unit: `k${unit}` };
 	if (!SMALL.test(unit) || size === 0 || size >= 1) return { factor: 1, unit };
 	if (size >= 1e-3) return { factor: 1e3, unit: `m${unit}` };

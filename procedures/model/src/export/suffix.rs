@@ -36,7 +36,6 @@ pub fn ascii(text: &str) -> String {
         }
         is_power = false;
         match c {
-            '×' => plain.push('*'),
             '·' => plain.push('*'),
             '−' | '–' => plain.push('-'),
             '…' => plain.push_str("..."),
@@ -59,6 +58,6 @@ mod tests {
             assert_eq!(of(unit), suffix);
         }
         assert_eq!(named("direction", "1"), "direction");
-        assert_eq!(ascii("4.00 × 10⁻¹² kg·m²"), "4.00 * 10^-12 kg*m^2");
+        assert_eq!(ascii("4.00·10⁻¹² kg·m²"), "4.00*10^-12 kg*m^2");
     }
 }

@@ -41,7 +41,7 @@ const SCHEMA: &[Parameter] = &[
         0.0,
         [0.0, 1e6],
     ),
-    Parameter::number("load_friction", "Friction per Nm of load, motor side (0: unknown)", "", 0.0, [0.0, 0.9]),
+    Parameter::number("load_friction", "Friction per Nm of load (motor; 0: unknown)", "", 0.0, [0.0, 0.9]),
     Parameter::number("load", "Brake current during the reference, fraction of rated", "", 0.0, [0.0, 1.0]),
     Parameter::number("share", "Fraction of the friction that is compensated", "", 0.95, [0.1, 1.0]),
     Parameter::number("amplitude_rad_s", "Amplitude of the reference (link)", "rad/s", 0.15, [0.01, 20.0]),
