@@ -36,6 +36,34 @@ export async function omitBadRow(page, base, table) {
 	await form.waitFor({ state: 'detached', timeout: 30_000 });
 }
 
+/** Rows that are no samples are listed with their lines, and omitted by one button. */
+export async function omitWrongLines(page, base, table) {
+	const form = await chooseForeign(page, base, table.replace('8;2;0,2;', '8;2;1..2;').replace('16;4;0,4;', '16;4'));
+	const rows = form.getByRole('list', { name: 'Rows that cannot be read as samples' }).getByRole('listitem');
+	await rows.nth(1).waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the wrong rows are not listed'));
+	await form.getByRole('button', { name: 'omit lines 4, 6' }).click();
+	await form.getByText('2 rows omitted as asked').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'wrong rows are not omitted'));
+	await form.getByRole('button', { name: 'Cancel' }).click();
+	await form.waitFor({ state: 'detached', timeout: 30_000 });
+}
+
+/** An own reference of friction compensation is planned from a file. */
+export async function chooseCurve(page, base) {
+	await page.goto(`${base}/?procedure=compensation`);
+	const field = page.getByLabel(/^Own reference/);
+	await field.waitFor({ state: 'attached', timeout: 30_000 });
+	const choose = (text) => field.setInputFiles({ name: 'cycle.csv', mimeType: 'text/csv', buffer: Buffer.from(text) });
+	const shown = async (text, what) => page.getByText(text).first().waitFor({ timeout: 30_000 }).catch(() => expect(false, what));
+	await choose('t;v\n0;0\n1;fast\n');
+	await shown(/^line 3: two numbers are needed/, 'a wrong line of a curve is not named');
+	await choose('t;v\n0;0\n1;0,2\n2;0,1\n');
+	await shown(/begin and end it at rest/, 'a reference that does not end at rest is not refused');
+	await choose('t;v\n0;0\n1;0,2\n3;-0,2\n4;0\n');
+	await shown('4 points', 'the points of a curve are not counted');
+	await shown(/^All checks passed/, 'a reference from a file cannot be started');
+	await page.getByRole('button', { name: 'Remove' }).last().click();
+}
+
 /** Imports the table in three clicks, from the file to the workbench. */
 export async function importForeign(page, base, table) {
 	const form = await chooseForeign(page, base, table);

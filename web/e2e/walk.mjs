@@ -13,7 +13,7 @@ import { gzipSync } from 'node:zlib';
 import { expect, open, settings, runStory } from './browser.mjs';
 import { audit } from './audit.mjs';
 import { openUnknownVersion, reimportRun, byKeyboard, chooseColumns, dashesOf, saveListView, openManyRuns, openTogether, readResults, showEarlier, exportRun, exportMap, countCurves, validateOnRun, zoomWhileFollowing } from './checks.mjs';
-import { FOREIGN, importForeign, omitBadRow } from './files.mjs';
+import { FOREIGN, chooseCurve, importForeign, omitBadRow, omitWrongLines } from './files.mjs';
 import { analyse, compareChannels, followTrend, goToSteps, hideChannel, openTradeOffs, changeMapColours, stopEarly } from './plots.mjs';
 import { useQueue } from './queue.mjs';
 import { WITHOUT_LOAD, brush, compareVersions, excludeAndUndo, firstUse, startAndStopAutopilot, runAutopilotToEnd, loseAndRestoreContact, makeRun, measureNext, runningAnimations, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, waitForOtherVersion, tryAndDrop, watchRun, writeEffect, zoomOnePlot } from './steps.mjs';
@@ -184,7 +184,9 @@ await runStory('walk', async () => {
 	await lost.close();
 	await saveListView(page, where.base, run);
 	await chooseColumns(page, where.base, run);
+	await chooseCurve(page, where.base);
 	await omitBadRow(page, where.base, FOREIGN);
+	await omitWrongLines(page, where.base, FOREIGN);
 	await importForeign(page, where.base, FOREIGN);
 	await page.getByLabel(`Compare run ${run}`).check();
 	const third = page.getByLabel(`Compare run ${run + 3}`);
