@@ -1,7 +1,7 @@
 //! The daemon: a lab with a network interface.
 
 use crate::api::{self, Transport};
-use crate::config::{BenchDescription, Notify};
+use crate::config::{Archive, BenchDescription, Notify};
 use crate::job;
 use crate::lab::{Lab, LabError, Tokens, weakness};
 use crate::listener::{self, Limits, Tls, TlsFiles};
@@ -21,6 +21,7 @@ pub struct DaemonSettings {
     pub network: Network,
     pub benches: Vec<BenchDescription>,
     pub notify: Notify,
+    pub archive: Option<Archive>,
     /// Path of the `jointbench` executable, for parts of the daemon in separate processes.
     pub program: PathBuf,
     /// Limits of one computation on whole runs.
@@ -63,7 +64,7 @@ impl Daemon {
             notify.dashboard = Some(format!("{scheme}://{address}"));
         }
         let (data, benches, program) = (&settings.data, settings.benches, settings.program);
-        let lab = Lab::open(data, benches, tokens, program, settings.analysis, notify).await?;
+        let lab = Lab::open(data, benches, tokens, program, settings.analysis, notify, settings.archive).await?;
         let router = api::router(lab.clone(), Transport { tls: tls.is_some(), behind_proxy });
         let server = tokio::spawn(listener::serve(listener, router, tls, limits));
         tracing::info!(%address, scheme, data = %settings.data.display(), "listening");

@@ -7,6 +7,7 @@
 //! * [`LabError::Conflict`]: a valid request at the wrong time (bench busy, bench blocked).
 //! * [`LabError::Busy`]: the same request may succeed later (disk full, database locked, too many computations).
 //! * [`LabError::Over`]: permanently too late (the run has ended, or another run has continued it).
+//! * [`LabError::Gone`]: the samples are no longer in the store; the message names their file in the archive.
 //! * [`LabError::Bench`]: an instrument does not work as required.
 //! * [`LabError::TooLarge`]: the request exceeds the limit of memory or time.
 //! * [`LabError::Setup`]: the daemon cannot start with this setup (port in use, folder not writable, old database).
@@ -30,6 +31,8 @@ pub enum LabError {
     Busy(String),
     #[error("{0}")]
     Over(String),
+    #[error("{0}")]
+    Gone(String),
     #[error("{0}")]
     Bench(String),
     #[error("{0}")]
@@ -58,6 +61,7 @@ impl LabError {
             LabError::Conflict(_) | LabError::Busy(_) | LabError::Bench(_) | LabError::Internal(_) => 1,
             LabError::NotFound(_)
             | LabError::Over(_)
+            | LabError::Gone(_)
             | LabError::Invalid(_)
             | LabError::File { .. }
             | LabError::Formula(_)
@@ -78,6 +82,7 @@ impl From<crate::store::StoreError> for LabError {
             _ if error.is_setup() => LabError::Setup(message),
             E::OtherRun { .. } | E::Search { .. } | E::Order { .. } | E::TokenExists(_) => LabError::Invalid(message),
             E::RunOver { .. } | E::EffectUsed { .. } => LabError::Conflict(message),
+            E::Dropped { .. } => LabError::Gone(message),
             E::Held | E::DiskFull => LabError::Busy(message),
             _ => LabError::Internal(message),
         }

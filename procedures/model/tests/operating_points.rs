@@ -1,6 +1,7 @@
 //! A table of operating points without a time: speed, load and current at steady state.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
+use jointbench_model::preprocess::prepare;
 use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover};
 
 const KM: f64 = 0.05;
@@ -72,4 +73,13 @@ fn nothing_is_named_where_nothing_is_missing_and_an_angle_is_not_testable() {
     for effect in ["gravity", "cogging", "inertia", "presliding"] {
         assert!(diagnosis.not_visible.iter().any(|of| of.effect == effect), "{effect}: {:?}", diagnosis.not_visible);
     }
+}
+
+#[test]
+fn each_point_in_motion_is_a_steady_state() {
+    let run = table(0.1);
+    let states = prepare(&run, &Options::default()).unwrap().steady_states();
+    let speed = run.column("motor_velocity_rad_s").unwrap();
+    let moving: Vec<_> = (0..run.len()).filter(|row| speed[*row] != 0.0).map(|row| row..row + 1).collect();
+    assert_eq!(states.into_iter().map(|(_, rows)| rows).collect::<Vec<_>>(), moving);
 }

@@ -30,6 +30,64 @@ class Applies(BaseModel):
     """Effect of applying it, or the reason why it cannot be applied."""
 
 
+ArchiveContent = TypeAliasType("ArchiveContent", Literal['means', 'samples'])
+"""A table of a run."""
+
+
+ArchiveProgress = TypeAliasType("ArchiveProgress", Literal['owed', 'archived', 'empty', 'failed'])
+
+
+class ArchiveState(BaseModel):
+    """State of the archive."""
+
+    archived: Annotated[int, Field(ge=0)]
+    dropped: Annotated[int, Field(ge=0)]
+    """Runs whose samples are only in the archive."""
+
+    empty: Annotated[int, Field(ge=0)]
+    """Tables that a run does not have, such as the means of a run without steady states."""
+
+    failed: Annotated[int, Field(ge=0)]
+    """Tables that cannot be archived until a person acts."""
+
+    last_error: str | None = None
+    """Error of the last attempt for a table that is owed or failed."""
+
+    oldest_owed: AwareDatetime | None = None
+    """End of the first run that waits."""
+
+    owed: Annotated[int, Field(ge=0)]
+    """Tables that wait to be archived."""
+
+    raw: bool
+    """Whether the samples are archived too, not only the means at steady state."""
+
+    url: str | None = None
+    """From the bench description; `null` without an archive."""
+
+
+class ArchivedTable(BaseModel):
+    """A table of a run in the archive, or on its way."""
+
+    archived_at: AwareDatetime | None = None
+    bytes: Annotated[int | None, Field(ge=0)] = None
+    content: ArchiveContent
+    dropped_at: AwareDatetime | None = None
+    """Since then the samples are only in the archive."""
+
+    file: str | None = None
+    """Path of the file."""
+
+    reason: str | None = None
+    """Error of the last attempt, or why there is no table."""
+
+    run: int
+    sha256: str | None = None
+    """Of the values, as eight bytes each, little endian, column after column."""
+
+    state: ArchiveProgress
+
+
 AutopilotAction = TypeAliasType("AutopilotAction", Literal['measure', 'measured', 'fit', 'add'])
 
 
@@ -813,7 +871,7 @@ class Problem(BaseModel):
     title: str
     type: str
     """
-    `urn:jointbench:` and the kind: `not_found`, `invalid`, `formula`, `file_refused`, `conflict`, `over`, `bench_fault`, `malformed`,
+    `urn:jointbench:` and the kind: `not_found`, `invalid`, `formula`, `file_refused`, `conflict`, `over`, `gone`, `bench_fault`, `malformed`,
     `forbidden`, `unauthorized`, `not_allowed`, `too_large`, `busy`, `internal`.
     """
 
@@ -2244,6 +2302,9 @@ class Model(BaseModel):
 
 
 class Run(RunSummary):
+    archive: list[ArchivedTable] | None = None
+    """Its tables in the archive; absent without an archive."""
+
     channels: list[ChannelInfo]
     meta: dict[str, Any]
     """Metadata of the test conditions, as in `meta.json`."""

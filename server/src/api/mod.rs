@@ -1,5 +1,6 @@
 //! HTTP: the router lists all operations. Handlers only translate; [`crate::lab`] does the work.
 
+mod archive;
 mod auth;
 mod autopilots;
 mod bench;
@@ -183,6 +184,7 @@ fn measurements() -> OpenApiRouter<Lab> {
         .routes(routes!(units::changes))
         .routes(routes!(transfer::export))
         .routes(routes!(transfer::export_meta))
+        .routes(routes!(archive::drop_samples))
 }
 
 /// Effects, model versions, diagnoses and autopilots.
@@ -219,6 +221,9 @@ fn daemon() -> OpenApiRouter<Lab> {
         .routes(routes!(tokens::revoke))
         .routes(routes!(notifications::list))
         .routes(routes!(notifications::test))
+        .routes(routes!(archive::get))
+        .routes(routes!(archive::retry))
+        .routes(routes!(archive::samples))
         .routes(routes!(health::health))
         .routes(routes!(health::specification))
 }

@@ -13,7 +13,7 @@ use utoipa::ToSchema;
 /// RFC 9457 problem document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Problem {
-    /// `urn:jointbench:` and the kind: `not_found`, `invalid`, `formula`, `file_refused`, `conflict`, `over`, `bench_fault`, `malformed`,
+    /// `urn:jointbench:` and the kind: `not_found`, `invalid`, `formula`, `file_refused`, `conflict`, `over`, `gone`, `bench_fault`, `malformed`,
     /// `forbidden`, `unauthorized`, `not_allowed`, `too_large`, `busy`, `internal`.
     #[serde(rename = "type")]
     #[schema(value_type = String)]
@@ -131,6 +131,7 @@ impl From<LabError> for Problem {
             LabError::Conflict(_) => {
                 Self::new(StatusCode::CONFLICT, "conflict", "Not possible in the present state", detail)
             }
+            LabError::Gone(_) => Self::new(StatusCode::GONE, "gone", "Samples are in the archive", detail),
             LabError::Over(_) => Self::new(StatusCode::CONFLICT, OVER, "No longer possible", detail),
             LabError::Busy(_) => {
                 Self::new(StatusCode::SERVICE_UNAVAILABLE, BUSY, "Not possible in the present state", detail)

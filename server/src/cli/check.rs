@@ -23,9 +23,13 @@ pub fn check(arguments: &Check) -> Done {
         print!("{text}");
         return Ok(());
     }
-    let Description { benches, notify } = describe(&arguments.config)?;
+    let Description { benches, notify, archive } = describe(&arguments.config)?;
     for target in &notify.targets {
         println!("notify {} ({}): description is valid", target.name, target.channel.kind());
+    }
+    if let Some(archive) = &archive {
+        let folder = if archive.folder.is_dir() { "" } else { ", but its folder does not exist" };
+        println!("archive {}: description is valid{folder}", archive.url);
     }
     let not_ready: usize = benches.iter().map(check_bench).sum();
     match not_ready {

@@ -24,7 +24,7 @@ pub fn demo(arguments: Demo) -> Done {
     let hidden = Hidden::choose(&arguments)?;
     let mock = MockSettings::new(hidden.setup.joint, hidden.seed).hiding(&[hidden.effect]);
     let benches = vec![BenchDescription::mock(hidden.setup.bench, mock)];
-    let description = Description { benches, notify: Notify::default() };
+    let description = Description { benches, notify: Notify::default(), archive: None };
     let stays = !arguments.exit;
     runtime()?.block_on(async {
         let daemon = Daemon::start(settings(arguments.place, "jointbench-data/demo", description)?).await?;

@@ -1,5 +1,6 @@
 //! The command line. Offline commands work on files; the others on a data folder or a running daemon.
 
+mod archive;
 mod arguments;
 mod autopilot;
 mod backup;
@@ -77,6 +78,7 @@ pub fn main() -> ExitCode {
         Command::ServoMemory(arguments) => memory::memory(&arguments),
         Command::Queue(arguments) => queue::queue(&arguments),
         Command::Notify(arguments) => notify::notify(&arguments),
+        Command::Archive(arguments) => archive::archive(&arguments),
         Command::Runs(arguments) => runs::runs(&arguments),
         Command::Units(arguments) => units::units(&arguments),
         Command::Autopilot(arguments) => autopilot::autopilot(&arguments),

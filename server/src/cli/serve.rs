@@ -36,7 +36,7 @@ pub(super) fn describe(config: &str) -> Result<Description, Exit> {
 }
 
 pub(super) fn settings(place: Place, data: &str, description: Description) -> Result<DaemonSettings, Exit> {
-    let Description { mut benches, notify } = description;
+    let Description { mut benches, notify, archive } = description;
     if let Some(folder) = &place.record {
         benches.iter_mut().for_each(|bench| bench.record = Some(folder.join(&bench.name)));
     }
@@ -55,6 +55,7 @@ pub(super) fn settings(place: Place, data: &str, description: Description) -> Re
         network: Network { tls, behind_proxy: place.behind_proxy, ..Network::default() },
         benches,
         notify,
+        archive,
         program: crate::program::path(),
         analysis,
     })

@@ -1,5 +1,6 @@
 //! Checks raw values and converts them.
 
+use super::archive::check_archive;
 use super::error::{Collector, ConfigErrors};
 use super::figures::{Sheet, check_reach, check_torsion};
 use super::instruments::{calibrations, instruments, ninter};
@@ -44,9 +45,11 @@ pub(super) fn check(file: &str, text: &str) -> Result<Description, ConfigErrors>
     }
     let targets = check_targets(file, &raw.notify, &mut wrong);
     let dashboard = raw.dashboard.as_ref().map(|given| check_dashboard(given, &mut wrong));
+    let archive = raw.archive.as_ref().map(|given| check_archive(given, &mut wrong));
     let checked = || {
         let benches = benches.into_iter().collect::<Option<_>>()?;
-        Some(Description { benches, notify: Notify { dashboard: flip(dashboard)?, targets: targets? } })
+        let notify = Notify { dashboard: flip(dashboard)?, targets: targets? };
+        Some(Description { benches, notify, archive: flip(archive)? })
     };
     let checked = checked();
     wrong.finish(file, checked)

@@ -1,5 +1,6 @@
 //! Bench descriptions: raw values are checked once during parsing.
 
+mod archive;
 mod check;
 mod error;
 mod figures;
@@ -11,6 +12,7 @@ mod secret;
 mod tests;
 mod values;
 
+pub use archive::{Archive, ArchiveContent};
 pub use error::{ConfigError, ConfigErrors};
 pub use notify::{Channel, Notify, NotifyEvent, NotifyTarget, Server, SigningKey};
 pub use secret::{Secret, read_secret};
@@ -42,6 +44,7 @@ pub const READY_MADE: [(&str, &str); 8] = [
 pub struct Description {
     pub benches: Vec<BenchDescription>,
     pub notify: Notify,
+    pub archive: Option<Archive>,
 }
 
 /// A checked bench.

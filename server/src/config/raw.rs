@@ -14,6 +14,17 @@ pub struct RawFile {
     pub dashboard: Option<Spanned<String>>,
     #[serde(default)]
     pub notify: Vec<Spanned<RawNotify>>,
+    pub archive: Option<RawArchive>,
+}
+
+/// Where the tables of ended runs are archived.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawArchive {
+    pub url: Spanned<String>,
+    /// The samples too, not only the means at steady state.
+    #[serde(default)]
+    pub raw: bool,
 }
 
 /// A target of notifications: `webhook`, `mail` or `mqtt`.

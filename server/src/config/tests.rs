@@ -314,3 +314,27 @@ fn torsion_is_monitored_where_it_is_measured() {
         assert!(message.contains(expected), "{expected} in\n{message}");
     }
 }
+
+#[test]
+fn an_archive_is_a_folder() {
+    let bench = "[[bench]]\nname = \"a\"\nmock.joint = \"a\"\n";
+    let archive = |lines: &str| super::parse("b.toml", &format!("{bench}[archive]\n{lines}\n"));
+    let given = archive("url = \"file:///srv/joint%20bench\"").unwrap().archive.unwrap();
+    assert_eq!((given.folder.as_path(), given.raw), (std::path::Path::new("/srv/joint bench"), false));
+    assert_eq!(given.contents().len(), 1);
+    assert!(archive("url = \"file:///srv/jointbench\"\nraw = true").unwrap().archive.unwrap().raw);
+    assert_eq!(super::parse("b.toml", bench).unwrap().archive, None);
+    for (lines, expected) in [
+        (
+            "url = \"s3://bucket/joint\"",
+            "line 5: archive.url \"s3://bucket/joint\": an archive at s3:// is not supported",
+        ),
+        ("url = \"/srv/jointbench\"", "line 5: archive.url \"/srv/jointbench\": write file:// and an absolute path"),
+        ("url = \"file://host/srv\"", "write file:// and an absolute path"),
+        ("url = \"file:///\"", "write file:// and an absolute path"),
+        ("raw = true", "missing field `url`"),
+    ] {
+        let message = archive(lines).unwrap_err().to_string();
+        assert!(message.contains(expected), "{expected} in\n{message}");
+    }
+}

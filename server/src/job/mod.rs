@@ -15,7 +15,9 @@ mod parameters;
 mod process;
 mod reply;
 
-pub use parameters::{Alignment, ExportRequest, FileFormat, ImportRequest, Offer, PointLimit};
+pub use parameters::{
+    Alignment, ArchiveRequest, ArchivedFile, ExportRequest, FileFormat, ImportRequest, Offer, PointLimit,
+};
 pub use process::{Jobs, Streamed};
 pub(crate) use reply::{Head, Refusal};
 
@@ -129,12 +131,29 @@ pub enum Job {
         request: ImportRequest,
         uploaded: bool,
     },
+    /// Writes a file into the archive.
+    Archive(ArchiveRequest),
+    /// Compares a file of the archive with its digest.
+    CheckArchived(ArchivedFile),
+}
+
+/// The queues of the computations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Queue {
+    Computing,
+    /// A slow reader of an export does not delay a fit.
+    Moving,
+    /// An archive that does not answer delays neither.
+    Archiving,
 }
 
 impl Job {
-    /// File transfers have their own queue, so that a slow reader of an export does not delay a fit.
-    fn moves_a_file(&self) -> bool {
-        matches!(self, Job::Export(_) | Job::Import { .. } | Job::Preview { .. })
+    fn queue(&self) -> Queue {
+        match self {
+            Job::Export(_) | Job::Import { .. } | Job::Preview { .. } => Queue::Moving,
+            Job::Archive(_) | Job::CheckArchived(_) => Queue::Archiving,
+            _ => Queue::Computing,
+        }
     }
 }
 

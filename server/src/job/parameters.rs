@@ -1,5 +1,6 @@
 //! Parameters of the computations.
 
+use crate::config::ArchiveContent;
 use jointbench_files::Choices;
 use jointbench_instrument::RunTable;
 use jointbench_procedure::BenchFacts;
@@ -45,6 +46,22 @@ pub struct ExportRequest {
     pub to_s: Option<f64>,
     /// Prevents that a spreadsheet reads a column name of a CSV file as a formula.
     pub spreadsheet_safe: bool,
+}
+
+/// A table of a run, to be written to the archive and read back.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct ArchiveRequest {
+    pub run: i64,
+    pub content: ArchiveContent,
+    pub folder: PathBuf,
+}
+
+/// A file of the archive, to be compared with its digest.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct ArchivedFile {
+    pub folder: PathBuf,
+    pub path: String,
+    pub sha256: String,
 }
 
 /// A measured file and the data needed to read it.

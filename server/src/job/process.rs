@@ -2,7 +2,7 @@
 
 use super::lane::{Lane, Turn, ending};
 use super::reply::Head;
-use super::{GIB, Job, Limits, Request};
+use super::{GIB, Job, Limits, Queue, Request};
 use crate::error::LabError;
 use axum::body::Bytes;
 use std::path::{Path, PathBuf};
@@ -37,6 +37,7 @@ struct Inner {
     limits: Limits,
     computing: Lane,
     moving: Lane,
+    archiving: Lane,
     ending: watch::Sender<bool>,
 }
 
@@ -49,8 +50,8 @@ impl Jobs {
         let (program, data) = (program.to_owned(), data.to_owned());
         // A process cannot have more memory than its parent.
         let limits = Limits { memory_bytes: limits.memory_bytes.min(memory_limit_bytes()), ..limits };
-        let (computing, moving, ending) = Default::default();
-        Jobs { inner: Arc::new(Inner { program, data, limits, computing, moving, ending }) }
+        let (computing, moving, archiving, ending) = Default::default();
+        Jobs { inner: Arc::new(Inner { program, data, limits, computing, moving, archiving, ending }) }
     }
 
     /// The data folder.
@@ -100,12 +101,17 @@ impl Jobs {
     pub fn end(&self) {
         self.inner.computing.close();
         self.inner.moving.close();
+        self.inner.archiving.close();
         self.inner.ending.send_replace(true);
     }
 
     async fn start(&self, job: &Job) -> Result<Process, LabError> {
         let inner = &self.inner;
-        let lane = if job.moves_a_file() { &inner.moving } else { &inner.computing };
+        let lane = match job.queue() {
+            Queue::Computing => &inner.computing,
+            Queue::Moving => &inner.moving,
+            Queue::Archiving => &inner.archiving,
+        };
         let turn = lane.enter().await?;
         let request = Request { data: inner.data.clone(), limits: inner.limits, job };
         let mut line = serde_json::to_vec(&request).map_err(|fault| LabError::Internal(fault.to_string()))?;

@@ -49,6 +49,7 @@ enum Kind {
     File,
     Conflict,
     Over,
+    Gone,
     Bench,
     Setup,
     Busy,
@@ -71,6 +72,7 @@ impl From<LabError> for Refusal {
             }
             LabError::Conflict(_) => Kind::Conflict,
             LabError::Over(_) => Kind::Over,
+            LabError::Gone(_) => Kind::Gone,
             LabError::Bench(_) => Kind::Bench,
             LabError::Setup(_) => Kind::Setup,
             LabError::Busy(_) => Kind::Busy,
@@ -94,6 +96,7 @@ impl From<Refusal> for LabError {
             Kind::File => LabError::File { detail: text, line, column },
             Kind::Conflict => LabError::Conflict(text),
             Kind::Over => LabError::Over(text),
+            Kind::Gone => LabError::Gone(text),
             Kind::Bench => LabError::Bench(text),
             Kind::Setup => LabError::Setup(text),
             Kind::Busy => LabError::Busy(text),

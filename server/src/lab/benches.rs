@@ -5,12 +5,14 @@ use super::calibrations::BRAKE_MODEL;
 use super::{Answer, Lab, LabError};
 use crate::bench::{BenchHandle, bench_view};
 use crate::job::Job;
-use crate::store::RunFilter;
+use crate::store::{RunFilter, RunRecord};
 use crate::view::{self, Bench, BenchState, reread, safety_entry};
 use jointbench_instrument::zero::TORQUE_ZERO;
 use jointbench_procedure::catalogue::{brake_model, compared_brake};
 use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
-use jointbench_procedure::{BenchFacts, BrakeModel, ComparedBrake, Plan, PlanFault, Procedure, catalogue, procedure};
+use jointbench_procedure::{
+    BenchFacts, BrakeModel, ComparedBrake, Plan, PlanFault, Procedure, RunState, catalogue, procedure,
+};
 use serde_json::{Map, Value};
 use std::time::Duration;
 use tokio::time::timeout;
@@ -155,12 +157,7 @@ impl Lab {
         let applied = self.inner.store.calibration(bench, BRAKE_MODEL).await?;
         let record = match (run, applied) {
             (0, Some(run)) => Some(self.inner.store.run(run).await?),
-            (0, None) => {
-                let search = Some(format!("procedure:{BRAKE_MODEL} state:completed"));
-                let (_, runs) =
-                    self.inner.store.runs(&RunFilter { limit: RECENT, search, ..RunFilter::default() }).await?;
-                runs.into_iter().find(|run| run.bench == bench)
-            }
+            (0, None) => self.newest_brake_model(bench).await?,
             (id, _) => Some(self.inner.store.run(id).await?),
         };
         let Some(record) = record else { return Ok(None) };
@@ -178,6 +175,30 @@ impl Lab {
             ))
         };
         model.map(|model| Some((id, model))).ok_or_else(missing)
+    }
+
+    /// The last completed run of `brake_hysteresis` on this bench.
+    async fn newest_brake_model(&self, bench: &str) -> Answer<Option<RunRecord>> {
+        let search = Some(format!("procedure:{BRAKE_MODEL} state:completed"));
+        let (_, runs) = self.inner.store.runs(&RunFilter { limit: RECENT, search, ..RunFilter::default() }).await?;
+        Ok(runs.into_iter().find(|run| run.bench == bench))
+    }
+
+    /// Whether the next runs of its bench, or the run that continues it, need the samples of this run.
+    pub(super) async fn is_needed(&self, id: i64) -> Answer<bool> {
+        let store = &self.inner.store;
+        let RunRecord { bench, procedure, state, .. } = store.run(id).await?;
+        if store.calibration(&bench, &procedure).await? == Some(id) {
+            return Ok(true);
+        }
+        // A complete run is never continued.
+        if state != RunState::Completed
+            && let Some(later) = store.continued_by(id).await?
+            && store.archive_of(later).await?.iter().all(|table| table.dropped_at.is_none())
+        {
+            return Ok(true);
+        }
+        Ok(procedure == BRAKE_MODEL && self.newest_brake_model(&bench).await?.is_some_and(|newest| newest.id == id))
     }
 
     pub(super) async fn brake_model_here(&self, run: i64) -> Answer<Option<BrakeModel>> {

@@ -54,17 +54,27 @@ impl Lab {
             Job::Spectrum { run, formula, window } => json(&self.spectrum_here(run, &formula, window).await?),
             Job::Import { request, rows, uploaded } => json(&self.read_here(request, &rows, uploaded).await?),
             Job::Preview { request, uploaded } => json(&self.preview_here(request, uploaded).await?),
+            Job::Archive(request) => json(&self.archive_here(&request).await?),
+            Job::CheckArchived(file) => json(&self.check_archived_here(&file).await?),
             Job::Export(request) => {
-                let out = Arc::<Mutex<Vec<u8>>>::default();
-                self.export_into(request, Gathered(out.clone())).await?;
-                Ok(std::mem::take(&mut *out.lock().unwrap_or_else(PoisonError::into_inner)))
+                let out = Gathered::default();
+                self.export_into(request, out.clone()).await?;
+                Ok(out.take())
             }
         }
     }
 }
 
 /// A writer whose bytes remain available after it is dropped.
-struct Gathered(Arc<Mutex<Vec<u8>>>);
+#[derive(Clone, Default)]
+pub(super) struct Gathered(Arc<Mutex<Vec<u8>>>);
+
+impl Gathered {
+    /// The bytes since the last call.
+    pub fn take(&self) -> Vec<u8> {
+        std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
 
 impl std::io::Write for Gathered {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {

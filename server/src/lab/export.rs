@@ -76,7 +76,7 @@ impl Lab {
     }
 
     /// The metadata of a run for an export.
-    async fn export_facts(&self, id: i64) -> Answer<(Meta, RunRecord)> {
+    pub(super) async fn export_facts(&self, id: i64) -> Answer<(Meta, RunRecord)> {
         let (mut meta, record) = self.facts(id).await?;
         if record.simulated {
             meta.other.insert(SIMULATED.to_owned(), true.into());
@@ -94,11 +94,11 @@ impl Lab {
     }
 }
 
-fn stretches(rows: &Range<u64>) -> impl Iterator<Item = Range<u64>> + use<> {
+pub(super) fn stretches(rows: &Range<u64>) -> impl Iterator<Item = Range<u64>> + use<> {
     let end = rows.end;
     rows.clone().step_by(ROWS_AT_ONCE as usize).map(move |first| first..end.min(first + ROWS_AT_ONCE))
 }
 
-fn failed(fault: io::Error) -> LabError {
+pub(super) fn failed(fault: io::Error) -> LabError {
     LabError::Internal(format!("writing the file failed: {fault}"))
 }

@@ -1,7 +1,7 @@
 //! Results that a procedure identifies from a stored run.
 
 use super::calibrations::applies;
-use super::computation::{Subject as Turn, with_retries};
+use super::computation::{Subject as Turn, parsed, with_retries};
 use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
 use crate::job::Job;
@@ -112,11 +112,15 @@ impl Lab {
         Ok(part)
     }
 
-    /// Identifies the result from the samples each time, so that it always corresponds to the current code.
+    /// Identifies the result from the samples each time, so that it always corresponds to the current code. Without its
+    /// samples a run has the result from the moment when they were dropped.
     pub async fn identification(&self, id: i64) -> Answer<Identification> {
         let record = self.inner.store.run(id).await?;
         if jointbench_procedure::procedure(&record.procedure).is_none() {
             return Err(no_result(id, &record.procedure));
+        }
+        if let Some(result) = self.inner.store.result_of_dropped(id).await? {
+            return parsed(&result);
         }
         let cut = record.state.is_final() && record.state != RunState::Completed;
         let step = if cut { self.last_step(id).await? } else { None };

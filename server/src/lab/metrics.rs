@@ -94,6 +94,7 @@ impl Lab {
         bench_metrics(&mut metrics, &views);
         self.queue_metrics(&mut metrics).await?;
         self.notification_metrics(&mut metrics).await?;
+        self.archive_metrics(&mut metrics).await?;
         let runs = self.inner.store.run_counts().await?.into_iter().map(|(labels, count)| {
             let [bench, procedure, state] = labels;
             (vec![("bench", bench), ("procedure", procedure), ("state", state)], count)
@@ -135,6 +136,18 @@ impl Lab {
         metrics.gauge("notifications_pending", help, None, of(|target| target.pending));
         let help = "Messages of the last days that were not delivered within a day";
         metrics.gauge("notifications_failed", help, None, of(|target| target.failed));
+        Ok(())
+    }
+
+    /// Without an archive there are none.
+    async fn archive_metrics(&self, metrics: &mut Metrics) -> Answer<()> {
+        let archive = self.archive().await?;
+        if archive.url.is_some() {
+            let of = |value: u64| vec![(Vec::new(), value as f64)];
+            metrics.gauge("archive_owed", "Tables of runs that wait to be archived", None, of(archive.owed));
+            let help = "Tables that cannot be archived until a person acts";
+            metrics.gauge("archive_failed", help, None, of(archive.failed));
+        }
         Ok(())
     }
 }

@@ -1,5 +1,7 @@
 //! The one service layer: REST API, demo and command line access benches and runs only through a [`Lab`].
 
+mod archive;
+mod archive_files;
 mod autopilot;
 mod autopilot_task;
 mod benches;
@@ -49,11 +51,12 @@ pub use tokens::{Caller, LOCAL, Tokens, weakness};
 pub use transfer::{ATTENTION, COPY_OF, UNDERSTOOD};
 
 use crate::bench::{BenchHandle, InitialState, store_leftovers, worker};
-use crate::config::{BenchDescription, Notify};
+use crate::config::{Archive, BenchDescription, Notify};
 use crate::job::{Jobs, Limits};
 use crate::live::Hub;
 use crate::store::{Store, StoreHealth};
 use crate::view::{AutopilotState, reread};
+use archive::Archiving;
 use autopilot::ActiveAutopilots;
 use computation::Turns;
 use jointbench_procedure::{RunState, Safe};
@@ -83,6 +86,7 @@ struct Inner {
     queues: Queues,
     leases: Leases,
     notifications: Notifications,
+    archiving: Archiving,
     /// Worker processes for computations on whole runs; `None` computes in this process.
     jobs: Option<Jobs>,
     turns: Turns,
@@ -98,9 +102,11 @@ impl Lab {
         program: PathBuf,
         analysis: Limits,
         notify: Notify,
+        archive: Option<Archive>,
     ) -> Answer<Lab> {
         let store = Store::open(data).await?;
         let notifications = Notifications::open(notify, &store).await?;
+        let archiving = Archiving::open(archive, &store).await?;
         store.block_where_missing(descriptions.iter().map(|description| description.name.as_str())).await?;
         wait_for_workers(data).await;
         store_leftovers(data, &store).await?;
@@ -121,13 +127,7 @@ impl Lab {
                 .map_err(|fault| LabError::Setup(format!("bench {name} gets no thread: {fault}")))?;
             benches.push(bench);
         }
-        for (bench, runs) in interrupted {
-            let reason = "a run was interrupted, and its bench is missing in the bench description of this daemon";
-            store.block_bench(&bench, runs.last().copied(), reason).await?;
-            for run in runs {
-                store.end_run(run, RunState::Interrupted, Safe::UnsafeUnknown, Some(reason)).await?;
-            }
-        }
+        block_missing_benches(&store, interrupted).await?;
         let lab = Lab {
             inner: Arc::new(Inner {
                 store,
@@ -140,6 +140,7 @@ impl Lab {
                 active_autopilots: ActiveAutopilots::default(),
                 leases: Leases::default(),
                 notifications,
+                archiving,
                 turns: Turns::default(),
             }),
         };
@@ -148,6 +149,7 @@ impl Lab {
         lab.judge_unjudged_runs();
         lab.open_queues().await?;
         lab.open_notifications();
+        lab.open_archive();
         tokio::spawn(lab.inner.store.clone().check_daily());
         Ok(lab)
     }
@@ -165,6 +167,7 @@ impl Lab {
                 queues: Queues::default(),
                 leases: Leases::default(),
                 notifications: Notifications::default(),
+                archiving: Archiving::default(),
                 jobs: None,
                 turns: Turns::default(),
             }),
@@ -189,6 +192,7 @@ impl Lab {
     pub async fn shut_down(&self) {
         self.inner.queues.abort();
         self.inner.notifications.abort();
+        self.inner.archiving.abort();
         self.inner.active_autopilots.abort();
         self.inner.jobs.iter().for_each(Jobs::end);
         let benches = self.inner.benches.clone();
@@ -210,6 +214,18 @@ async fn wait_for_workers(data: &Path) {
     if let Err(fault) = waited {
         tracing::error!(%fault, "waiting for earlier workers failed");
     }
+}
+
+/// Ends interrupted runs of benches that this daemon does not have.
+async fn block_missing_benches(store: &Store, interrupted: BTreeMap<String, Vec<i64>>) -> Answer<()> {
+    let reason = "a run was interrupted, and its bench is missing in the bench description of this daemon";
+    for (bench, runs) in interrupted {
+        store.block_bench(&bench, runs.last().copied(), reason).await?;
+        for run in runs {
+            store.end_run(run, RunState::Interrupted, Safe::UnsafeUnknown, Some(reason)).await?;
+        }
+    }
+    Ok(())
 }
 
 /// Folder of uploaded files that are not yet runs.

@@ -74,6 +74,7 @@ impl Lab {
             status.as_ref().filter(|status| status.run == Some(id)).and_then(|status| status.progress.clone());
         let mut run = run_view(record, progress);
         status.inspect(|status| show_unstored_end(&mut run.summary, status));
+        run.archive = self.archive_of(id).await?;
         Ok(run)
     }
 

@@ -143,8 +143,11 @@ impl Lab {
         let search = Some(format!("kind:{kind} rows={}", trace.len()));
         let (_, alike) = self.inner.store.runs(&RunFilter { limit: u32::MAX, search, ..RunFilter::default() }).await?;
         for run in alike.iter().rev() {
-            if self.holds(run.id, trace).await? {
-                return Ok(Some(run.id));
+            match self.holds(run.id, trace).await {
+                Ok(true) => return Ok(Some(run.id)),
+                // Its samples are only in the archive.
+                Ok(false) | Err(LabError::Gone(_)) => {}
+                Err(fault) => return Err(fault),
             }
         }
         Ok(None)

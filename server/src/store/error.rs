@@ -54,6 +54,10 @@ pub enum StoreError {
     NoQueueEntry(i64),
     #[error("run {run} has no channel {name}: it has {}", .there.join(", "))]
     NoChannel { run: RunId, name: String, there: Vec<String> },
+    #[error(
+        "the samples of run {run} are only in the archive: import {file} with `jointbench import`, and use the imported run"
+    )]
+    Dropped { run: RunId, file: String },
     #[error("run {run} is {state}: nothing can be added to it")]
     RunOver { run: RunId, state: RunState },
     #[error("run {run}: the channels of this commit are not those of the run")]

@@ -35,6 +35,7 @@ const FILES: &[(&str, &str)] = &[
     ("0025_queue.sql", include_str!("../../../migrations/0025_queue.sql")),
     ("0026_notifications.sql", include_str!("../../../migrations/0026_notifications.sql")),
     ("0027_run_quantities.sql", include_str!("../../../migrations/0027_run_quantities.sql")),
+    ("0028_archive.sql", include_str!("../../../migrations/0028_archive.sql")),
 ];
 
 #[derive(Debug)]

@@ -4,6 +4,7 @@
 //! Samples are stored as coded columns ([`codec`]) of [`BLOCK_ROWS`] rows with a min/max [`pyramid`]. Until a block is
 //! full, the rows of each commit are in the `tail`. Triggers of the schema refuse changes of measured data.
 
+mod archive;
 mod autopilots;
 mod backup;
 mod calibrations;
@@ -41,6 +42,7 @@ mod values;
 mod verify;
 mod window;
 
+pub use archive::{ArchiveCounts, ArchiveEnd, ArchiveRecord};
 pub use backup::{backup, restore};
 pub use commit::RunCommit;
 pub use error::StoreError;

@@ -1,5 +1,6 @@
 //! Reads samples, bit by bit as they were stored.
 
+use super::archive::refuse_dropped;
 use super::codec::{self, Broken};
 use super::pyramid;
 use super::runs::{channels, exists};
@@ -48,6 +49,9 @@ pub(super) async fn read(
     chosen: Vec<Chosen>,
     rows: Range<i64>,
 ) -> Result<Trace, StoreError> {
+    if !rows.is_empty() {
+        refuse_dropped(reader, run).await?;
+    }
     let tail = Arc::new(tail(reader, run, rows.clone()).await?);
     let threads = std::thread::available_parallelism().map_or(1, usize::from).div_ceil(chosen.len().max(1));
     let mut columns = Vec::new();

@@ -98,6 +98,7 @@ pub fn run_view(record: RunRecord, progress: Option<view::Progress>) -> view::Ru
         provenance: record.provenance,
         meta: record.meta,
         progress,
+        archive: Vec::new(),
     }
 }
 

@@ -3,6 +3,7 @@
 //! SI units with the unit as suffix of the name. No number is NaN or infinite: [`finite`] converts an unknown value to
 //! `null`. Types of the model crate are converted with [`reread`], which refuses `null` for a number.
 
+mod archive;
 mod autopilot;
 mod bench;
 mod calibration;
@@ -27,6 +28,7 @@ mod token;
 mod unit;
 mod user_effect;
 
+pub use archive::*;
 pub use autopilot::*;
 pub use bench::*;
 pub use calibration::*;

@@ -1,6 +1,6 @@
 //! Runs, their journal and their samples.
 
-use super::{FittedParameter, Identified, LimitOutcome, Unit, word};
+use super::{ArchivedTable, FittedParameter, Identified, LimitOutcome, Unit, word};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -155,6 +155,9 @@ pub struct Run {
     pub channels: Vec<ChannelInfo>,
     /// While the run is active.
     pub progress: Option<Progress>,
+    /// Its tables in the archive; absent without an archive.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub archive: Vec<ArchivedTable>,
 }
 
 impl RunSummary {

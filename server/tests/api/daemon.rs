@@ -36,6 +36,7 @@ pub fn settings(data: &Path, pace: Option<f64>) -> DaemonSettings {
         network: Network::default(),
         benches: vec![BenchDescription::mock(BENCH, mock)],
         notify: Notify::default(),
+        archive: None,
         program: env!("CARGO_BIN_EXE_jointbench").into(),
         analysis: Limits::default(),
     }

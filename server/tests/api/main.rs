@@ -1,5 +1,6 @@
 //! Tests of the daemon on a real loopback port, as its clients use it.
 
+mod archive;
 mod auth;
 mod autopilots;
 mod calibrations;

@@ -8,6 +8,7 @@ type Values = Record<string, unknown>;
 
 /** All calls of the dashboard. Each is a documented operation of the REST interface. */
 export const api = {
+	archive: (signal?: Signal) => callApi('get', '/api/v1/archive', {}, signal),
 	health: (signal?: Signal) => callApi('get', '/api/v1/health', {}, signal),
 	benches: (signal?: Signal) => callApi('get', '/api/v1/bench', {}, signal),
 	acknowledge: (bench: string, reason: string) =>

@@ -35,6 +35,7 @@ use crate::view::View;
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Kind, Motion, RunTable};
 use std::collections::HashSet;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The data that a model is fitted to and judged on: the response at points with the signals that may explain it.
@@ -165,6 +166,23 @@ impl Prepared {
             warnings: Vec::new(),
             about,
         }
+    }
+
+    /// The rows of each steady state of the run, with the number of its segment. Empty for a run that is not evaluated
+    /// at steady state.
+    pub fn steady_states(&self) -> Vec<(i64, Range<usize>)> {
+        let chunks = if self.main.settled { &self.main.view.chunks[..] } else { &[] };
+        let mut states: Vec<(i64, Range<usize>)> = Vec::new();
+        for (row, chunk) in chunks.iter().enumerate() {
+            match states.last_mut() {
+                // Chunks of one steady state follow each other without a gap.
+                Some((segment, rows)) if *segment == self.main.segment[row] && rows.end == chunk.start => {
+                    rows.end = chunk.end;
+                }
+                _ => states.push((self.main.segment[row], chunk.clone())),
+            }
+        }
+        states
     }
 
     /// The problem that a model of these effects is judged on. Presliding replaces the direction by its state.

@@ -1,5 +1,6 @@
 //! The arguments of the command line.
 
+mod archive;
 mod columns;
 mod control;
 mod model;
@@ -8,6 +9,7 @@ mod run;
 mod runs;
 mod units;
 
+pub use archive::Archive;
 pub use columns::Columns;
 pub use control::{Control, Notify, Reset, ServoMemory, Stop};
 pub use model::{Model, ModelCommand};
@@ -87,6 +89,9 @@ pub enum Command {
     Queue(Queue),
     /// List the targets of notifications with their waiting messages, or send each of them a test message
     Notify(Notify),
+    /// Show the archive of ended runs, or remove archived samples from the store
+    #[command(after_help = archive::ARCHIVE)]
+    Archive(Archive),
     /// List the runs of a daemon or of a folder
     Runs(Runs),
     /// List the units under test with their verdicts, and first-pass yield by part, revision and batch

@@ -1,5 +1,6 @@
 //! Tests of the store in a temporary folder.
 
+mod archiving;
 mod crash;
 mod damage;
 mod keeping;

@@ -14,13 +14,14 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Folders and files whose strings are messages for users.
-const SPOKEN: [&str; 15] = [
+const SPOKEN: [&str; 16] = [
     "procedures/procedure/src",
     "procedures/model/src",
     "drivers/files/src",
     "drivers/instrument/src",
     "drivers/devices/src",
     "server/src/api",
+    "server/src/archive",
     "server/src/bench",
     "server/src/cli",
     "server/src/config",
