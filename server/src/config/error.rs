@@ -5,8 +5,8 @@ use std::ops::Range;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ConfigError {
-    /// Counted from 1.
-    pub line: usize,
+    /// Counted from 1; `None` for the whole file.
+    pub line: Option<usize>,
     /// The error, then the remedy.
     pub what: String,
 }
@@ -22,7 +22,8 @@ impl fmt::Display for ConfigErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, error) in self.errors.iter().enumerate() {
             let end = if i + 1 < self.errors.len() { "\n" } else { "" };
-            write!(f, "{}, line {}: {}{end}", self.file, error.line, error.what)?;
+            let place = error.line.map(|line| format!(", line {line}")).unwrap_or_default();
+            write!(f, "{}{place}: {}{end}", self.file, error.what)?;
         }
         Ok(())
     }
@@ -43,7 +44,7 @@ impl<'a> Collector<'a> {
 
     pub fn add(&mut self, span: Range<usize>, what: impl Into<String>) {
         let line = self.text[..span.start.min(self.text.len())].matches('\n').count() + 1;
-        self.errors.push(ConfigError { line, what: what.into() });
+        self.errors.push(ConfigError { line: Some(line), what: what.into() });
     }
 
     pub fn finish<T>(mut self, file: &str, checked: Option<T>) -> Result<T, ConfigErrors> {

@@ -180,7 +180,7 @@ pub fn read(path: &Path) -> Result<Description, ConfigErrors> {
     let file = path.display().to_string();
     match std::fs::read_to_string(path) {
         Ok(text) => parse(&file, &text),
-        Err(fault) => Err(ConfigErrors { errors: vec![ConfigError { line: 1, what: unread(&file, &fault) }], file }),
+        Err(fault) => Err(ConfigErrors { errors: vec![ConfigError { line: None, what: unread(&file, &fault) }], file }),
     }
 }
 
