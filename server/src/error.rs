@@ -147,7 +147,7 @@ impl From<jointbench_instrument::TableFault> for LabError {
 
 impl From<crate::config::ConfigErrors> for LabError {
     fn from(errors: crate::config::ConfigErrors) -> Self {
-        let line = errors.errors.first().map(|error| error.line as u64);
+        let line = errors.errors.first().and_then(|error| error.line).map(|line| line as u64);
         LabError::File { detail: errors.to_string(), line, column: None }
     }
 }
