@@ -65,5 +65,6 @@ def test_other_programs_read_the_archive(tmp_path: Path) -> None:
         assert times == sorted(times)
 
     duckdb = pytest.importorskip("duckdb", reason="SKIPPED: DuckDB did NOT read the archive")
-    query = f"SELECT serial, count(*) FROM read_parquet('{archive}/means/**/*.parquet', hive_partitioning = true) GROUP BY 1"
+    tables = f"read_parquet('{archive}/means/**/*.parquet', hive_partitioning = true)"
+    query = f"SELECT serial, count(*) FROM {tables} GROUP BY 1"
     assert dict(duckdb.sql(query).fetchall())["SN1"] == len(first)

@@ -104,7 +104,7 @@ fn an_inertia_that_settled_motion_hardly_shows_is_the_set_ups() {
     let reported = |run: &RunTable| fit(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap();
     let found = reported(&run);
     let note = found.notes.iter().find(|note| note.contains("the set-up states")).unwrap();
-    assert!(note.starts_with("the run does not determine the inertia") && note.contains("4.48e-5 kg·m²"), "{note}");
+    assert!(note.starts_with("the run does not determine the inertia") && note.contains("4.48·10⁻⁵ kg·m²"), "{note}");
     let inertia = found.parameters.iter().find(|p| p.effect == "inertia").unwrap();
     assert_eq!((inertia.state, Some(inertia.value)), (ParameterState::Unidentified, run.meta().rotor_inertia_kg_m2));
     assert!(inertia.ci95[0] < 4e-5 && inertia.ci95[1] > 5e-5, "{inertia:?}");

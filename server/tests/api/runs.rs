@@ -56,7 +56,7 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     let policy = answer.headers()["content-security-policy"].to_str().unwrap().to_owned();
     assert!(policy.contains("style-src 'unsafe-inline'") && !policy.contains("script"), "{policy}");
     let page = answer.body_mut().read_to_string().unwrap();
-    assert!(page.contains("SIMULATED") && page.contains("friction on joint-a-mock"), "{page}");
+    assert!(page.contains("SIMULATED") && page.contains("Friction on joint-a-mock"), "{page}");
     assert!(page.contains("Dwell time at each speed [s]") && page.contains("torque constant [Nm/A]"), "{page}");
 
     let body = json!({ "run": id, "effects": ["inertia", "load_transmission", "coulomb", "viscous"] });
