@@ -270,7 +270,7 @@ pub(super) fn parameters(set: &[String]) -> Result<Map<String, Value>, Exit> {
             .ok_or_else(|| Exit::bad_input(format!("--set {pair}: expected KEY=VALUE, such as --set repeats=3")))?;
         let value = match value.trim().strip_prefix('@') {
             Some(file) => serde_json::json!(
-                jointbench_files::read_curve(Path::new(file)).map_err(|fault| Exit::bad_input(fault.to_string()))?
+                jointbench_files::read_curve(Path::new(file)).map_err(|fault| Exit::bad_input(fault.cause()))?
             ),
             None => serde_json::from_str(value.trim()).unwrap_or_else(|_| Value::from(value.trim())),
         };
