@@ -1,5 +1,6 @@
 //! Fits a model to a run, and evaluates a fit on another run.
 
+use crate::effects::friction::{coulomb, direction_offset, inertia};
 use crate::inference::confounding;
 use crate::inference::form_error::{Nuisance, nuisance, presliding};
 use crate::inference::intervals::intervals;
@@ -79,7 +80,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         parameters.extend(found);
     }
     let is_set = |effect: &str| assembly.spec.settings.iter().any(|setting| setting.effect == effect);
-    let undetermined = match is_set(INERTIA) {
+    let undetermined = match is_set(inertia::ID) {
         true => None,
         false => stated_inertia(&mut terms, &mut parameters, prepared),
     };
@@ -147,10 +148,10 @@ fn notes(assembly: &TwoStageModel, nuisance: Option<&Nuisance>, undetermined: Op
     let mut notes: Vec<String> = prepared.data_errors.all().chain(&prepared.warnings).cloned().collect();
     notes.extend(nuisance.map(|nuisance| nuisance.note.clone()));
     notes.extend(assembly.hidden.iter().map(|h| format!("{} is not testable with this run: {}", h.effect, h.why)));
-    if assembly.effects.iter().any(|e| e == "direction_offset") {
+    if assembly.effects.iter().any(|e| e == direction_offset::ID) {
         notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
     }
-    if prepared.main.view.is_one_directional() && main.contains("coulomb") {
+    if prepared.main.view.is_one_directional() && main.contains(coulomb::ID) {
         let note = "the motion has one direction only (less than a tenth of a trajectory in the other is omitted): Coulomb \
                     friction and an offset are confounded, and tau_c contains both; measure the other direction as well";
         notes.push(note.into());
@@ -162,14 +163,12 @@ fn notes(assembly: &TwoStageModel, nuisance: Option<&Nuisance>, undetermined: Op
     notes
 }
 
-const INERTIA: &str = "inertia";
-
 /// A steady-state run accelerates only between its plateaus, in steps of the set-point. The torque of a step passes
 /// between two samples, so that the fitted inertia is too small by an unknown amount. If the set-up states the inertia,
 /// it is used. The interval reaches from zero to twice its value, and contains all of the fitted one.
 fn stated_inertia(terms: &mut [TermReport], parameters: &mut [Parameter], prepared: &Prepared) -> Option<String> {
     let stated = prepared.main.view.constants.rotor_inertia.filter(|_| prepared.main.settled)?;
-    let p = parameters.iter_mut().find(|p| p.effect == INERTIA)?;
+    let p = parameters.iter_mut().find(|p| p.effect == inertia::ID)?;
     let half = p.ci95.map(|end| (end - stated).abs()).into_iter().fold(stated, f64::max);
     *p = Parameter {
         value: stated,
@@ -178,7 +177,7 @@ fn stated_inertia(terms: &mut [TermReport], parameters: &mut [Parameter], prepar
         note: Some("not determined by this run; the value of the set-up".into()),
         ..p.clone()
     };
-    terms.iter_mut().filter(|term| term.effect == INERTIA).for_each(|term| term.linear = vec![stated]);
+    terms.iter_mut().filter(|term| term.effect == inertia::ID).for_each(|term| term.linear = vec![stated]);
     Some(format!(
         "the run does not determine the inertia: it accelerates only between constant speeds. The model uses the {} \
          that the set-up states; record a trajectory",

@@ -1,4 +1,4 @@
-//! Every threshold of the diagnosis: value, unit, meaning, and what it was calibrated on.
+//! Every threshold of the diagnosis and of the data checks: value, unit, meaning, and what it was calibrated on.
 //!
 //! Thresholds that are fractions share four round levels where no recording or simulated run decides otherwise.
 //! Numerical guards and published quantiles stay where they are used. `evaluate` is `cargo run --release -p
@@ -41,11 +41,14 @@ macro_rules! levels {
 }
 
 macro_rules! thresholds {
-    ($($name:ident = $value:expr, $unit:literal, $meaning:literal, $calibrated:literal;)*) => {
+    (
+        $(#[$doc:meta])* $list:ident:
+        $($name:ident = $value:expr, $unit:literal, $meaning:literal, $calibrated:literal;)*
+    ) => {
         $(#[doc = concat!($meaning, " [", $unit, "]")] pub const $name: f64 = $value;)*
 
-        /// All of them, in the order of the documents.
-        pub const ALL: &[Threshold] = &[$(Threshold {
+        $(#[$doc])*
+        pub const $list: &[Threshold] = &[$(Threshold {
             name: stringify!($name),
             value: $value,
             written: stringify!($value),
@@ -64,10 +67,15 @@ levels! {
 }
 
 thresholds! {
+    /// Thresholds of the decision, in the order of the documents.
+    ALL:
     ALPHA = 0.05, "probability", "family-wise error of everything that is named or shown (`Options::alpha`)", "convention; `evaluate --part null` measures 0.4 %";
     PRACTICAL_SHARE = 0.02, "fraction of squared error", "smallest fraction of the remaining error that is worth a name (`Options::practical_share`), or shows in a map", "`evaluate --part power`";
     FLIPS = 499.0, "sign flips", "permutations of the max-T test (`Options::flips`)", "smallest p-value 0.002";
     DECISION_SHARE = 0.03, "fraction of squared validation error", "smallest fraction that an effect must take where samples are judged", "`evaluate FOLDER`: flat from 2 to 5 %";
+    ONE_ERROR = 1.0, "standard errors", "the gain of an effect exceeds its own standard error over blocks so many times", "one-standard-error rule (Breiman and others 1984)";
+    MOST_NAMED = 4.0, "effects", "largest number of effects that are added where samples are judged", "presentation";
+    MOST_EFFECTS = 6.0, "effects", "largest number of effects that are added elsewhere", "presentation";
     LEFT_SHARE = TENTH, "fraction of squared validation error", "a function of an axis, a line in time or neighbouring moments that take more are structure", "nulls of `evaluate FOLDER`";
     CLEAR_ERRORS = 3.0, "standard errors", "structure of samples, and what an alias misses, exceed their own error so many times", "nulls of `evaluate --part styles --first 300000 --family friction`";
     FORMULA_ERROR = 0.002, "fraction of squared error", "the formula of an effect may leave this fraction of its contribution (4.5 % in RMS; encoders none)", "`evaluate --part hidden,null`";
@@ -127,21 +135,60 @@ thresholds! {
     WORTH_SEEING = 0.05, "fraction of response", "an unseen effect below this size is not worth a run; one whose detection limit is larger is not testable: it could hide an effect that is worth a run", "`--test next_run`";
 }
 
-/// The tables of docs/diagnosis.md: levels and thresholds.
-pub fn tables() -> [String; 2] {
+thresholds! {
+    /// Thresholds of the data checks, in the order of the documents: they decide on a warning or a refusal, never on an effect.
+    CHECKS:
+    CLASH_RATIO = 1.2, "ratio", "columns or facts that state the same quantity differ by less: rounding, filters, delay, torsion", "unit tests of `unit_mismatch` and `metadata`";
+    IN_COMMON = NEARLY_ALL, "fraction of variance", "two columns with less in common are not compared", "unit tests of `unit_mismatch` and `torque_sign`";
+    ALIKE_BLOCKS = 0.6, "fraction of blocks", "an angle within one turn agrees with the other one in at least so many blocks", "unit tests of `unit_mismatch`";
+    ALIKE_RATIO = TENTH, "fraction of ratio", "blocks that agree so well with the median agree", "unit tests of `unit_mismatch`";
+    GEAR_ERROR = 0.01, "fraction of gear ratio", "a larger error of the gear ratio is a warning", "one tooth of 100";
+    GEAR_TRAVEL_RAD = 1.0, "rad", "least travel of the link for this check", "unit tests of `unit_mismatch`";
+    FINE_ANGLES = 0.999, "fraction of variance", "with less in common one of the angles is too coarse for this check", "unit tests of `unit_mismatch`";
+    CLAMPED_RAD = 0.1, "rad", "an angle that moves less may be clamped", "a joint twists less";
+    COMPUTED_COLUMN = 1e-5, "fraction of RMS", "a load that equals a multiple of the current to this fraction was computed from it", "digits of a text file";
+    DRIVEN_WORK = HALF, "fraction of work", "more work against the motion in both directions is a wrong sign", "unit tests of `unit_mismatch`";
+    NOISE_BLOCKS = 40.0, "blocks", "fewer blocks do not show that a current is white noise", "unit tests of `unit_mismatch`";
+    NOISE_ERRORS = 3.0, "standard errors", "correlation of white noise", "normal distribution, 0.3 %";
+    TORQUE_RATIO = 2.0, "ratio", "motor and link torque differ by less: efficiency of the gear, friction under load", "unit tests of `torque_sign`";
+    SLIPPED_IN_COMMON = MOST, "fraction of variance", "the two torques have so much in common where a unit or sign is wrong; the rest is friction", "unit tests of `torque_sign`";
+    LOAD_SHARE = 0.25, "fraction of RMS", "so much of the torque varies at steady speed: a load", "unit tests of `torque_sign`";
+    STEADY_CHANGE = HALF, "fraction of speed", "a speed that changes less is steady in this check", "unit tests of `torque_sign`";
+    CANCELLED_WORK = 0.2, "fraction of work", "a magnitude does less net work: its work cancels", "unit tests of `unsigned_current`";
+    MAGNITUDE_DIP = TENTH, "fraction of mean", "a magnitude falls so far at reversals, the current against a load does not", "unit tests of `unsigned_current`";
+    LARGEST_CURRENT = 20.0, "ratio to rated current", "a larger current of a brake has another unit", "mA for A is 1000";
+    SMALL_CURRENT = 0.01, "fraction of rated current", "a current that stays below, and moves the torque, has another unit", "mA for A is 1000";
+    BRAKE_MARGIN = 3.0, "ratio", "a torque for each ampere so far beyond the data sheets has another unit", "mA for A is 1000";
+    CURRENT_IN_COMMON = 0.2, "fraction of variance", "the current of a brake explains at least so much of its torque", "unit tests of `brake_range`";
+    VARYING_CURRENT = TENTH, "fraction of largest current", "a current that varies less is constant", "unit tests of `brake_range`";
+    FINE_READINGS = NEARLY_ALL, "fraction of samples", "where fewer neighbours differ, the column is too coarse for the next checks", "unit tests of `sensor_faults`";
+    STUCK_S = 0.3, "s", "shortest time with one value during motion of a stuck sensor", "unit tests of `sensor_faults`";
+    STUCK_SAMPLES = 40.0, "samples", "least number of samples in that time", "unit tests of `sensor_faults`";
+    SATURATED_SAMPLES = 4.0, "samples", "so many samples at the end of a range in a row are saturated", "unit tests of `sensor_faults`";
+    SATURATED_SHARE = 0.003, "fraction of samples", "fewer saturated samples are no warning", "unit tests of `sensor_faults`";
+    SPIKE_CHANGES = 25.0, "usual changes", "an outlier differs so far from both neighbours", "unit tests of `sensor_faults`";
+    SPIKE_RANGE = 0.15, "fraction of range", "and so far", "unit tests of `sensor_faults`";
+    SPIKE_NEIGHBOURS = 0.2, "fraction of outlier", "its neighbours agree to this", "unit tests of `sensor_faults`";
+    PULSE_SAMPLES = 5.0, "samples", "the speed before and after an outlier is taken over so many samples", "unit tests of `sensor_faults`";
+    PULSE_SPEED = 0.02, "fraction of largest speed", "where the speed changes by more, the drive accelerates, and the pulse is no fault", "unit tests of `sensor_faults`";
+    HELD_IN_COMMON = HALF, "fraction of variance", "the twist of a clamped joint has so much in common with the torque", "`field-cases`";
+}
+
+/// The tables of docs/diagnosis.md: levels, thresholds of the decision, and those of the data checks.
+pub fn tables() -> [String; 3] {
     let level = |l: &Level| format!("| {} | {} | {} |\n", l.name, l.value, l.meaning);
     let levels: String = LEVELS.iter().map(level).collect();
     let row = |t: &Threshold| {
         let level = if LEVELS.iter().any(|l| l.name == t.written) { t.written } else { "" };
         format!("| {} | {} | {level} | {} | {} | {} |\n", t.name, t.value, t.unit, t.meaning, t.calibrated_on)
     };
-    let rows: String = ALL.iter().map(row).collect();
-    [
-        format!("| level | value | means |\n| --- | --- | --- |\n{levels}"),
+    let table = |list: &[Threshold]| {
+        let rows: String = list.iter().map(row).collect();
         format!(
             "| threshold | value | level | unit | decides | calibrated on |\n| --- | --- | --- | --- | --- | --- |\n{rows}"
-        ),
-    ]
+        )
+    };
+    [format!("| level | value | means |\n| --- | --- | --- |\n{levels}"), table(ALL), table(CHECKS)]
 }
 
 #[cfg(test)]
@@ -158,7 +205,8 @@ mod tests {
 
     #[test]
     fn no_two_thresholds_share_a_name() {
-        let mut names: Vec<&str> = ALL.iter().map(|t| t.name).chain(LEVELS.iter().map(|l| l.name)).collect();
+        let mut names: Vec<&str> =
+            ALL.iter().chain(CHECKS).map(|t| t.name).chain(LEVELS.iter().map(|l| l.name)).collect();
         names.sort_unstable();
         assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
     }

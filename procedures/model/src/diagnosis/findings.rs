@@ -1,6 +1,8 @@
 //! Findings of a selection: the evidence for each effect, the effects that were not found, and the verdict.
 
+use crate::Options;
 use crate::diagnosis::excluded_effects::ExcludedEffects;
+use crate::effects::brake::hysteresis;
 use crate::preprocess::Prepared;
 use crate::regression::cross_validation::validation_rms;
 use crate::regression::linear_model::LinearModel;
@@ -10,13 +12,11 @@ use crate::report::reasons::{Invisible, LeftOut};
 use crate::residual_analysis::events::{Event, Events};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::{lack_of_fit, noise_floor};
-use crate::selection;
 use crate::selection::advance::SelectionStep;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::refused::EvidenceResult;
 use crate::selection::removal::Withdrawn;
 use crate::thresholds::{FLOOR_RATIO, REPEATABLE_SHARE, STRUCTURE_SHARE};
-use crate::{ModelError, ModelSpec, Options};
 use jointbench_instrument::Kind;
 
 pub struct Findings<'p> {
@@ -43,28 +43,21 @@ pub struct Findings<'p> {
 }
 
 impl<'p> Findings<'p> {
-    /// `on_advance` gets each step when it is made.
-    pub fn new(
-        prepared: &'p Prepared,
-        spec: &'p ModelSpec,
-        options: &Options,
-        most: usize,
-        on_advance: &mut dyn FnMut(&SelectionStep),
-    ) -> Result<Self, ModelError> {
-        let selected = selection::search(prepared, spec, options, most, on_advance)?;
+    /// Judges the last model of a selection.
+    pub fn of(prepared: &'p Prepared, selected: ModelSelection<'p>, options: &Options) -> Self {
         let others = ExcludedEffects::of(&selected);
         // The reversals of a joint would be events of every repeat.
         let events = match prepared.kind {
             Kind::Friction => Vec::new(),
             _ => Events::of(&prepared.main, &selected.residual).without_jumps(&selected.now).find(),
         };
-        let remembers = selected.now.contains("hysteresis");
+        let remembers = selected.now.contains(hysteresis::ID);
         let floor = noise_floor::noise_floor(prepared, &selected.residual, remembers, &events);
         let scatters = selected.decided.is_none()
             && lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
         let end_validation_rms = validation_rms(&selected.end().main);
         let ModelSelection { start, advances, withdrawn, maps, ties, retained, open, decided, .. } = selected;
-        Ok(Self {
+        Self {
             start,
             advances,
             withdrawn,
@@ -78,7 +71,7 @@ impl<'p> Findings<'p> {
             retained,
             open,
             decided,
-        })
+        }
     }
 
     pub fn end(&self) -> &TwoStageModel<'p> {

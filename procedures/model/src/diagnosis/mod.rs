@@ -19,13 +19,12 @@ use crate::report::maps::{PairMap, Region};
 use crate::report::text::{parts, plain};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::maps::regions::reference;
+use crate::selection;
 use crate::selection::advance::SelectionStep;
+use crate::thresholds::MOST_EFFECTS;
 use crate::words::{figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
 use jointbench_instrument::RunTable;
-
-/// Largest number of effects that a diagnosis adds.
-const MOST_EFFECTS: usize = 6;
 
 /// Compares a model with a run: regions of large residuals, missing effects, and their significance.
 ///
@@ -59,7 +58,8 @@ const MOST_EFFECTS: usize = 6;
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
     refuse_settings(spec)?;
     let prepared = prepare(run, options)?;
-    let found = Findings::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
+    let selected = selection::search(&prepared, spec, options, MOST_EFFECTS as usize, &mut |_| {})?;
+    let found = Findings::of(&prepared, selected, options);
     let mut fit = report(&found.start)?;
     if found.advances.is_empty() {
         leave_open(&mut fit, &found);
@@ -129,11 +129,12 @@ pub fn discover(
     let prepared = prepare(run, options)?;
     let mut steps = vec![step(&TwoStageModel::new(&prepared, spec, options)?, None)];
     on_step(&steps[0]);
-    let found = Findings::new(&prepared, spec, options, max_effects, &mut |advance| {
+    let selected = selection::search(&prepared, spec, options, max_effects, &mut |advance| {
         let step = step(&advance.after, Some(advance));
         on_step(&step);
         steps.push(step);
     })?;
+    let found = Findings::of(&prepared, selected, options);
     // Ties are those of the last model.
     for step in &mut steps {
         step.confounded_with = step.added.as_deref().map_or_else(Vec::new, |added| found.ties_of(added));

@@ -5,6 +5,7 @@
 //! damping and inertia by N².
 
 use crate::ModelError;
+use crate::effects::friction::{coulomb, inertia, load_transmission, viscous};
 use crate::export::parts::Parts;
 use crate::export::{about, of_model};
 use crate::report::fit::{Fit, Parameter};
@@ -38,14 +39,14 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
         // A negative value is not physical, and simulators reject it.
         Attribute { effect, of: found.map(|p| (p, p.value * scale)).filter(|(_, v)| *v >= 0.0 && v.is_finite()) }
     };
-    let friction = of("coulomb", "tau_c", gear);
-    let damping = of("viscous", "c_v", gear * gear);
-    let armature = of("inertia", "j", gear * gear);
+    let friction = of(coulomb::ID, "tau_c", gear);
+    let damping = of(viscous::ID, "c_v", gear * gear);
+    let armature = of(inertia::ID, "j", gear * gear);
     let carried = match dialect {
         Dialect::Mujoco => vec![("frictionloss", friction), ("damping", damping), ("armature", armature)],
         Dialect::Urdf => vec![("damping", damping), ("friction", friction)],
     };
-    let held = |id: &str| id == "load_transmission" || carried.iter().any(|(_, a)| a.effect == id && a.of.is_some());
+    let held = |id: &str| id == load_transmission::ID || carried.iter().any(|(_, a)| a.effect == id && a.of.is_some());
     let left_out: Vec<(&str, String)> =
         fit.effects.iter().filter(|id| !held(id)).map(|id| (id.as_str(), reason(id, dialect).to_owned())).collect();
     let attributes: Vec<String> =
@@ -81,8 +82,8 @@ fn plain(words: &str) -> String {
 
 fn reason(effect: &str, dialect: Dialect) -> &'static str {
     match (effect, dialect) {
-        ("inertia", Dialect::Urdf) => "URDF has no armature; add it to the inertia of the link",
-        ("coulomb" | "viscous" | "inertia", _) => "its value is negative or not known",
+        (inertia::ID, Dialect::Urdf) => "URDF has no armature; add it to the inertia of the link",
+        (coulomb::ID | viscous::ID | inertia::ID, _) => "its value is negative or not known",
         _ => "there is no attribute for it",
     }
 }

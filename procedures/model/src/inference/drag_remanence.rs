@@ -1,6 +1,7 @@
 //! The drag torque of a brake and its remanence are confounded: a brake at rest after a fall of its current holds
 //! both, and the model assigns all of it to the drag.
 
+use crate::effects::brake::{drag, hysteresis};
 use crate::regression::linear_model::LinearModel;
 use crate::report::fit::Parameter;
 use crate::signal::{Signal, Signals};
@@ -13,8 +14,8 @@ const NONE: f64 = 0.02;
 /// Extends the interval of the drag to the torque of a demagnetised brake: measured before the first current, or
 /// predicted by the hysteresis effect.
 pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
-    let Some(hysteresis) = terms.terms.iter().position(|t| t.id() == "hysteresis") else { return };
-    let Some(drag) = parameters.iter_mut().find(|p| p.effect == "drag") else { return };
+    let Some(hysteresis) = terms.terms.iter().position(|t| t.id() == hysteresis::ID) else { return };
+    let Some(drag) = parameters.iter_mut().find(|p| p.effect == drag::ID) else { return };
     let fresh = fresh(terms);
     let empty = fresh.unwrap_or_else(|| {
         let term = &terms.terms[hysteresis];

@@ -2,6 +2,7 @@
 
 use crate::effect::{Effect, Form};
 use crate::effects;
+use crate::effects::friction::coulomb;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::solution::{PRESLIDING, Solution};
 use crate::regression::two_stage_model::TwoStageModel;
@@ -16,7 +17,7 @@ pub fn presliding(model: &TwoStageModel, parameters: &[Parameter]) -> Option<(Te
     let is_in = model.effects.iter().any(|e| e == PRESLIDING) && !model.hidden.iter().any(|h| h.effect == PRESLIDING);
     let bristles = model.prepared.about.bristles.as_ref().filter(|_| is_in)?;
     let (form, reach, ends) = bristles.single()?;
-    let dry = parameters.iter().find(|p| p.effect == "coulomb");
+    let dry = parameters.iter().find(|p| p.effect == coulomb::ID);
     let (value, ci95) = dry.map_or((0.0, [0.0, 0.0]), |dry| (dry.value, dry.ci95));
     let info = effects::find(Kind::Friction, PRESLIDING).ok()?.info();
     let parameter = |name: &'static str, value, ci95, state| Parameter {

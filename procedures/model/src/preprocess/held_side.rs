@@ -1,6 +1,7 @@
 //! Joints with one side clamped, which twist but do not turn.
 
 use crate::stats::summary::mean;
+use crate::thresholds::HELD_IN_COMMON;
 use jointbench_instrument::{Kind, RunTable};
 
 /// Whether one side of the joint moves less than it twists. A free joint moves farther than it twists, on both
@@ -19,7 +20,6 @@ pub fn moves_by_twist_only(twist: &[f64], link: &[f64]) -> bool {
 /// Whether one side of the joint is clamped: the motions of both sides are unrelated, and the twist follows the
 /// torque.
 pub fn is_held(run: &RunTable) -> bool {
-    const MOST: f64 = 0.5;
     let Some(gear) = run.meta().gear_ratio.filter(|_| run.kind() == Kind::Stiffness) else { return false };
     let column = |name: &str| run.column(name).unwrap_or_default();
     let (motor, link, torque) = (column("motor_position_rad"), column("link_position_rad"), column("link_torque_nm"));
@@ -28,5 +28,5 @@ pub fn is_held(run: &RunTable) -> bool {
     let product =
         |f: fn(f64, f64) -> f64| twist.iter().zip(torque).map(|(q, t)| f(q - middle, t - centre)).sum::<f64>();
     moves_by_twist_only(&twist, link)
-        && product(|q, t| q * t).powi(2) > MOST * product(|q, _| q * q) * product(|_, t| t * t)
+        && product(|q, t| q * t).powi(2) > HELD_IN_COMMON * product(|q, _| q * q) * product(|_, t| t * t)
 }

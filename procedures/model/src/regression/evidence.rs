@@ -7,15 +7,12 @@ use crate::linear::blocked_ridge::{BlockedRidge, Outside};
 use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::allows;
 use crate::stats::{student, summary};
-use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
+use crate::thresholds::{DECISION_SHARE, ONE_ERROR, UNMISTAKABLE_SHARE};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 /// A candidate with a smaller tolerance (1 − R² on the model) is collinear with the model.
 pub const LEAST_VISIBLE: f64 = 1e-5;
-
-/// One-standard-error rule (Breiman and others 1984, ch. 3).
-pub const ONE_ERROR: f64 = 1.0;
 
 /// The evidence for one candidate effect.
 pub struct Evidence<'l, 'p> {

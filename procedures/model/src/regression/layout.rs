@@ -3,10 +3,10 @@
 
 use crate::effect::Effect;
 use crate::regression::candidates::{CandidateSet, Regressor};
-use crate::regression::evidence::{ONE_ERROR, errors, visible};
+use crate::regression::evidence::{errors, visible};
 use crate::regression::linear_model::{LinearModel, Relative, Term, allows};
 use crate::regression::solution::Solution;
-use crate::thresholds::DECISION_SHARE;
+use crate::thresholds::{DECISION_SHARE, ONE_ERROR};
 use rayon::prelude::*;
 use std::sync::Arc;
 

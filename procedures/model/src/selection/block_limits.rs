@@ -2,6 +2,7 @@
 
 use crate::Options;
 use crate::effect::Regime;
+use crate::effects::friction::inertia;
 use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::candidates::{CandidateSet, Regressor};
@@ -60,7 +61,7 @@ fn smallest(
     let least = share / (1.0 - share) * ridge.loss();
     let delay = || {
         let form_error = end.main.problem.form_error.as_deref()?;
-        Some(effect_coefficient(&end.main, solution, "inertia")?.abs() * DELAY_ROWS * form_error.sample_s)
+        Some(effect_coefficient(&end.main, solution, inertia::ID)?.abs() * DELAY_ROWS * form_error.sample_s)
     };
     let bound = if form.id() == DELAY { delay()? } else { 0.0 };
     let k = added.size;

@@ -5,6 +5,7 @@
 //! explain most of the residual.
 
 use crate::effect::Regime;
+use crate::effects::friction::inertia;
 use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::Prepared;
 use crate::preprocess::form_error::FormErrorKind;
@@ -22,12 +23,9 @@ use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::refused::{EvidenceResult, Refused};
-use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, FLOOR_RATIO, LEFT_SHARE, SIMPLER_GAIN};
+use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, FLOOR_RATIO, LEFT_SHARE, MOST_NAMED, SIMPLER_GAIN};
 use crate::{Effect, ModelError, ModelSpec, Options};
 use std::cell::OnceCell;
-
-/// Largest number of added effects.
-const MOST_NAMED: usize = 4;
 
 /// Candidate sets of a run: for a friction direction that switches at once, and for one with presliding.
 struct Libraries<'p> {
@@ -72,7 +70,7 @@ pub fn search<'p>(
         {
             search.path.push(step);
         }
-        refused = search.grow(most.min(MOST_NAMED))?;
+        refused = search.grow(most.min(MOST_NAMED as usize))?;
     }
     while let Some(id) = insignificant(search.path.end(), spec) {
         search.remove(id, RemovalReason::Insignificant)?;
@@ -276,7 +274,7 @@ fn is_tied(best: &Evidence, other: &Evidence) -> bool {
 fn is_delayed(now: &TwoStageModel, solution: &Solution) -> bool {
     let model = &now.main;
     let Some(form_error) = model.problem.form_error.as_deref() else { return false };
-    let inertia = effect_coefficient(model, solution, "inertia");
+    let inertia = effect_coefficient(model, solution, inertia::ID);
     let jerk =
         solution.error.iter().find(|(at, _)| form_error.columns[*at].kind == FormErrorKind::Jerk).map(|(_, f)| *f);
     let (Some(inertia), Some(jerk)) = (inertia, jerk) else { return false };

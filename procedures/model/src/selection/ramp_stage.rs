@@ -5,6 +5,7 @@
 
 use crate::Options;
 use crate::effect::Effect;
+use crate::effects::friction::inertia;
 use crate::inference::intervals::intervals;
 use crate::linear::basis::dot;
 use crate::regression::linear_model::LinearModel;
@@ -17,10 +18,8 @@ use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::{DELAY_HALF_WIDTHS, DELAY_POWER, DELAY_ROWS};
 
-/// The coefficient of the delay divided by the inertia is the delay time.
-const INERTIA: &str = "inertia";
-
-/// The delay that this run supports, with the model that includes it.
+/// The delay that this run supports, with the model that includes it. Its coefficient divided by the inertia is the
+/// delay time.
 pub fn delay<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCandidate<'p>, TwoStageModel<'p>)> {
     let Delayed { after, coefficient, half, by_s } = with_delay(now)?;
     let moving = after.moving.as_ref()?;
@@ -63,7 +62,7 @@ fn with_delay<'p>(now: &TwoStageModel<'p>) -> Option<Delayed<'p>> {
     let moving: &LinearModel = after.moving.as_ref()?;
     let parameters = intervals(moving, now.prepared.motion).parameters;
     let of = |id: &str| parameters.iter().find(|p| p.effect == id);
-    let (inertia, delay_parameter) = (of(INERTIA)?, of(DELAY)?);
+    let (inertia, delay_parameter) = (of(inertia::ID)?, of(DELAY)?);
     let (coefficient, half) = (delay_parameter.value, (delay_parameter.ci95[1] - delay_parameter.ci95[0]) / 2.0);
     let by_s = -coefficient / inertia.value;
     (inertia.value > 0.0 && half.is_finite()).then_some(Delayed { after, coefficient, half, by_s })
@@ -72,5 +71,5 @@ fn with_delay<'p>(now: &TwoStageModel<'p>) -> Option<Delayed<'p>> {
 /// Whether only ramps can show the delay and the model has an inertia, which scales the delay to a time.
 fn is_testable(effect: &dyn Effect, now: &TwoStageModel) -> bool {
     let is_in = |id: &str| now.effects.iter().any(|effect| effect == id);
-    now.is_apart(effect) && is_in(INERTIA) && !is_in(DELAY)
+    now.is_apart(effect) && is_in(inertia::ID) && !is_in(DELAY)
 }

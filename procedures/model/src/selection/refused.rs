@@ -1,10 +1,10 @@
 //! Results of the evidence beyond the named effects: unexplained structure, and rejected effects.
 
 use crate::effect::{Effect, Regime};
-use crate::regression::evidence::{Evidence, ONE_ERROR};
+use crate::regression::evidence::Evidence;
 use crate::report::reasons::RejectionReason;
 use crate::residual_analysis::structure::Unexplained;
-use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
+use crate::thresholds::{DECISION_SHARE, ONE_ERROR, UNMISTAKABLE_SHARE};
 use crate::words::percent;
 
 /// Findings that remain after the decision.

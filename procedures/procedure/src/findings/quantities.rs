@@ -97,12 +97,8 @@ impl Unusable {
         match self {
             Self::InsufficientData(lacking, cure) => [lacking, cure].map(|sentence| (*sentence).to_owned()),
             Self::Scattered { rest_nm } => [scattered(*rest_nm), SCATTERED.to_owned()],
-            // Faults of a model and of a table read "what; cure" or "what: cure".
-            Self::Model(_) | Self::Table(_) => {
-                let fault = self.to_string();
-                let (lacking, cure) = fault.split_once("; ").unwrap_or((&fault, "repeat the run"));
-                [lacking, cure].map(sentence)
-            }
+            // The message contains what to do about the run.
+            Self::Model(_) | Self::Table(_) => [sentence(&self.to_string()), "Repeat the run.".to_owned()],
         }
     }
 }

@@ -7,8 +7,10 @@ use jointbench_instrument::Kind;
 
 pub struct Drag;
 
+pub(crate) const ID: &str = "drag";
+
 static INFO: EffectInfo = EffectInfo {
-    id: "drag",
+    id: ID,
     kind: Kind::Brake,
     title: "Drag",
     sentence: "Bearings and remanence cause a small torque without current.",

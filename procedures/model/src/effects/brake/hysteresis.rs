@@ -17,8 +17,10 @@ const FORMS: [(&str, usize); 3] = [("bands_3", 3), ("bands_5", 5), ("bands", 8)]
 /// Stop operators in a band: a smooth density with few coefficients instead of many independent weights.
 const STOPS: usize = 6;
 
+pub(crate) const ID: &str = "hysteresis";
+
 static INFO: EffectInfo = EffectInfo {
-    id: "hysteresis",
+    id: ID,
     kind: Kind::Brake,
     title: "Hysteresis",
     sentence: "At the same current the torque is higher while the current falls than while it rises.",

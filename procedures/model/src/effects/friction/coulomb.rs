@@ -8,8 +8,10 @@ use jointbench_instrument::Kind;
 
 pub struct Coulomb;
 
+pub(crate) const ID: &str = "coulomb";
+
 static INFO: EffectInfo = EffectInfo {
-    id: "coulomb",
+    id: ID,
     kind: Kind::Friction,
     title: "Coulomb friction",
     sentence: "A constant torque against the motion, independent of speed.",

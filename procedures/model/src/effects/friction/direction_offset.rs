@@ -7,8 +7,10 @@ use jointbench_instrument::Kind;
 
 pub struct DirectionOffset;
 
+pub(crate) const ID: &str = "direction_offset";
+
 static INFO: EffectInfo = EffectInfo {
-    id: "direction_offset",
+    id: ID,
     kind: Kind::Friction,
     title: "Direction offset",
     sentence: "Coulomb friction differs between the directions. In motion this is equivalent to a constant torque, \

@@ -8,8 +8,10 @@ use jointbench_instrument::Kind;
 
 pub struct Inertia;
 
+pub(crate) const ID: &str = "inertia";
+
 static INFO: EffectInfo = EffectInfo {
-    id: "inertia",
+    id: ID,
     kind: Kind::Friction,
     title: "Rotor inertia",
     sentence: "Torque that accelerates the rotor and the parts that turn with it.",

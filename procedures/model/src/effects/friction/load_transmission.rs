@@ -7,8 +7,10 @@ use jointbench_instrument::Kind;
 
 pub struct LoadTransmission;
 
+pub(crate) const ID: &str = "load_transmission";
+
 static INFO: EffectInfo = EffectInfo {
-    id: "load_transmission",
+    id: ID,
     kind: Kind::Friction,
     title: "Load through the gear",
     sentence: "Torque that the joint delivers to the load, divided by the gear ratio.",

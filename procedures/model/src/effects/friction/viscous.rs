@@ -8,8 +8,10 @@ use jointbench_instrument::Kind;
 
 pub struct Viscous;
 
+pub(crate) const ID: &str = "viscous";
+
 static INFO: EffectInfo = EffectInfo {
-    id: "viscous",
+    id: ID,
     kind: Kind::Friction,
     title: "Viscous friction",
     sentence: "Friction of oil and grease, proportional to speed.",

@@ -2,12 +2,9 @@
 
 use crate::linear::basis::dot;
 use crate::stats::summary::peak;
+use crate::thresholds::{BRAKE_MARGIN, CURRENT_IN_COMMON, LARGEST_CURRENT, SMALL_CURRENT, VARYING_CURRENT};
 use crate::words::figure;
 use jointbench_instrument::{Kind, RunTable};
-
-/// Largest current relative to the rated current, and the share of the rated current below which the torque is small.
-const TIMES: f64 = 20.0;
-const HARDLY: f64 = 0.01;
 
 /// Largest plausible coil current. Hysteresis brakes are rated up to 1.2 A (data sheet of the HB series, HB-3500M),
 /// two coils in parallel up to twice that. This limit is ten times as much.
@@ -16,21 +13,13 @@ const MOST_A: f64 = 24.0;
 /// Plausible torque for each ampere [Nm/A]: 4 to 22 in the data sheets, a tenth of that for the smallest brakes, ten
 /// times as much behind a gear of 1:10.
 const HELD: [f64; 2] = [0.1, 220.0];
-/// Additional margin for sensors and set-ups.
-const MARGIN: f64 = 3.0;
-
-/// Least share of the torque variance that the current has to explain.
-const FOLLOWS: f64 = 0.2;
-/// A current that varies by less than this share of its largest value counts as constant: the torque then changes for
-/// other reasons, such as temperature.
-const VARIES: f64 = 0.1;
 
 /// A current or torque beyond the plausible range, in a sentence.
 pub fn beyond(run: &RunTable) -> Option<String> {
     let current = run.column("brake_current_a")?;
     let largest = peak(current);
     let rated_a = run.meta().rated_current_a;
-    let most_a = rated_a.map_or(MOST_A, |rated_a| TIMES * rated_a);
+    let most_a = rated_a.map_or(MOST_A, |rated_a| LARGEST_CURRENT * rated_a);
     if largest > most_a {
         return Some(match rated_a {
             Some(rated_a) => format!(
@@ -47,7 +36,7 @@ pub fn beyond(run: &RunTable) -> Option<String> {
         return None;
     }
     let held = held(current, run.column("brake_torque_nm")?)?;
-    if let Some(rated_a) = rated_a.filter(|rated_a| largest < HARDLY * rated_a) {
+    if let Some(rated_a) = rated_a.filter(|rated_a| largest < SMALL_CURRENT * rated_a) {
         return Some(format!(
             "brake_current_a reaches {} only, the torque follows it, and the brake is rated for {rated_a} A: one of them has \
              another unit",
@@ -55,7 +44,7 @@ pub fn beyond(run: &RunTable) -> Option<String> {
         ));
     }
     let [least, most] = HELD;
-    (!(least / MARGIN..=most * MARGIN).contains(&held)).then(|| {
+    (!(least / BRAKE_MARGIN..=most * BRAKE_MARGIN).contains(&held)).then(|| {
         format!(
             "brake_torque_nm rises by {} for each A of brake_current_a, and hysteresis brakes hold {least} to {most} Nm for \
              each: one of the two has another unit (mA, mNm?)",
@@ -64,7 +53,8 @@ pub fn beyond(run: &RunTable) -> Option<String> {
     })
 }
 
-/// Torque for each ampere, from the absolute values of both. `None` if the torque does not rise with the current.
+/// Torque for each ampere, from the absolute values of both. `None` if the torque does not rise with the current, or
+/// the current is constant: the torque then changes for other reasons, such as temperature.
 fn held(current: &[f64], torque: &[f64]) -> Option<f64> {
     let about_mean = |values: &[f64]| -> Vec<f64> {
         let mean = values.iter().map(|v| v.abs()).sum::<f64>() / values.len() as f64;
@@ -73,8 +63,8 @@ fn held(current: &[f64], torque: &[f64]) -> Option<f64> {
     let largest = peak(current);
     let (current, torque) = (about_mean(current), about_mean(torque));
     let (ii, it, tt) = (dot(&current, &current), dot(&current, &torque), dot(&torque, &torque));
-    let varies = ii > (VARIES * largest).powi(2) * current.len() as f64;
-    (varies && it > 0.0 && it * it > FOLLOWS * ii * tt).then_some(it / ii)
+    let varies = ii > (VARYING_CURRENT * largest).powi(2) * current.len() as f64;
+    (varies && it > 0.0 && it * it > CURRENT_IN_COMMON * ii * tt).then_some(it / ii)
 }
 
 #[cfg(test)]

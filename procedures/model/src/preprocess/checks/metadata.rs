@@ -1,9 +1,7 @@
 //! Test conditions that are missing or contradict the columns, without making the results wrong.
 
+use crate::thresholds::CLASH_RATIO;
 use jointbench_instrument::{Kind, Motion, RunTable};
-
-/// A ratio beyond this between stated and actual sample rate is no rounding.
-const OTHER_RATE: f64 = 1.2;
 
 /// The doubts about the test conditions, each in a sentence.
 pub fn warnings(run: &RunTable) -> Vec<String> {
@@ -16,7 +14,7 @@ pub fn warnings(run: &RunTable) -> Vec<String> {
 fn rate(run: &RunTable) -> Option<String> {
     let stated_hz = run.meta().sample_rate_hz?;
     let found_hz = 1.0 / crate::preprocess::sample_s(run.column("time_s")?);
-    let agree = (1.0 / OTHER_RATE..=OTHER_RATE).contains(&(found_hz / stated_hz));
+    let agree = (1.0 / CLASH_RATIO..=CLASH_RATIO).contains(&(found_hz / stated_hz));
     (!agree).then(|| {
         format!(
             "sample_rate_hz is {stated_hz}, and column time_s has {found_hz:.3} samples in a second: one of them is wrong; time_s is used"

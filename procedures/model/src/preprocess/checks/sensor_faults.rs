@@ -1,28 +1,14 @@
 //! Sensor faults: a constant value during motion, saturation, and single outliers.
 
 use crate::stats::summary::range;
+use crate::thresholds::{
+    FINE_READINGS, PULSE_SAMPLES, PULSE_SPEED, SATURATED_SAMPLES, SATURATED_SHARE, SPIKE_CHANGES, SPIKE_NEIGHBOURS,
+    SPIKE_RANGE, STUCK_S, STUCK_SAMPLES,
+};
 use crate::words::figure;
 use jointbench_instrument::units::unit_of;
 use jointbench_instrument::{Kind, RunTable};
 use std::ops::Range;
-
-/// A column is too coarse for these checks if fewer than this share of neighbouring samples differ.
-const FINE: f64 = 0.9;
-/// Shortest time and number of samples with one value during motion that indicate a stuck sensor.
-const STUCK_S: f64 = 0.3;
-const STUCK_SAMPLES: usize = 40;
-/// Number of consecutive samples at the end of the range, and their share of the run, that indicate saturation.
-const CLIPPED_SAMPLES: usize = 4;
-const CLIPPED_SHARE: f64 = 0.003;
-/// A single outlier differs from both neighbours by this multiple of the usual change and by this share of the
-/// column's range. Its neighbours agree to a fifth of that.
-const ALONE: f64 = 25.0;
-const ALONE_RANGE: f64 = 0.15;
-const AGREE: f64 = 0.2;
-/// A pulse is no fault while the drive accelerates: the speed over this number of samples before and after it changes
-/// by more than this share of the largest speed.
-const SPEED_SAMPLES: usize = 5;
-const PUSHED: f64 = 0.02;
 
 /// Columns of measured torque and current, which always contain noise, and the angle that shows whether the joint
 /// moves.
@@ -42,10 +28,11 @@ pub fn failed(run: &RunTable) -> Vec<String> {
         let values = run.column(name)?;
         let same = stretches_of_one_value(values);
         let resting: usize = same.iter().map(|range| range.len() - 1).sum();
-        let long: Vec<&Range<usize>> = same.iter().filter(|range| range.len() >= CLIPPED_SAMPLES).collect();
+        let long: Vec<&Range<usize>> = same.iter().filter(|range| range.len() >= SATURATED_SAMPLES as usize).collect();
         let long_resting: usize = long.iter().map(|range| range.len() - 1).sum();
         let rest = (values.len() - 1 - long_resting).max(1) as f64;
-        let is_fine = (resting - long_resting) as f64 <= (1.0 - FINE) * rest && 2 * long_resting < values.len();
+        let is_fine =
+            (resting - long_resting) as f64 <= (1.0 - FINE_READINGS) * rest && 2 * long_resting < values.len();
         is_fine.then(|| clipped(run, name, values, &long).or_else(|| stuck(run, name, values, &long, angle)))?
     });
     found.collect()
@@ -65,7 +52,7 @@ fn clipped(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>]) -
     let (low, high) = range(values);
     let at = |end: f64| same.iter().filter(|range| values[range.start] == end).map(|range| range.len()).sum::<usize>();
     let (end, count) = [(high, at(high)), (low, at(low))].into_iter().max_by_key(|(_, count)| *count)?;
-    (count as f64 >= CLIPPED_SHARE * values.len() as f64).then(|| {
+    (count as f64 >= SATURATED_SHARE * values.len() as f64).then(|| {
         let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
         format!(
             "{name} is saturated at {} for {count} samples: the range of its sensor, or a limit of the drive",
@@ -82,7 +69,7 @@ fn stuck(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>], ang
     };
     let range = same.iter().filter(|range| is_moving(range)).max_by_key(|range| range.len())?;
     let (from_s, to_s) = (time_s[range.start], time_s[range.end - 1]);
-    (range.len() >= STUCK_SAMPLES && to_s - from_s >= STUCK_S).then(|| {
+    (range.len() >= STUCK_SAMPLES as usize && to_s - from_s >= STUCK_S).then(|| {
         let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
         format!(
             "{name} stays at {} from {from_s:.3} s to {to_s:.3} s, while the joint moves: its sensor was not read",
@@ -96,25 +83,26 @@ pub fn spikes(run: &RunTable) -> Option<String> {
     let (torques, angle) = columns(run.kind());
     let (time_s, angle) = (run.column("time_s")?, run.column(angle)?);
     let way = |i: usize, j: usize| angle[j.min(angle.len() - 1)] - angle[i];
+    let steps = PULSE_SAMPLES as usize;
     // Whether the drive accelerates at this sample.
     let is_pushed = |i: usize, fastest: f64| {
-        let before = way((i - 1).saturating_sub(SPEED_SAMPLES), i - 1);
-        (way(i + 1, i + 1 + SPEED_SAMPLES) - before).abs() > PUSHED * fastest
+        let before = way((i - 1).saturating_sub(steps), i - 1);
+        (way(i + 1, i + 1 + steps) - before).abs() > PULSE_SPEED * fastest
     };
     torques.iter().chain(&["motor_velocity_rad_s", "velocity_rad_s", "temperature_c"]).find_map(|name| {
         let values = run.column(name)?;
         let every = values.len().div_ceil(crate::preprocess::INFORMATIVE_ROWS);
         let usual = crate::preprocess::median(values.windows(2).step_by(every).map(|pair| (pair[1] - pair[0]).abs()));
         let (low, high) = middle_of(values.iter().step_by(every).copied().collect());
-        let least = (ALONE * usual).max(ALONE_RANGE * (high - low));
+        let least = (SPIKE_CHANGES * usual).max(SPIKE_RANGE * (high - low));
         let is_alone = |w: &[f64]| {
             let (before, after) = (w[1] - w[0], w[1] - w[2]);
             let off = before.abs().min(after.abs());
-            off > least && before * after > 0.0 && (w[2] - w[0]).abs() < AGREE * off
+            off > least && before * after > 0.0 && (w[2] - w[0]).abs() < SPIKE_NEIGHBOURS * off
         };
         let mut found: Vec<usize> = (1..).zip(values.windows(3)).filter(|(_, w)| is_alone(w)).map(|(i, _)| i).collect();
         if !found.is_empty() {
-            let fastest = (SPEED_SAMPLES..angle.len()).map(|i| way(i - SPEED_SAMPLES, i).abs()).fold(0.0, f64::max);
+            let fastest = (steps..angle.len()).map(|i| way(i - steps, i).abs()).fold(0.0, f64::max);
             found.retain(|i| !is_pushed(*i, fastest));
         }
         let first = *found.first()?;

@@ -2,20 +2,9 @@
 
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::checks::blocks;
+use crate::thresholds::{IN_COMMON, LOAD_SHARE, SLIPPED_IN_COMMON, STEADY_CHANGE, TORQUE_RATIO};
 use jointbench_instrument::RunTable;
 use std::ops::Range;
-
-/// Motor and link torque also differ by the gear's efficiency and by load-dependent friction, up to this ratio.
-const TORQUE_CLASH: f64 = 2.0;
-/// Least common share of the variance to compare the two torques.
-const SAME: f64 = 0.9;
-/// Least common share for a typical unit or sign error: much of the motor torque is friction that the link torque
-/// does not contain.
-const SAME_TORQUE: f64 = 0.7;
-/// Otherwise the common part has to be a load: at least this share of the torque varies while the speed changes by
-/// less than [`STEADY`] of itself. Ramps and reversals share inertia on both sides of the sensor.
-const LOADED: f64 = 0.25;
-const STEADY: f64 = 0.5;
 
 /// The motor torque without friction and inertia has to match the link torque divided by the gear ratio.
 pub fn clash(run: &RunTable, blocks: &[blocks::Block]) -> Option<String> {
@@ -42,13 +31,13 @@ pub fn clash(run: &RunTable, blocks: &[blocks::Block]) -> Option<String> {
     let (tt, tl, ll) = (dot(&torque, &torque), dot(&torque, &link), dot(&link, &link));
     // This ratio is not biased by the noise of either side.
     let times = (tt / ll).sqrt().copysign(tl);
-    let near = |unit: f64| (1.0 / TORQUE_CLASH..=TORQUE_CLASH).contains(&(times.abs() / unit));
+    let near = |unit: f64| (1.0 / TORQUE_RATIO..=TORQUE_RATIO).contains(&(times.abs() / unit));
     let agree = times > 0.0 && near(1.0);
     // At rest a motor works against its own friction, and an unloaded sensor follows that loosely with about a
     // hundredth of it.
     let slips = [1e3, 1e-3].into_iter().any(near) || times < 0.0 && near(1.0);
     let common = tl * tl / (tt * ll);
-    let contradicts = !agree && if slips { common > SAME_TORQUE } else { common > SAME && is_loaded(all) };
+    let contradicts = !agree && if slips { common > SLIPPED_IN_COMMON } else { common > IN_COMMON && is_loaded(all) };
     contradicts.then(|| {
         format!(
             "motor_current_a with the torque constant and the gear ratio is {times:.3} times what link_torque_nm asks \
@@ -72,13 +61,13 @@ fn without_motion(blocks: &[Block]) -> (Vec<f64>, Vec<f64>) {
     (motion.rest(&each(|p| p.motor_nm)), motion.rest(&each(|p| p.link_nm)))
 }
 
-/// Whether the motor torque varies at steady speed.
+/// Whether the motor torque varies at steady speed. Ramps and reversals share inertia on both sides of the sensor.
 fn is_loaded(mut blocks: Vec<Block>) -> bool {
-    blocks.retain(|p| p.change.abs() < STEADY * p.velocity.abs());
+    blocks.retain(|p| p.change.abs() < STEADY_CHANGE * p.velocity.abs());
     let (without_motion_nm, _) = without_motion(&blocks);
     let middle = blocks.iter().map(|p| p.motor_nm).sum::<f64>() / blocks.len() as f64;
     let varies: f64 = blocks.iter().map(|p| (p.motor_nm - middle).powi(2)).sum();
-    dot(&without_motion_nm, &without_motion_nm) > LOADED * LOADED * varies
+    dot(&without_motion_nm, &without_motion_nm) > LOAD_SHARE * LOAD_SHARE * varies
 }
 
 #[cfg(test)]

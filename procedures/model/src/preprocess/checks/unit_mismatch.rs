@@ -4,27 +4,13 @@
 use crate::preprocess::checks::blocks::{BLOCK_S, Block, blocks};
 use crate::preprocess::held_side::is_held;
 use crate::stats::summary::{mean, range};
+use crate::thresholds::{
+    ALIKE_BLOCKS, ALIKE_RATIO, CLAMPED_RAD, CLASH_RATIO, COMPUTED_COLUMN, DRIVEN_WORK, FINE_ANGLES, GEAR_ERROR,
+    GEAR_TRAVEL_RAD, IN_COMMON, NOISE_BLOCKS, NOISE_ERRORS,
+};
 use jointbench_instrument::{Kind, Motion, RunTable};
 use std::f64::consts::TAU;
 use std::ops::Range;
-
-/// A smaller ratio between columns can come from filtering, delay or torsion of the joint.
-const CLASH: f64 = 1.2;
-/// Largest relative difference of motor and link travel at speed, and the least travel of the link for this check
-/// [rad].
-const GEAR_CLASH: f64 = 0.01;
-const GEAR_WAY: f64 = 1.0;
-/// Least common share of the variance; below it one of the angles is too coarse.
-const SAME_ANGLE: f64 = 0.999;
-/// Least motion of an angle [rad]; with less motion it may have been clamped.
-const WAY: f64 = 0.1;
-/// Least common share of the variance to compare two columns.
-const SAME: f64 = 0.9;
-
-/// Agreement of a computed column with its source, relative, from the digits of a text file.
-const DIGITS: f64 = 1e-5;
-/// Share of the work done against the motion from which on the sign is wrong.
-const DRIVEN: f64 = 0.5;
 
 /// Contradictions, each in a sentence.
 #[derive(Debug, Clone, Default)]
@@ -105,7 +91,7 @@ fn computed_load(run: &RunTable) -> Option<String> {
     };
     let (of_load, of_both, of_current) = (sum(|l, _| l * l), sum(|l, c| l * c), sum(|_, c| c * c));
     let rest = of_load - of_both * of_both / of_current;
-    (of_load > 0.0 && of_current > 0.0 && rest < DIGITS * DIGITS * of_load).then(|| {
+    (of_load > 0.0 && of_current > 0.0 && rest < COMPUTED_COLUMN * COMPUTED_COLUMN * of_load).then(|| {
         "link_torque_nm is a multiple of motor_current_a: it was computed from the current, not measured; remove the column"
             .to_owned()
     })
@@ -124,7 +110,7 @@ fn driven(run: &RunTable, blocks: &[Block]) -> Option<String> {
         work[usize::from(way < 0.0)] += done;
         moved[usize::from(way < 0.0)] += done.abs();
     }
-    let brakes = work.iter().zip(&moved).all(|(work, moved)| *work < -DRIVEN * moved);
+    let brakes = work.iter().zip(&moved).all(|(work, moved)| *work < -DRIVEN_WORK * moved);
     brakes.then(|| {
         "motor_current_a opposes the motion in both directions, as if the joint drove the motor: it or the motion has the wrong sign"
             .to_owned()
@@ -146,7 +132,7 @@ fn clash(run: &RunTable, blocks: &[Block], one: &str, other: &str, ratio: f64) -
     }
     let ways = ways(blocks, a, b, is_speed, ratio);
     let times = alike(&ways).or_else(|| mostly(&ways))?;
-    if (1.0 / CLASH..=CLASH).contains(&times) {
+    if (1.0 / CLASH_RATIO..=CLASH_RATIO).contains(&times) {
         let is_geared = !is_speed && ratio != 1.0;
         return is_geared
             .then(|| other_gear(&ways, ratio))
@@ -185,7 +171,8 @@ fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
     // The motor angle is much finer than the link angle, so that its noise does not bias this ratio.
     let found = ratio * bb / ab;
     let turned = sum(|w| w.1.abs()) / ratio.abs();
-    let contradicts = ab * ab > SAME_ANGLE * aa * bb && turned > GEAR_WAY && (found / ratio - 1.0).abs() > GEAR_CLASH;
+    let contradicts =
+        ab * ab > FINE_ANGLES * aa * bb && turned > GEAR_TRAVEL_RAD && (found / ratio - 1.0).abs() > GEAR_ERROR;
     contradicts.then(|| {
         format!(
             "gear_ratio is {ratio}, and motor_position_rad moves {found:.2} times as far as link_position_rad: one of them is wrong"
@@ -197,7 +184,7 @@ fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
 fn rests(one: &str, a: &[f64], other: &str, b: &[f64], ratio: f64) -> Option<String> {
     let (low, high) = range(b);
     let moved = (high - low) / ratio;
-    (moved > WAY && a.iter().all(|v| *v == a[0])).then(|| {
+    (moved > CLAMPED_RAD && a.iter().all(|v| *v == a[0])).then(|| {
         format!("{one} never changes, while {other} says that it moved by {moved:.3} rad: it was not connected")
     })
 }
@@ -206,17 +193,15 @@ fn rests(one: &str, a: &[f64], other: &str, b: &[f64], ratio: f64) -> Option<Str
 fn alike(ways: &[(f64, f64)]) -> Option<f64> {
     let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().map(f).sum::<f64>();
     let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
-    (ab * ab > SAME * aa * bb).then_some(aa / ab)
+    (ab * ab > IN_COMMON * aa * bb).then_some(aa / ab)
 }
 
 /// The same by the median over the blocks: an angle within one turn jumps in the others.
 fn mostly(ways: &[(f64, f64)]) -> Option<f64> {
-    const MOST: f64 = 0.6;
-    const NEAR: f64 = 0.1;
     let times: Vec<f64> = ways.iter().filter(|w| w.1 != 0.0).map(|w| w.0 / w.1).collect();
     let middle = crate::preprocess::median(times.iter().copied());
-    let near = times.iter().filter(|t| (*t / middle - 1.0).abs() < NEAR).count();
-    (near as f64 > MOST * ways.len() as f64).then_some(middle)
+    let near = times.iter().filter(|t| (*t / middle - 1.0).abs() < ALIKE_RATIO).count();
+    (near as f64 > ALIKE_BLOCKS * ways.len() as f64).then_some(middle)
 }
 
 /// An encoder that moves by more than a turn between two samples: its position is ambiguous.
@@ -241,9 +226,6 @@ fn dead_load(run: &RunTable) -> Option<String> {
 /// A current without correlation between neighbouring samples and between neighbouring blocks: an open input. A
 /// constant current with noise has a mean and does not count.
 fn noise(run: &RunTable, blocks: &[Block]) -> Option<String> {
-    const LEAST_BLOCKS: usize = 40;
-    /// Correlation of white noise by chance, in standard deviations.
-    const LIKE_CHANCE: f64 = 3.0;
     let column = match run.kind() {
         Kind::Friction => "motor_current_a",
         Kind::Brake => "brake_current_a",
@@ -257,11 +239,11 @@ fn noise(run: &RunTable, blocks: &[Block]) -> Option<String> {
     let is_white = |values: &[f64]| {
         let middle = mean(values);
         let next: f64 = values.windows(2).map(|i| (i[0] - middle) * (i[1] - middle)).sum();
-        next.abs() < LIKE_CHANCE * variance(values) * (values.len() as f64).sqrt()
+        next.abs() < NOISE_ERRORS * variance(values) * (values.len() as f64).sqrt()
     };
     let means: Vec<f64> = blocks.iter().map(|(block, _)| mean(&current[block.clone()])).collect();
     let swings = variance(current) > mean(current).powi(2);
-    (means.len() >= LEAST_BLOCKS && swings && is_white(current) && is_white(&means)).then(|| {
+    (means.len() >= NOISE_BLOCKS as usize && swings && is_white(current) && is_white(&means)).then(|| {
         format!(
             "{column} is white noise, from sample to sample and over {BLOCK_S} s: it was not connected, or is another signal"
         )

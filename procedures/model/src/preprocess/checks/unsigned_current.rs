@@ -2,12 +2,8 @@
 //! in both needs a current of both signs, unless a constant load exceeds its friction.
 
 use crate::preprocess::checks::blocks::Block;
+use crate::thresholds::{CANCELLED_WORK, MAGNITUDE_DIP};
 use jointbench_instrument::{Kind, RunTable};
-
-/// Largest net work of a magnitude, as a share of the work in both directions: its work cancels.
-const CANCELS: f64 = 0.2;
-/// A magnitude falls below this share of its mean at reversals. The current against a constant load does not.
-const NEAR_ZERO: f64 = 0.1;
 
 pub fn unsigned(run: &RunTable, blocks: &[Block]) -> Option<String> {
     if run.kind() != Kind::Friction {
@@ -16,7 +12,7 @@ pub fn unsigned(run: &RunTable, blocks: &[Block]) -> Option<String> {
     let (position, current) = (run.column("motor_position_rad")?, run.column("motor_current_a")?);
     let mean = current.iter().sum::<f64>() / current.len() as f64;
     let least = current.iter().copied().fold(f64::INFINITY, f64::min);
-    if !(0.0..NEAR_ZERO * mean).contains(&least) {
+    if !(0.0..MAGNITUDE_DIP * mean).contains(&least) {
         return None;
     }
     let of_block = |(block, _): &Block| {
@@ -25,7 +21,7 @@ pub fn unsigned(run: &RunTable, blocks: &[Block]) -> Option<String> {
     };
     let work = blocks.iter().map(of_block);
     let (net, both) = work.fold((0.0, 0.0), |(net, both), work| (net + work, both + work.abs()));
-    (net.abs() < CANCELS * both).then(|| {
+    (net.abs() < CANCELLED_WORK * both).then(|| {
         "motor_current_a is never negative, but as large in one direction of motion as in the other, as a magnitude: \
          export it with its sign"
             .to_owned()

@@ -1,5 +1,6 @@
 //! Rows of a trajectory for one filter corner, with the nuisance columns of every model.
 
+use crate::effects::friction::{direction_offset, load_transmission, signal_delay};
 use crate::linear::basis::dot;
 use crate::preprocess::design::replicates::{Same, are_apart};
 use crate::preprocess::design::{blocks, replicates, segments};
@@ -96,10 +97,10 @@ impl Layout {
         let of = |signal| work.signals.find(signal).map(|values| self.reduce.apply(values.to_vec()));
         let mut free: Vec<Vec<f64>> = of(Signal::Velocity).into_iter().collect();
         free.push(self.slopes[0].clone());
-        free.extend(is_given("direction_offset").then(|| vec![1.0; self.target.len()]));
-        free.extend(is_given("signal_delay").then(|| self.slopes[1].clone()));
+        free.extend(is_given(direction_offset::ID).then(|| vec![1.0; self.target.len()]));
+        free.extend(is_given(signal_delay::ID).then(|| self.slopes[1].clone()));
         let mut torque = self.target.clone();
-        if let Some(load) = of(Signal::Load).filter(|_| is_given("load_transmission")) {
+        if let Some(load) = of(Signal::Load).filter(|_| is_given(load_transmission::ID)) {
             torque.iter_mut().zip(load).for_each(|(torque, load)| *torque -= load);
         }
         bristles::weights(&self.states, &free, &torque)

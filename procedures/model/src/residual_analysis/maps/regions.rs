@@ -1,5 +1,6 @@
 //! The worst regions of the maps, as sentences with figures.
 
+use crate::effects::friction::coulomb;
 use crate::report::diagnosis::NoiseFloor;
 use crate::report::fit::Fit;
 use crate::report::maps::Region;
@@ -33,7 +34,7 @@ impl ReferenceMagnitude {
 
 /// Coulomb friction if the model has it, otherwise the noise floor.
 pub fn reference(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<ReferenceMagnitude> {
-    let coulomb = fit.parameters.iter().find(|p| p.effect == "coulomb" && p.value > 0.0);
+    let coulomb = fit.parameters.iter().find(|p| p.effect == coulomb::ID && p.value > 0.0);
     let coulomb = coulomb.map(|p| ReferenceMagnitude { value: p.value, what: "the Coulomb friction" });
     coulomb.or_else(|| {
         let value = floor?.rms.filter(|rms| *rms > 0.0)?;
