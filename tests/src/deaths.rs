@@ -179,10 +179,10 @@ pub fn deaths(rounds: usize, say: &dyn Fn(&str)) -> Vec<Outcome> {
     lab.start();
     type Death = fn(&mut Lab, &mut Outcome);
     let all: [(&str, Death); 5] = [
-        ("kill -9 of the server in mid-run", server_dies),
-        ("kill -9 of the worker in mid-run", worker_dies),
-        ("kill -9 of both in mid-run", both_die),
-        ("SIGTERM with a held database", terminated_while_held),
+        ("kill -9 of the server during a run", server_dies),
+        ("kill -9 of the worker during a run", worker_dies),
+        ("kill -9 of both during a run", both_die),
+        ("SIGTERM during a run with a locked database", terminated_while_held),
         ("a worker killed five times in a row", |lab, outcome| workers_die_in_a_row(lab, 5, outcome)),
     ];
     let make = |(name, death): (&str, Death)| {

@@ -36,12 +36,12 @@ impl Outcome {
 
     pub fn doubled(&mut self, what: String) {
         self.doubled += 1;
-        self.broken.push(format!("doubled: {what}"));
+        self.broken.push(format!("duplicated: {what}"));
     }
 
     pub fn half_done(&mut self, what: String) {
         self.half_done += 1;
-        self.broken.push(format!("half done: {what}"));
+        self.broken.push(format!("incomplete: {what}"));
     }
 
     pub fn stopped_after(&mut self, latency: Duration) {
@@ -65,7 +65,8 @@ impl Outcome {
 /// As Markdown, followed by the broken guarantees.
 pub fn table(outcomes: &[Outcome]) -> String {
     let mut text = String::from(
-        "| scenario | faults tried | acknowledged | lost | doubled | half done | slowest stop | longest control silence |\n\
+        "| scenario | faults | acknowledged | lost | duplicated | incomplete | slowest stop | longest control pause | \
+         lateness of a sleeping thread |\n\
          | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
     );
     for one in outcomes {

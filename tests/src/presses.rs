@@ -11,7 +11,7 @@ use std::time::Duration;
 /// In sequence, `count` clients press the stop and reset their connection within 1 ms. Each complete request must be in
 /// the safety record with the name of its sender, and the bench must be stopped.
 pub fn hang_ups(count: usize, random: &mut ChaCha8Rng) -> Outcome {
-    let mut outcome = Outcome::new("press, and hang up within 1 ms");
+    let mut outcome = Outcome::new("stop request, disconnected within 1 ms");
     let mut lab = Lab::new(None);
     lab.start();
     for number in 0..count {

@@ -39,7 +39,7 @@ impl Trouble {
 
     pub fn name(self) -> &'static str {
         match self {
-            Trouble::Quiet => "quiet store",
+            Trouble::Quiet => "store without load",
             Trouble::DatabaseHeld => "database locked by another program",
             Trouble::SlowSync => "3 s for each fsync",
             Trouble::FullDisk => "full disk",

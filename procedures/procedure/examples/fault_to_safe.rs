@@ -35,7 +35,7 @@ impl Recorder for Watch {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    println!("| what | given up after | drive told | brake told |\n| --- | --- | --- | --- |");
+    println!("| what | timeout after | first command to drive | first command to brake |\n| --- | --- | --- | --- |");
     for instrument in MockInstrument::JOINT_BENCH {
         let [given_up_s, drive_s, brake_s] = strike(instrument)?;
         println!(

@@ -199,7 +199,7 @@ impl Table {
     }
 
     fn print(&self) {
-        println!("| what | measured | bar |\n| --- | --- | --- |");
+        println!("| what | measured | required |\n| --- | --- | --- |");
         for [what, value, bar] in &self.0 {
             println!("| {what} | {value} | {bar} |");
         }

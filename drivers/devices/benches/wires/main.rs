@@ -23,7 +23,7 @@ const BITS_OF_A_BYTE: f64 = 10.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let stream_s = std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(600.0);
-    println!("| what | measured | bar |\n| --- | --- | --- |");
+    println!("| what | measured | required |\n| --- | --- | --- |");
 
     // Alternating, so that other load of the machine affects both equally.
     let (path, _slave) = raw::responder();

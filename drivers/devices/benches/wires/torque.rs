@@ -63,7 +63,7 @@ pub fn stream(duration_s: f64) -> Result<(), Box<dyn Error>> {
     let times = duration_s / began.elapsed().as_secs_f64();
     row(
         &format!("torque stream of 1,000 samples a second over {duration_s:.0} s of the bench: lost"),
-        format!("{lost} of {samples}, beside {readings} readings of the joint"),
+        format!("{lost} of {samples}, in parallel with {readings} readings of the joint"),
         "0",
     );
     row("its skew to the joint's samples is known to, median", format!("±{:.2} ms", share(0.5)), "");

@@ -56,8 +56,8 @@ pub fn measure(rows: usize) {
     if let Some((_, errors)) = &scipy {
         assert_eq!(best_of(errors), HIDDEN);
     }
-    let what = format!("{CANDIDATES} candidates ranked by held-out error over {BLOCKS} blocks");
-    line(&what, here_s, "SciPy, each refitted, no held-out error", scipy.map(|b| b.0), 80.0);
+    let what = format!("{CANDIDATES} candidates ranked by validation error over {BLOCKS} blocks");
+    line(&what, here_s, "SciPy, each refitted, no validation error", scipy.map(|b| b.0), 80.0);
 
     let (here_s, _) = least_s(3, || {
         let each = each();

@@ -12,7 +12,7 @@ use std::time::Instant;
 
 fn main() {
     let rows = std::env::args().find_map(|a| a.parse().ok()).unwrap_or(1_000_000);
-    println!("| what | here | beside it | ratio | bar |\n| --- | --- | --- | --- | --- |");
+    println!("| what | here | compared with | ratio | required |\n| --- | --- | --- | --- | --- |");
     linear::measure(rows);
     stribeck::measure(rows);
     lugre::measure(rows);

@@ -11,7 +11,7 @@ type Judged = (&'static str, String, bool);
 
 pub fn measure(data: &Path, asked: &Asked) -> Result<(), Box<dyn Error>> {
     println!("\nMeasurements made by others\n");
-    println!("| recording | named first (tied with) | added in the end | held-out error | asked | found | as asked |");
+    println!("| recording | named first (tied with) | added in the end | validation error | required | found | met |");
     println!("|{}", " --- |".repeat(7));
     for folder in [EMPS, BAM].into_iter().chain(ODRIVE).chain([PLACID, KR300]) {
         if !data.join(folder).is_dir() {
@@ -86,7 +86,7 @@ fn bam(named: &[Suggestion], [before, after]: [f64; 2]) -> Judged {
     let less = 1.0 - after / before;
     let squared = 1.0 - (after / before).powi(2);
     (
-        "friction that depends on the load; held-out error −30 %",
+        "friction that depends on the load; validation error −30 %",
         format!("−{:.0} % in RMS, −{:.0} % in squares", 100.0 * less, 100.0 * squared),
         depends_on_load && less >= 0.3,
     )

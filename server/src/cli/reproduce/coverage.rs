@@ -221,7 +221,7 @@ pub fn tables(judged: &[JudgedRow]) -> String {
     let count = |state| judged.iter().filter(|one| one.state == state).count();
     let [works, partly, missing] = [State::Works, State::Partly, State::Missing].map(count);
     let mut text = format!(
-        "## Rows of the documents\n\nEvery system, instrument, procedure, table, model and effect of the documents. A row *works* if all that shows it holds: a figure in at least 90 % of the seeds, a run on the bench of the first seed that is identified, or inconclusive with an interval of each named quantity, an instrument that answers to its driver, an effect of the library, a test of the project. A figure without interval holds if the values of the seeds enclose that of the document. Intervals of runs are in brackets.\n\nOf {} rows {works} work, {partly} work partly, {missing} are missing.\n",
+        "## Rows of the documents\n\nEvery system, instrument, procedure, table, model and effect of the documents. A row *works* if all its evidence holds: a figure in at least 90 % of the seeds; a run on the bench of the first seed that is identified, or inconclusive with an interval of each named quantity; an instrument that responds to its driver; an effect of the library; a test of the project. A figure without interval holds if the values of the seeds enclose that of the document. Intervals of runs are in brackets.\n\nOf {} rows {works} work, {partly} work partly, {missing} are missing.\n",
         judged.len()
     );
     for section in judged.chunk_by(|a, b| a.row.section == b.row.section) {

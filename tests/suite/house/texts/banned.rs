@@ -86,8 +86,11 @@ const BANNED: [&str; 82] = [
     "would have it",
 ];
 
-/// Longer sentences are hard to read.
-const MOST_WORDS: usize = 25;
+/// Longer sentences of the program are hard to read.
+pub const MOST_WORDS: usize = 25;
+
+/// For documents, whose sentences have a context.
+pub const MOST_WORDS_OF_DOCUMENTS: usize = 30;
 
 /// The first banned phrase in a text.
 pub fn banned(text: &str) -> Option<&'static str> {
@@ -95,9 +98,10 @@ pub fn banned(text: &str) -> Option<&'static str> {
     BANNED.into_iter().find(|phrase| spoken.contains(&format!(" {phrase} ")))
 }
 
-pub fn long_sentences(text: &str) -> Vec<String> {
+/// The sentences with more words than the limit.
+pub fn long_sentences(text: &str, most_words: usize) -> Vec<String> {
     let ended = text.replace(": ", ". ").replace("; ", ". ");
-    ended.split(". ").filter(|sentence| words(sentence).len() > MOST_WORDS).map(str::to_owned).collect()
+    ended.split(". ").filter(|sentence| words(sentence).len() > most_words).map(str::to_owned).collect()
 }
 
 /// In lower case, without code in backticks and without argument names in braces, which a person does not see.
@@ -127,6 +131,6 @@ fn phrases_are_found_as_words_and_not_in_names_of_arguments_or_code() {
     assert_eq!(banned("The error held-out falls."), Some("held out"));
     assert_eq!(banned("Tells the error of a model"), Some("tells"));
     assert_eq!(banned("{told}; `--leaves` and a teller, {beside}"), None);
-    assert_eq!(long_sentences(&"word ".repeat(26)).len(), 1);
-    assert_eq!(long_sentences(&format!("{0}. {0}", "word ".repeat(25))).len(), 0);
+    assert_eq!(long_sentences(&"word ".repeat(26), 25).len(), 1);
+    assert_eq!(long_sentences(&format!("{0}. {0}", "word ".repeat(25)), 25).len(), 0);
 }

@@ -1,13 +1,14 @@
 //! Every text for users is standard English (docs/glossary.md): command line help, procedures, effects, API
-//! description, and strings for results, events and errors.
+//! description, strings for results, events and errors, and the documents.
 
 mod banned;
 mod dashboard;
+mod documents;
 mod literals;
 
 use super::root;
 use crate::program::{run, stdout};
-use banned::{banned, long_sentences};
+use banned::{MOST_WORDS, MOST_WORDS_OF_DOCUMENTS, banned, long_sentences};
 use jointbench_instrument::Kind;
 use jointbench_model::effects;
 use serde_json::Value;
@@ -44,12 +45,13 @@ fn assert_plain(texts: impl IntoIterator<Item = Text>, least: usize) {
     assert!(wrong.is_empty(), "{} texts with words that docs/glossary.md replaces:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-fn assert_short(texts: impl IntoIterator<Item = Text>) {
+fn assert_short(texts: impl IntoIterator<Item = Text>, most_words: usize) {
     let long = |(place, text): Text| {
-        long_sentences(&text).into_iter().map(move |sentence| format!("{place}: {sentence}")).collect::<Vec<_>>()
+        let sentences = long_sentences(&text, most_words).into_iter();
+        sentences.map(|sentence| format!("{place}: {sentence}")).collect::<Vec<_>>()
     };
     let wrong: Vec<String> = texts.into_iter().flat_map(long).collect();
-    assert!(wrong.is_empty(), "{} sentences are too long:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(wrong.is_empty(), "{} sentences are longer than {most_words} words:\n{}", wrong.len(), wrong.join("\n"));
 }
 
 /// The names of the subcommands in a help text.
@@ -116,14 +118,14 @@ fn the_help_of_every_command_is_standard_english() {
 #[test]
 fn procedures_and_their_parameters_are_standard_english() {
     let texts = procedures();
-    assert_short(texts.clone());
+    assert_short(texts.clone(), MOST_WORDS);
     assert_plain(texts, 150);
 }
 
 #[test]
 fn effects_are_standard_english_and_cite_what_is_published() {
     let texts = library();
-    assert_short(texts.iter().filter(|(place, _)| !place.ends_with("formula")).cloned());
+    assert_short(texts.iter().filter(|(place, _)| !place.ends_with("formula")).cloned(), MOST_WORDS);
     assert_plain(texts, 200);
 }
 
@@ -143,4 +145,15 @@ fn strings_of_the_sources_are_standard_english() {
 #[test]
 fn the_dashboard_is_standard_english() {
     assert_plain(dashboard::under(&root(), Path::new("web/app")), 500);
+}
+
+#[test]
+fn the_documents_are_standard_english() {
+    let (mut prose, mut rows) = (Vec::new(), Vec::new());
+    for (file, block) in documents::under(&root()) {
+        let kind = if block.is_table_row { &mut rows } else { &mut prose };
+        kind.push((format!("{file}:{}", block.line), block.text));
+    }
+    assert_short(prose.clone(), MOST_WORDS_OF_DOCUMENTS);
+    assert_plain([prose, rows].concat(), 1000);
 }
