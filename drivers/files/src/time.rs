@@ -53,7 +53,7 @@ pub(crate) fn settle(
             let message = "the table has a time of its own".to_owned();
             return Err(in_file(FileFault::Choice { message, options: vec![time_from_rate(hz)] }));
         }
-        (TimeFrom::Column, None, Some(hz)) => from_rate(table, hz, "sample_rate_hz of the facts"),
+        (TimeFrom::Column, None, Some(hz)) => from_rate(table, hz, "sample_rate_hz of the meta file"),
         (TimeFrom::Column | TimeFrom::Spread, None, _) => return Ok(Vec::new()),
         (TimeFrom::Spread, Some(order), _) => spread(table, &order),
         (TimeFrom::Column, Some(_), _) | (TimeFrom::OperatingPoints, ..) => {}
@@ -147,7 +147,7 @@ fn open_unit(values: &[f64], rate_hz: Option<f64>) -> Result<(&'static str, Stri
     if let Some(rate) = rate_hz
         && let Some((name, _)) = UNITS.iter().find(|(_, factor)| (step * factor * rate - 1.0).abs() < 0.2)
     {
-        return Ok((name, format!("as sample_rate_hz of the facts is {rate}")));
+        return Ok((name, format!("as sample_rate_hz of the meta file is {rate}")));
     }
     let is_epoch =
         |(_, factor): &&(&str, f64)| EPOCH_S.contains(&(first * factor)) && (1e-6..60.0).contains(&(step * factor));

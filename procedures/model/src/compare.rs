@@ -3,6 +3,7 @@
 use crate::fit::evaluate;
 use crate::report::comparison::{Comparison, ParameterPair, WiderInterval};
 use crate::report::fit::{Fit, Parameter};
+use crate::thresholds::{FEWER_ROWS, WIDER_INTERVAL};
 use crate::{ModelError, words};
 use jointbench_instrument::RunTable;
 
@@ -51,11 +52,6 @@ fn pair(first: Option<&Parameter>, second: Option<&Parameter>) -> ParameterPair 
     ParameterPair { effect, name, unit, first: first.cloned(), second: second.cloned(), differ, wider: None }
 }
 
-/// Ratio of two intervals from which on it is reported.
-const WIDER: f64 = 1.5;
-/// A ratio of rows or errors below this is a reason for a wider interval.
-const FEWER: f64 = 0.8;
-
 fn wider(fits: [&Fit; 2], pair: &ParameterPair) -> Option<WiderInterval> {
     let width = |p: &Parameter| p.ci95[1] - p.ci95[0];
     let times = width(pair.second.as_ref()?) / width(pair.first.as_ref()?);
@@ -64,7 +60,7 @@ fn wider(fits: [&Fit; 2], pair: &ParameterPair) -> Option<WiderInterval> {
     }
     let (second, times) = (times > 1.0, times.max(1.0 / times));
     let (wide, narrow) = (fits[usize::from(second)], fits[usize::from(!second)]);
-    (times > WIDER).then(|| WiderInterval { second, times, why: why_wider(wide, narrow, pair) })
+    (times > WIDER_INTERVAL).then(|| WiderInterval { second, times, why: why_wider(wide, narrow, pair) })
 }
 
 /// The first reason that the fits themselves give.
@@ -85,10 +81,10 @@ fn why_wider(wide: &Fit, narrow: &Fit, pair: &ParameterPair) -> String {
         );
     }
     let rows = [wide, narrow].map(|fit| fit.preparation.rows);
-    if (rows[0] as f64) < FEWER * rows[1] as f64 {
+    if (rows[0] as f64) < FEWER_ROWS * rows[1] as f64 {
         return format!("fewer samples, {} rows of the fit instead of {}", rows[0], rows[1]);
     }
-    if narrow.rms < FEWER * wide.rms {
+    if narrow.rms < FEWER_ROWS * wide.rms {
         let [more, less] = [wide, narrow].map(|fit| words::figure(fit.rms, &fit.unit));
         return format!("more is left unexplained, {more} instead of {less}");
     }

@@ -136,6 +136,39 @@ thresholds! {
 }
 
 thresholds! {
+    /// Thresholds of the signals, in the order of the documents: which rows are compared, and which effects a run can show.
+    SIGNALS:
+    SETTLED_SHARE = 0.04, "fraction of size", "speed and load of a steady state deviate less from their median", "`--test steps`";
+    KEPT_SHARE = 0.2, "fraction of speed", "the halves of a steady state differ less, in addition to their scatter", "`--test steps`";
+    OSCILLATION = NEARLY_ALL, "correlation", "speeds without a common sample correlate so much where the motion itself oscillates", "unit tests of `residual_acceleration`";
+    SAME_MOTION = 0.02, "fraction of variance", "the inputs of two repeats differ by less", "`--test repeats`";
+    SAME_LEVEL = 0.03, "fraction of set point", "equal set points, loads and states of a hysteresis differ by less; set points share a bin of a map", "`--test repeats`";
+    PAIRS_EACH_ROW = 0.25, "pairs", "with fewer pairs for each row, repeats are compared by phase", "`--test repeats`";
+    SAME_ANGLE = 0.2, "fraction of RMS", "angles of repeats that differ by more, relative to unrelated angles, are unrelated", "`--test repeats`";
+    DWELL_CHANGE = 0.01, "fraction of usual step", "the current of a dwell changes by less", "`--test iron`";
+    DWELL_NOISES = 5.0, "median changes", "or by less than this", "`--test iron`";
+    HISTORY_SHARE = TENTH, "fraction of squared error", "an unknown initial state of the hysteresis explains so much", "`--test past`";
+    GRAVITY_OWN_SHARE = 0.01, "fraction of squared column", "motion and measured load leave so much of a wave over the link angle", "`--test poses`";
+    GRAVITY_SHARE = 0.02, "partial R²", "such a wave explains so much: gravity that is not measured", "`--test poses`";
+    AT_REST = 1e-3, "fraction of fastest speed", "a slower operating point is at rest", "`--test operating_points`";
+    LOAD_OF_DRIVE = 0.2, "fraction of RMS of motor torque", "a smaller load is the noise of its sensor", "`--test measured`";
+    LOADED_ROWS = 0.05, "fraction of rows", "a load that is larger in so many rows is a load", "`--test measured`";
+    COGGING_TURN = 0.33, "turns", "least covered part of a turn for a wave over the motor angle", "`evaluate --part hidden`";
+    RIPPLE_PERIOD = 0.8, "periods", "least covered part of the longest wave over the link angle, where samples are judged", "`evaluate FOLDER`";
+    FOLLOWED_ROWS = 0.02, "fraction of rows", "the filter passes the highest order of an angle in so many rows", "`evaluate FOLDER`";
+    DRIFT_START = TENTH, "fraction of run", "earliest time constant of a drift", "`evaluate --part hidden`";
+    SEVERAL_SPEEDS = 1.2, "ratio", "speeds of a brake with a smaller ratio are one", "`evaluate --part hidden`";
+    ORDERS_APART = 2.0, "standard errors", "two orders of a wave are distinguished where their losses differ by more", "normal distribution, 5 %";
+    CHANGEPOINT_ERRORS = 4.0, "standard errors", "changes of an offset with a larger excess kurtosis are events and no random walk", "`--test repeats`";
+    NO_CURRENT = 0.02, "fraction of largest current", "a smaller current of a brake is zero", "`--test iron`";
+    ELEMENT_WEIGHT = 0.05, "fraction of Coulomb friction", "a bristle with less weight is not stated", "presentation";
+    DRIVE_AXIS = NEARLY_ALL, "fraction", "the map over the motor torque, which follows from the motion, is ranked by this fraction of what it removes", "presentation";
+    TIME_AXIS = NEARLY_ALL, "correlation", "an axis that correlates more with time is time", "presentation";
+    WIDER_INTERVAL = 1.5, "ratio", "an interval that is so much wider in a comparison is stated", "presentation";
+    FEWER_ROWS = 0.8, "ratio", "and fewer rows, or a smaller error, are the reason", "presentation";
+}
+
+thresholds! {
     /// Thresholds of the data checks, in the order of the documents: they decide on a warning or a refusal, never on an effect.
     CHECKS:
     CLASH_RATIO = 1.2, "ratio", "columns or facts that state the same quantity differ by less: rounding, filters, delay, torsion", "unit tests of `unit_mismatch` and `metadata`";
@@ -149,7 +182,7 @@ thresholds! {
     COMPUTED_COLUMN = 1e-5, "fraction of RMS", "a load that equals a multiple of the current to this fraction was computed from it", "digits of a text file";
     DRIVEN_WORK = HALF, "fraction of work", "more work against the motion in both directions is a wrong sign", "unit tests of `unit_mismatch`";
     NOISE_BLOCKS = 40.0, "blocks", "fewer blocks do not show that a current is white noise", "unit tests of `unit_mismatch`";
-    NOISE_ERRORS = 3.0, "standard errors", "correlation of white noise", "normal distribution, 0.3 %";
+    NOISE_ERRORS = 3.0, "standard errors", "what noise hardly ever reaches by chance", "normal distribution, 0.3 %";
     TORQUE_RATIO = 2.0, "ratio", "motor and link torque differ by less: efficiency of the gear, friction under load", "unit tests of `torque_sign`";
     SLIPPED_IN_COMMON = MOST, "fraction of variance", "the two torques have so much in common where a unit or sign is wrong; the rest is friction", "unit tests of `torque_sign`";
     LOAD_SHARE = 0.25, "fraction of RMS", "so much of the torque varies at steady speed: a load", "unit tests of `torque_sign`";
@@ -174,8 +207,8 @@ thresholds! {
     HELD_IN_COMMON = HALF, "fraction of variance", "the twist of a clamped joint has so much in common with the torque", "`field-cases`";
 }
 
-/// The tables of docs/diagnosis.md: levels, thresholds of the decision, and those of the data checks.
-pub fn tables() -> [String; 3] {
+/// The tables of docs/diagnosis.md: levels, thresholds of the decision, of the signals, and of the data checks.
+pub fn tables() -> [String; 4] {
     let level = |l: &Level| format!("| {} | {} | {} |\n", l.name, l.value, l.meaning);
     let levels: String = LEVELS.iter().map(level).collect();
     let row = |t: &Threshold| {
@@ -188,7 +221,7 @@ pub fn tables() -> [String; 3] {
             "| threshold | value | level | unit | decides | calibrated on |\n| --- | --- | --- | --- | --- | --- |\n{rows}"
         )
     };
-    [format!("| level | value | means |\n| --- | --- | --- |\n{levels}"), table(ALL), table(CHECKS)]
+    [format!("| level | value | means |\n| --- | --- | --- |\n{levels}"), table(ALL), table(SIGNALS), table(CHECKS)]
 }
 
 #[cfg(test)]
@@ -206,7 +239,7 @@ mod tests {
     #[test]
     fn no_two_thresholds_share_a_name() {
         let mut names: Vec<&str> =
-            ALL.iter().chain(CHECKS).map(|t| t.name).chain(LEVELS.iter().map(|l| l.name)).collect();
+            ALL.iter().chain(SIGNALS).chain(CHECKS).map(|t| t.name).chain(LEVELS.iter().map(|l| l.name)).collect();
         names.sort_unstable();
         assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
     }

@@ -5,6 +5,7 @@
 
 use crate::signal::{Signal, Signals};
 use crate::stats::summary::range;
+use crate::thresholds::{LOAD_OF_DRIVE, LOADED_ROWS};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -116,12 +117,10 @@ impl View {
 
     /// Whether the link carries a load: a load that is small relative to the motor torque is sensor noise.
     pub fn bears_load(&self) -> bool {
-        const NOTHING: f64 = 0.2;
-        const NOW_AND_THEN: f64 = 0.05;
         let load = self.get(Signal::Load);
         let square: f64 = self.find(Signal::Drive).unwrap_or_default().iter().map(|v| v * v).sum();
-        let least = NOTHING * (square / load.len().max(1) as f64).sqrt();
-        load.iter().filter(|load| load.abs() > least).count() as f64 > NOW_AND_THEN * load.len() as f64
+        let least = LOAD_OF_DRIVE * (square / load.len().max(1) as f64).sqrt();
+        load.iter().filter(|load| load.abs() > least).count() as f64 > LOADED_ROWS * load.len() as f64
     }
 
     /// Turns between the extremes of an angle.

@@ -98,7 +98,7 @@ pub async fn store_all(data: &Path, store: &Store) -> Result<(), StoreError> {
                     false => fs::rename(&path, path.with_extension(NO_PLACE)),
                 };
                 if let Err(fault) = done {
-                    tracing::warn!(file = %path.display(), %fault, "stored, but not removed");
+                    tracing::warn!(file = %path.display(), %fault, "the file remains and is read again at the next start");
                 }
             }
             Err(fault) => {

@@ -164,7 +164,7 @@ impl Lab {
         let id = record.id;
         if record.bench != bench || record.procedure != BRAKE_MODEL {
             return Err(LabError::Invalid(format!(
-                "run {id} is not a {BRAKE_MODEL} run of bench {bench}: enter such a run, or 0 for the latest"
+                "run {id} is not a {BRAKE_MODEL} run of bench {bench}: enter such a run, or 0 for the applied run (without one, the latest)"
             )));
         }
         let model: Option<BrakeModel> = self.compute(Job::BrakeModel { run: id }).await?;

@@ -28,7 +28,10 @@ struct Power {
 
 pub fn measure(asked: &Asked) -> Result<(), Box<dyn Error>> {
     println!("\nWeak effects: RMS in addition to the baseline, as a fraction of the RMS of the noise of one sample\n");
-    println!("| size | top-1 | nothing said | false extras | truth in the tie set | exact |\n|{}", " --- |".repeat(6));
+    println!(
+        "| size | first suggestion right | nothing named | wrong effects per run | truth among the confounded | exact |\n|{}",
+        " --- |".repeat(6)
+    );
     for size in [0.4, 0.2] {
         let mut power = Power::default();
         for (e, effect) in EFFECTS.iter().enumerate() {

@@ -10,6 +10,7 @@ pub use crate::effects::friction::teeth::WITH_WEIGHT;
 use crate::ModelError;
 use crate::effect::{Effect, Form, Shape, ShapeSearch};
 use crate::signal::Signal;
+use crate::thresholds::FOLLOWED_ROWS;
 use crate::view::View;
 use jointbench_instrument::Kind;
 use std::ops::RangeInclusive;
@@ -94,12 +95,11 @@ fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec
 
 /// Highest order of an angle that the filter passes in more than a fiftieth of the run.
 fn highest_followed(angle: &[f64], sample_s: f64, followed_hz: f64) -> f64 {
-    const OF_RUN: f64 = 0.02;
     let mut steps: Vec<f64> = angle.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
     if steps.is_empty() {
         return 0.0;
     }
-    let at = (OF_RUN * steps.len() as f64) as usize;
+    let at = (FOLLOWED_ROWS * steps.len() as f64) as usize;
     let slow = *steps.select_nth_unstable_by(at, f64::total_cmp).1;
     4.0 * std::f64::consts::PI * followed_hz * sample_s / slow.max(f64::MIN_POSITIVE)
 }

@@ -5,11 +5,9 @@ use crate::effects::brake::{drag, hysteresis};
 use crate::regression::linear_model::LinearModel;
 use crate::report::fit::Parameter;
 use crate::signal::{Signal, Signals};
+use crate::thresholds::NO_CURRENT;
 use crate::view::View;
 use crate::words::figure;
-
-/// A current below this share of the largest one counts as zero.
-const NONE: f64 = 0.02;
 
 /// Extends the interval of the drag to the torque of a demagnetised brake: measured before the first current, or
 /// predicted by the hysteresis effect.
@@ -43,7 +41,7 @@ pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
 fn fresh(terms: &LinearModel) -> Option<f64> {
     let view = &terms.problem.view;
     let current = view.get(Signal::Current);
-    let none = NONE * view.peak(Signal::Current);
+    let none = NO_CURRENT * view.peak(Signal::Current);
     let starts = view.starts.iter().filter(|start| start.past.is_none());
     let rows = starts.flat_map(|start| {
         let first = view.chunks.partition_point(|chunk| chunk.start < start.at);

@@ -1,10 +1,7 @@
 //! Currents in steps: during a change, the readings of current and torque and the coil current belong to different
 //! moments.
 
-/// A constant current changes between chunks by less than this share of its usual step, or by less than this multiple
-/// of its median change.
-const CHANGES: f64 = 0.01;
-const NOISE: f64 = 5.0;
+use crate::thresholds::{DWELL_CHANGE, DWELL_NOISES};
 
 /// For each chunk of `n` samples: whether the current is constant there and in a margin before and after. Empty if
 /// the current has no steps.
@@ -19,7 +16,7 @@ pub fn held(current: &[f64], n: usize) -> Vec<bool> {
     if usual == 0.0 || noise > 0.1 * usual {
         return Vec::new();
     }
-    let changes = (0..steps.len()).filter(|k| steps[*k] > (CHANGES * usual).max(NOISE * noise));
+    let changes = (0..steps.len()).filter(|k| steps[*k] > (DWELL_CHANGE * usual).max(DWELL_NOISES * noise));
     let margin = freshness(current).div_ceil(n) + 1;
     let mut held = vec![true; means.len()];
     for k in changes {

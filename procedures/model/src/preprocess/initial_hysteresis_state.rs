@@ -5,12 +5,11 @@ use crate::linear::basis::{Basis, dot};
 use crate::preprocess::Problem;
 use crate::signal::Signal;
 use crate::stats::summary::{median, range};
+use crate::thresholds::HISTORY_SHARE;
 use crate::view::Start;
 
 /// Stop operators that represent any hysteresis, evenly spaced up to half of the range; larger ones never slip.
 const STOPS: usize = 8;
-/// Least share of the squared error that the history has to explain, given any curve and hysteresis.
-const WORTH: f64 = 0.1;
 /// Number of rows for this test.
 const ROWS: usize = 2000;
 
@@ -68,7 +67,7 @@ pub fn find(problem: &mut Problem, signal: Signal) -> bool {
             let mut trial = starts.clone();
             trial[i].past = Some(past);
             let now = left(&trial);
-            if now < best && now < (1.0 - WORTH) * empty {
+            if now < best && now < (1.0 - HISTORY_SHARE) * empty {
                 (best, starts) = (now, trial);
             }
         }

@@ -4,11 +4,10 @@ use crate::hysteresis_operators;
 use crate::preprocess::Problem;
 use crate::signal::Signal;
 use crate::stats::summary::range;
+use crate::thresholds::SAME_LEVEL;
 
 /// Stop operators that represent any hysteresis, evenly spaced up to half of the range; larger ones never slip.
 const CONTACTS: usize = 8;
-/// Largest difference of their states, as a share of the largest current.
-const SAME: f64 = 0.03;
 
 /// Marks replicate pairs with different hysteresis states: a current in loops of different size has a different
 /// torque in each.
@@ -17,7 +16,7 @@ pub fn part(problem: &mut Problem) {
     let current = view.get(Signal::Current);
     let samples = view.samples.find(Signal::Current).unwrap_or_default();
     let ends = range(samples);
-    let allowed = SAME * ends.0.abs().max(ends.1.abs());
+    let allowed = SAME_LEVEL * ends.0.abs().max(ends.1.abs());
     for contact in 1..=CONTACTS {
         let reach = (ends.1 - ends.0) / 2.0 * contact as f64 / CONTACTS as f64;
         let bent = view.average(hysteresis_operators::stop(samples, reach, &view.starts));

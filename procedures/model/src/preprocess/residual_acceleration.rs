@@ -4,16 +4,13 @@
 use crate::linear::basis::dot;
 use crate::preprocess::design::segments;
 use crate::stats::summary::median;
+use crate::thresholds::{NOISE_ERRORS, OSCILLATION};
 use std::ops::Range;
 
 /// The speed at the edge of a chunk is the slope of the position over about this time [s].
 const EDGE_S: f64 = 0.004;
-/// Least correlation with neighbouring slopes that have no sample in common, if the motion itself oscillates.
-const FOLLOWS: f64 = 0.9;
 /// In fewer chunks of a stretch the correlation is accidental.
 const FEWEST: usize = 10;
-/// Slopes without a common sample are significant beyond this multiple of their scatter.
-const CLEAR: f64 = 3.0;
 
 /// Mean acceleration over every chunk. In a stretch (`group`) with oscillating motion it is computed for all chunks,
 /// in other stretches only for chunks with a significant acceleration. Otherwise it is zero, because it would be the
@@ -43,12 +40,12 @@ pub fn accelerations(
     for stretch in segments::stretches(group) {
         // An oscillation is in phase with its neighbours, or in antiphase.
         let wavers =
-            neighbours.iter().any(|b| correlation(&at_edges[stretch.clone()], &b[stretch.clone()]).abs() > FOLLOWS);
+            neighbours.iter().any(|b| correlation(&at_edges[stretch.clone()], &b[stretch.clone()]).abs() > OSCILLATION);
         if stretch.len() < FEWEST || !wavers {
             let pairs = at_edges[stretch.clone()].iter().zip(&neighbours[0][stretch.clone()]);
             let scatter = median(pairs.map(|(at, neighbours)| (*at - neighbours).abs()));
             for (at, neighbours) in at_edges[stretch.clone()].iter_mut().zip(&neighbours[0][stretch]) {
-                if at.abs().min(neighbours.abs()) <= CLEAR * scatter || at.signum() != neighbours.signum() {
+                if at.abs().min(neighbours.abs()) <= NOISE_ERRORS * scatter || at.signum() != neighbours.signum() {
                     *at = 0.0;
                 }
             }

@@ -9,6 +9,7 @@ use crate::preprocess::held_side::moves_by_twist_only;
 use crate::preprocess::{Prepared, filter, sample_s, sweeps};
 use crate::signal::{Signal, Signals};
 use crate::stats::summary::{mean, peak, range};
+use crate::thresholds::NOISE_ERRORS;
 use crate::view::Constants;
 use crate::words::figure;
 use crate::{ModelError, Options};
@@ -181,10 +182,9 @@ fn smooth_leg(values: &[f64]) -> Vec<f64> {
 
 /// Whether neighbours correlate no more than in white noise (von Neumann 1941).
 fn is_noise(left: &[f64]) -> bool {
-    const CHANCE: f64 = 3.0;
     let square: f64 = left.iter().map(|v| v * v).sum();
     let next: f64 = left.windows(2).map(|w| w[0] * w[1]).sum();
-    next <= CHANCE * square / (left.len() as f64).sqrt()
+    next <= NOISE_ERRORS * square / (left.len() as f64).sqrt()
 }
 
 /// Chebyshev polynomials of the square root of the time since the start of the stretch, which follow a fast beginning

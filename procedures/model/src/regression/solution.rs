@@ -11,6 +11,7 @@ use crate::regression::linear_model::{Linear, LinearModel, Relative};
 use crate::regression::weights::weights;
 use crate::stats::jackknife;
 use crate::stats::summary::rms;
+use crate::thresholds::NOISE_ERRORS;
 use jointbench_instrument::Kind;
 use std::sync::Arc;
 
@@ -181,8 +182,6 @@ impl Solution {
 /// The most negative of the coefficients that cannot be negative, if it is negative by chance, with its standard error. A
 /// significantly negative coefficient contradicts physics and has to be reported, so it is not held at zero.
 fn beyond(model: &LinearModel, ridge: &BlockedRidge) -> Option<(usize, f64)> {
-    /// Standard errors below zero that a few coefficients hardly ever reach by chance.
-    const CHANCE: f64 = 3.0;
     let names =
         model.terms.iter().flat_map(|term| term.form.linear.iter().map(move |name| term.effect.info().bounds(name).0));
     let coefficients = ridge.coefficients();
@@ -198,7 +197,7 @@ fn beyond(model: &LinearModel, ridge: &BlockedRidge) -> Option<(usize, f64)> {
         (at, ((groups - 1.0) / groups * square).sqrt().max(f64::MIN_POSITIVE))
     };
     let errors = |(at, error): &(usize, f64)| coefficients[*at] / error;
-    let chance = below.into_iter().map(with_error).filter(|one| errors(one) > -CHANCE);
+    let chance = below.into_iter().map(with_error).filter(|one| errors(one) > -NOISE_ERRORS);
     chance.min_by(|a, b| errors(a).total_cmp(&errors(b)))
 }
 

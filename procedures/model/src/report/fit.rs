@@ -2,6 +2,7 @@
 
 use crate::OwnEffect;
 use crate::report::setting::ParameterSetting;
+use crate::thresholds::ELEMENT_WEIGHT;
 use jointbench_instrument::{Kind, Motion};
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -170,12 +171,11 @@ impl Bristles {
     /// An equivalent single element: its form in the library and its reach, with the range of reaches that have
     /// weight.
     pub(crate) fn single(&self) -> Option<(&'static str, f64, [f64; 2])> {
-        const NONE: f64 = 0.05;
         let n = self.reaches_rad.len();
         let reach = |at: usize| self.reaches_rad.get(if at < n { at } else { at + 1 - n }).copied();
         let form = |at: usize| if at < n { "stop" } else { "dahl" };
         let best = (0..self.weights.len()).max_by(|a, b| self.weights[*a].total_cmp(&self.weights[*b]))?;
-        let ends = (0..self.weights.len()).filter(|at| self.weights[*at] > NONE).filter_map(reach);
+        let ends = (0..self.weights.len()).filter(|at| self.weights[*at] > ELEMENT_WEIGHT).filter_map(reach);
         let ends = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], r| [low.min(r), high.max(r)]);
         Some((form(best), reach(best)?, ends))
     }

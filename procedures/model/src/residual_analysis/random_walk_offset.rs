@@ -10,6 +10,7 @@ use crate::linear::basis::{Basis, dot};
 use crate::preprocess::Problem;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::signal::Signal;
+use crate::thresholds::CHANGEPOINT_ERRORS;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Tested variances of the drift, relative to the variance that is new in every block.
@@ -18,9 +19,8 @@ const RATIOS: [f64; 6] = [0.1, 0.4, 1.6, 6.4, 25.6, 102.4];
 /// Largest number of tested changepoints.
 const MOST_PLACES: usize = 200;
 
-/// Kurtosis of a normal distribution, and the significance limit above it in standard errors √(24/n).
+/// Kurtosis of a normal distribution; its standard error is √(24/n).
 const NORMAL_KURTOSIS: f64 = 3.0;
-const EVENTS: f64 = 4.0;
 
 /// Block means of a run in the order of time, with the fitted AR(1) offset.
 pub struct Ar1Offset<'t, 'p> {
@@ -183,7 +183,7 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
         let (_, news) = self.left(&Filter::new(self.memory, &self.gaps));
         let n = news.len() as f64;
         let moment = |power: i32| news.iter().map(|new| new.powi(power)).sum::<f64>() / n;
-        moment(4) / moment(2).powi(2) - NORMAL_KURTOSIS > EVENTS * (24.0 / n).sqrt()
+        moment(4) / moment(2).powi(2) - NORMAL_KURTOSIS > CHANGEPOINT_ERRORS * (24.0 / n).sqrt()
     }
 }
 

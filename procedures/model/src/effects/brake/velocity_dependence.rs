@@ -4,13 +4,11 @@ use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::effects::brake::scaled;
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
+use crate::thresholds::SEVERAL_SPEEDS;
 use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct VelocityDependence;
-
-/// Speeds with a smaller ratio count as equal.
-const SEVERAL: f64 = 1.2;
 
 static INFO: EffectInfo = EffectInfo {
     id: "velocity_dependence",
@@ -36,7 +34,7 @@ impl Effect for VelocityDependence {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         // At a single speed the effect is identical to the torque itself.
-        let several = crate::effects::speed_range(view).is_some_and(|(slow, fast)| fast > SEVERAL * slow);
+        let several = crate::effects::speed_range(view).is_some_and(|(slow, fast)| fast > SEVERAL_SPEEDS * slow);
         if !several {
             return Vec::new();
         }

@@ -3,13 +3,11 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, orders, waves};
+use crate::thresholds::COGGING_TURN;
 use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Cogging;
-
-/// Least covered share of a turn.
-const LEAST_TURNED: f64 = 1.0 / 3.0;
 
 static INFO: EffectInfo = EffectInfo {
     id: "cogging",
@@ -38,7 +36,7 @@ impl Effect for Cogging {
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let mut forms = match view.constants.followed_hz {
             Some(_) => crate::effects::harmonic_form(view, Signal::Position, 1..=40),
-            None if view.turned(Signal::Position) < LEAST_TURNED => Vec::new(),
+            None if view.turned(Signal::Position) < COGGING_TURN => Vec::new(),
             None => crate::effects::repeated_harmonic_form(view, Signal::Position, 1..=120),
         };
         forms.iter_mut().for_each(|f| f.name = crate::effects::SEVERAL_HARMONICS);

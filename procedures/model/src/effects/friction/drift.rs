@@ -3,13 +3,11 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
+use crate::thresholds::DRIFT_START;
 use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Drift;
-
-/// As a share of the run's length.
-const SOONEST: f64 = 0.1;
 
 static INFO: EffectInfo = EffectInfo {
     id: "drift",
@@ -40,7 +38,7 @@ impl Effect for Drift {
         if high <= 0.0 {
             return vec![line];
         }
-        let low = SOONEST * high;
+        let low = DRIFT_START * high;
         let shape = vec![Shape { name: "t_d", min: low, max: high, search: ShapeSearch::Smooth }];
         let grid = crate::effects::log_grid(low, high, 4).into_iter().map(|t| vec![t]).collect();
         vec![line, Form { name: "settling", linear: vec!["d_e"], shape, grid }]

@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, orders, waves};
+use crate::thresholds::RIPPLE_PERIOD;
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -34,8 +35,7 @@ impl Effect for FrictionRipple {
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         // With nuisance columns for reversals and speed, a wave of nearly one period is sufficient.
         if view.constants.followed_hz.is_some() {
-            const SEEN: f64 = 0.8;
-            let first = (SEEN / view.turns(Signal::Link)).ceil().clamp(1.0, 25.0) as u32;
+            let first = (RIPPLE_PERIOD / view.turns(Signal::Link)).ceil().clamp(1.0, 25.0) as u32;
             return crate::effects::harmonic_form(view, Signal::Link, first..=24);
         }
         let mut forms = crate::effects::repeated_harmonic_form(view, Signal::Link, 1..=60);

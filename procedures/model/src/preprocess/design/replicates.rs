@@ -5,15 +5,9 @@ use crate::preprocess::Problem;
 use crate::preprocess::design::blocks;
 use crate::signal::Signal;
 use crate::stats::summary::range;
+use crate::thresholds::{PAIRS_EACH_ROW, SAME_ANGLE, SAME_LEVEL, SAME_MOTION};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::TAU;
-
-/// Largest difference of the inputs of two repeats, as a share of their variance. Two periods of one motion differ by
-/// about as much.
-const SAME_MOTION: f64 = 0.02;
-
-/// Largest relative difference of equal set points, and of equal loads relative to the torque.
-const SAME_LEVEL: f64 = 0.03;
 
 /// A signal in which repeats must agree.
 #[derive(Debug, Clone, Copy)]
@@ -89,8 +83,6 @@ impl Input {
 
 /// Distinguished angles in a turn.
 const ANGLES: usize = 90;
-/// Least number of pairs for each row; otherwise the condition is compared by phase.
-const FEWEST: f64 = 0.25;
 
 /// Pairs of rows.
 type RowPairs = Vec<(usize, usize)>;
@@ -122,11 +114,11 @@ pub fn by_angle(
     condition.iter().for_each(|c| *rows.entry(*c).or_default() += 1.0);
     let for_each_row = |(c, pairs): (&usize, &RowPairs)| pairs.len() as f64 / rows[c];
     let mut met = of_condition(blocks::replicate_pairs(condition, &places, repeat, 0));
-    met.retain(|c, pairs| for_each_row((c, pairs)) >= FEWEST);
+    met.retain(|c, pairs| for_each_row((c, pairs)) >= PAIRS_EACH_ROW);
     let mut all = of_condition(replicate_pairs);
     let elsewhere = all.iter().filter(|(c, _)| !met.contains_key(c)).flat_map(|(_, pairs)| pairs.clone()).collect();
     all.extend(met);
-    let fewest = all.iter().map(for_each_row).fold(f64::INFINITY, f64::min).max(FEWEST);
+    let fewest = all.iter().map(for_each_row).fold(f64::INFINITY, f64::min).max(PAIRS_EACH_ROW);
     let thinned = |of: (&usize, &RowPairs)| {
         let share = fewest / for_each_row(of);
         let is_kept = |i: &usize| ((i + 1) as f64 * share).floor() > (*i as f64 * share).floor();
@@ -137,14 +129,12 @@ pub fn by_angle(
 
 /// Whether the angles of the pairs are unrelated.
 pub fn are_apart(replicate_pairs: &[(usize, usize)], link: &[f64]) -> bool {
-    /// As a share of the RMS difference of two unrelated angles.
-    const SHARE: f64 = 0.2;
     let apart = |(a, b): &(usize, usize)| {
         let d = link[*a] - link[*b];
         (d - (d / TAU).round() * TAU).powi(2)
     };
     let square = replicate_pairs.iter().map(apart).sum::<f64>() / replicate_pairs.len().max(1) as f64;
-    square > SHARE * SHARE * TAU * TAU / 12.0
+    square > SAME_ANGLE * SAME_ANGLE * TAU * TAU / 12.0
 }
 
 /// Keeps the replicate pairs of stretches (`of` numbers them for each row) whose inputs agree. If none is left,

@@ -6,14 +6,13 @@ use crate::preprocess::{Prepared, unknown_columns};
 use crate::report::fit::Preparation;
 use crate::signal::{Signal, Signals};
 use crate::stats::summary::peak;
+use crate::thresholds::AT_REST;
 use crate::view::Constants;
 use crate::{ModelError, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
 
 /// Fewer points cannot separate two effects.
 const FEWEST: usize = 12;
-/// A point below this share of the fastest speed counts as at rest.
-const AT_REST: f64 = 1e-3;
 
 /// Rows of equal speed and load are replicates of one condition. Points at rest are omitted, because friction at rest
 /// is any torque up to breakaway. The table has no angles, ramps and reversals.

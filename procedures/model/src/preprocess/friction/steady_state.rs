@@ -11,6 +11,7 @@ use crate::preprocess::{Prepared, Problem};
 use crate::report::fit::Preparation;
 use crate::signal::Signal;
 use crate::stats::summary::{mean, median, peak};
+use crate::thresholds::{KEPT_SHARE, SETTLED_SHARE};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
 use rayon::prelude::*;
@@ -25,10 +26,6 @@ const MOST_ROWS: usize = 12_000;
 const REACH: usize = 3;
 /// Largest number of rows around reversals; of a longer run only some pairs of segments are used.
 const MOST_MOVING_ROWS: usize = 8_000;
-/// Largest deviation of speed and load from the median of a steady state, as a share of their size.
-const SETTLED_SHARE: f64 = 0.04;
-/// Largest change of the speed between the halves of a steady state, as a share, in addition to its scatter.
-const KEPT_SHARE: f64 = 0.2;
 /// Least ratio of speed to its scatter. Half of that is sufficient if the speed oscillates about its median: a slow
 /// step over gear teeth.
 const STEADY: f64 = 5.0;

@@ -2,14 +2,10 @@
 
 use crate::linear::basis::{Basis, dot};
 use crate::signal::{Signal, Signals};
+use crate::thresholds::{GRAVITY_OWN_SHARE, GRAVITY_SHARE};
 
 /// Largest number of evaluated points.
 const MOST: usize = 4000;
-/// Least tolerance of a wave over the link angle, given motion and measured load. An arm whose sensor measures its
-/// own weight has no other gravity torque.
-const OWN_SHARE: f64 = 0.01;
-/// Least partial R² of the wave.
-const LEAST_SHARE: f64 = 0.02;
 
 /// Gravity torque in addition to the measured load, as coefficients of cos and sin of the link angle [Nm]. The gear
 /// teeth carry it too if the sensor is mounted beyond the weight.
@@ -27,12 +23,12 @@ pub fn unmeasured(signals: &Signals, torque_nm: &[f64]) -> Option<[f64; 2]> {
     let waves: [Vec<f64>; 2] = [link.iter().map(|a| a.cos()).collect(), link.iter().map(|a| a.sin()).collect()];
     let left = basis.rest(&thin(torque_nm));
     let own = waves.each_ref().map(|wave| basis.push(wave));
-    if own.iter().any(|share| *share < OWN_SHARE) {
+    if own.iter().any(|share| *share < GRAVITY_OWN_SHARE) {
         return None;
     }
     let [.., c, s] = basis.vectors() else { return None };
     let along = [dot(c, &left), dot(s, &left)];
-    if along.iter().map(|a| a * a).sum::<f64>() < LEAST_SHARE * dot(&left, &left) {
+    if along.iter().map(|a| a * a).sum::<f64>() < GRAVITY_SHARE * dot(&left, &left) {
         return None;
     }
     // Converts basis coefficients to wave coefficients: the second basis vector contains a part of the first wave.

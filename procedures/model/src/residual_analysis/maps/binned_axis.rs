@@ -3,6 +3,7 @@
 use crate::preprocess::{Prepared, Problem};
 use crate::signal::Signal;
 use crate::stats::summary::range;
+use crate::thresholds::{SAME_LEVEL, TIME_AXIS};
 use jointbench_instrument::Kind;
 use std::f64::consts::TAU;
 
@@ -29,9 +30,6 @@ pub struct Bin {
 
 const BINS: usize = 24;
 const ANGLE_BINS: usize = 60;
-
-/// Set points that differ by less than this relative amount share a bin.
-const SAME_LEVEL: f64 = 0.03;
 
 /// Every axis of the run whose quantity changes. Of two axes with the same values only the first is shown.
 pub fn scales(prepared: &Prepared) -> Vec<BinnedAxis> {
@@ -147,7 +145,6 @@ impl BinnedAxis {
 
     /// Whether the axis is the time, or correlates with it nearly perfectly.
     pub fn correlates_with_time(&self) -> bool {
-        const NEARLY: f64 = 0.9;
         let middle = 0.5 * (self.bin.len() as f64 - 1.0);
         let mean = self.bin.iter().sum::<usize>() as f64 / self.bin.len() as f64;
         let (mut tt, mut tb, mut bb) = (0.0, 0.0, 0.0);
@@ -155,7 +152,7 @@ impl BinnedAxis {
             let (t, b) = (row as f64 - middle, *bin as f64 - mean);
             (tt, tb, bb) = (tt + t * t, tb + t * b, bb + b * b);
         }
-        tb * tb > NEARLY * NEARLY * tt * bb
+        tb * tb > TIME_AXIS * TIME_AXIS * tt * bb
     }
 
     fn says_the_same(&self, other: &Self) -> bool {

@@ -4,6 +4,7 @@ use crate::linear::basis::dot;
 use crate::preprocess::Problem;
 use crate::residual_analysis::maps::binned_axis::BinnedAxis;
 use crate::stats::student;
+use crate::thresholds::DRIVE_AXIS;
 
 /// Rows sorted into the cells of one axis, or of two.
 #[derive(Debug, Clone)]
@@ -51,9 +52,8 @@ impl Map {
 
     /// Ranking score of the map. The torque of the drive follows from the motion, so that its map is ranked lower.
     pub fn ranking_score(&self) -> f64 {
-        const FOLLOWS: f64 = 0.9;
         let is_drive = std::iter::once(&self.x).chain(&self.y).any(|s| s.name == "motor_torque_nm");
-        if is_drive { FOLLOWS * self.removable } else { self.removable }
+        if is_drive { DRIVE_AXIS * self.removable } else { self.removable }
     }
 }
 
