@@ -27,7 +27,7 @@ class Applies(BaseModel):
 
     can: bool
     what: str
-    """Effect of applying it, or the reason why it cannot be applied."""
+    """Effect of applying it, or the reason why it cannot be applied; empty if no procedure uses the result."""
 
 
 ArchiveContent = TypeAliasType("ArchiveContent", Literal['means', 'samples'])

@@ -21,7 +21,7 @@ const USES: [(&str, &str); 3] = [
     (FRICTION, "friction compensation on this bench uses these values by default"),
 ];
 
-/// The use of a procedure's result after it is applied, or why it cannot be applied.
+/// The use of a procedure's result after it is applied, or why it cannot be applied; empty if no procedure uses it.
 pub(super) fn applies(procedure: &str) -> Applies {
     match USES.iter().find(|(id, _)| *id == procedure) {
         Some((_, what)) => Applies { can: true, what: (*what).to_owned() },
@@ -39,7 +39,7 @@ fn why_not(procedure: &str) -> &'static str {
             "Cannot be applied as a whole: run friction or torque_sensor_zero separately and apply its \
                              result."
         }
-        _ => "No procedure uses this result.",
+        _ => "",
     }
 }
 

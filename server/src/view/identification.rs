@@ -54,7 +54,7 @@ impl Identification {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Applies {
     pub can: bool,
-    /// Effect of applying it, or the reason why it cannot be applied.
+    /// Effect of applying it, or the reason why it cannot be applied; empty if no procedure uses the result.
     pub what: String,
 }
 

@@ -15,6 +15,11 @@ export class ApiError extends Error {
 		this.column = problem.column ?? null;
 	}
 
+	/** The samples were moved to the archive: no attempt gets them from here. */
+	get archived(): boolean {
+		return this.status === 410;
+	}
+
 	/** The daemon did not answer: the page should wait; the user has nothing to correct. */
 	get offline(): boolean {
 		return this.status === 0;
