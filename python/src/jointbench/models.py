@@ -1340,6 +1340,16 @@ class UnitChanges(BaseModel):
     unit: str
 
 
+class UnitReference(BaseModel):
+    """Whether a unit is a reference."""
+
+    model_config = ConfigDict(
+        extra='forbid',
+    )
+    reference: bool
+    """Yields and control charts exclude reference units."""
+
+
 class UnitSummary(BaseModel):
     """A unit with its results. Part, revision and batch are those of the newest run that names them."""
 
@@ -1352,6 +1362,9 @@ class UnitSummary(BaseModel):
     newest_run: int
     newest_verdict: Identified | None = None
     part: str | None = None
+    reference: bool
+    """A reference unit, which yields and control charts exclude."""
+
     revision: str | None = None
     runs: Annotated[int, Field(ge=0)]
     """Number of runs, in any state."""
@@ -2048,7 +2061,7 @@ class UnitList(BaseModel):
     """The units with the newest runs first, at most 1000."""
 
     yields: list[FirstPassYield]
-    """Of all units that match the search."""
+    """Of all units that match the search, without reference units."""
 
 
 class Autopilot(BaseModel):

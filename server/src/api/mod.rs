@@ -181,6 +181,7 @@ fn measurements() -> OpenApiRouter<Lab> {
         .routes(routes!(identifications::report))
         .routes(routes!(units::list))
         .routes(routes!(units::chart))
+        .routes(routes!(units::set_reference))
         .routes(routes!(units::changes))
         .routes(routes!(transfer::export))
         .routes(routes!(transfer::export_meta))

@@ -2,8 +2,9 @@
 
 use super::extract::{Answer, Json, Path, Query};
 use super::refusals::Refusals;
-use crate::lab::Lab;
-use crate::view::{ControlChart, UnitChanges, UnitList};
+use crate::lab::{Caller, Lab};
+use crate::view::{ControlChart, UnitChanges, UnitList, UnitReference, UnitSummary};
+use axum::Extension;
 use axum::extract::State;
 use serde::Deserialize;
 use utoipa::IntoParams;
@@ -28,11 +29,24 @@ pub async fn list(State(lab): State<Lab>, Query(query): Query<UnitQuery>) -> Ans
     }))
 }
 
+/// Marks a unit as a reference unit, which yields and control charts exclude, or ends that
+#[utoipa::path(put, path = "/units/{serial}/reference", operation_id = "set_unit_reference", tag = "runs",
+    params(("serial" = String, Path, description = "Serial number")), request_body = UnitReference,
+    responses((status = 200, description = "The unit", body = UnitSummary), Refusals))]
+pub async fn set_reference(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Path(serial): Path<String>,
+    Json(new): Json<UnitReference>,
+) -> Answer<UnitSummary> {
+    Ok(Json(lab.set_unit_reference(&serial, new.reference, &caller.name).await?))
+}
+
 #[derive(Debug, Clone, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct ControlChartQuery {
-    /// Terms as in the list of runs, such as `part:P -unit:REF1`: without the reference unit REF1.
+    /// Terms as in the list of runs, such as `part:P batch:7`. Reference units are excluded.
     pub search: String,
     /// Id of the procedure, such as `friction`.
     pub procedure: String,

@@ -6,11 +6,16 @@ use super::offline::json_out;
 use super::runs::{encoded, local};
 use super::serve::runtime;
 use super::transfer::{Target, open};
-use crate::view::{FirstPassYield, Identified, UnitList, UnitSummary, word};
+use crate::lab::LOCAL;
+use crate::view::{FirstPassYield, Identified, UnitList, UnitReference, UnitSummary, word};
 use jiff::tz::TimeZone;
 
 pub fn units(arguments: &Units) -> Done {
     let runtime = runtime()?;
+    let marked = [(&arguments.reference, true), (&arguments.no_reference, false)];
+    if let Some((serial, reference)) = marked.into_iter().find_map(|(serial, is)| Some((serial.as_ref()?, is))) {
+        return mark(&runtime, arguments, serial, reference);
+    }
     let search = arguments.search.join(" ");
     let list: UnitList = match open(&runtime, &arguments.store, false)? {
         Target::Folder(lab) => runtime.block_on(lab.units(&search))?,
@@ -38,8 +43,25 @@ pub fn units(arguments: &Units) -> Done {
     Ok(())
 }
 
-const HEAD: [&str; 10] = [
+fn mark(runtime: &tokio::runtime::Runtime, arguments: &Units, serial: &str, reference: bool) -> Done {
+    let unit: UnitSummary = match open(runtime, &arguments.store, false)? {
+        Target::Folder(lab) => runtime.block_on(lab.set_unit_reference(serial, reference, LOCAL))?,
+        Target::Daemon(client) => {
+            client.put(&format!("/units/{}/reference", encoded(serial)), &UnitReference { reference })?
+        }
+    };
+    if arguments.json {
+        return json_out(&unit);
+    }
+    let is =
+        if reference { "is a reference unit: yields and control charts exclude it" } else { "is no reference unit" };
+    println!("{} {is}", unit.serial);
+    Ok(())
+}
+
+const HEAD: [&str; 11] = [
     "unit",
+    "reference",
     "part",
     "revision",
     "batch",
@@ -52,12 +74,13 @@ const HEAD: [&str; 10] = [
 ];
 const YIELD_HEAD: [&str; 7] = ["by", "part", "revision", "batch", "procedure", "yield", "95 % interval"];
 
-fn cells(unit: &UnitSummary) -> [String; 10] {
+fn cells(unit: &UnitSummary) -> [String; 11] {
     let text = |text: &Option<String>| text.clone().unwrap_or_default();
     let verdict =
         |verdict: Option<Identified>| verdict.map(|verdict| word(verdict).replace('_', " ")).unwrap_or_default();
     [
         unit.serial.clone(),
+        if unit.reference { "yes" } else { "" }.to_owned(),
         text(&unit.part),
         text(&unit.revision),
         text(&unit.batch),

@@ -54,9 +54,11 @@ impl Lab {
 
 type Found = (UnitRunRecord, Vec<Quantity>);
 
-/// The newest complete run of each unit, in the order of the runs.
+/// The newest complete run of each unit that is no reference, in the order of the runs.
 fn newest_of_units(runs: Vec<UnitRunRecord>, procedure: &str) -> Vec<UnitRunRecord> {
-    let complete = runs.into_iter().filter(|run| run.state == RunState::Completed && run.procedure == procedure);
+    let meant =
+        |run: &UnitRunRecord| run.state == RunState::Completed && run.procedure == procedure && !run.is_reference;
+    let complete = runs.into_iter().filter(meant);
     let newest: BTreeMap<String, UnitRunRecord> = complete.map(|run| (run.unit.serial.clone(), run)).collect();
     let mut newest: Vec<UnitRunRecord> = newest.into_values().collect();
     newest.sort_by_key(|run| run.run);

@@ -99,6 +99,18 @@ impl Lab {
         let (understood, refused) = Search::understood(search);
         Ok(UnitList { unclear: refused.map(|fault| fault.to_string()), ..self.units(&understood).await? })
     }
+
+    /// Marks a unit as a reference, or ends that.
+    pub async fn set_unit_reference(&self, serial: &str, reference: bool, by: &str) -> Answer<UnitSummary> {
+        let store = &self.inner.store;
+        let none = || LabError::NotFound(format!("no run has the unit {serial}"));
+        if store.runs_of_unit(serial).await?.is_empty() {
+            return Err(none());
+        }
+        store.set_unit_reference(serial, reference, by).await?;
+        let runs = store.runs_of_unit(serial).await?;
+        summary(&runs.iter().collect::<Vec<_>>()).ok_or_else(none)
+    }
 }
 
 fn unit_list(runs: &[UnitRunRecord]) -> UnitList {
@@ -110,7 +122,8 @@ fn unit_list(runs: &[UnitRunRecord]) -> UnitList {
     units.sort_by_key(|unit| Reverse(unit.newest_run));
     let total = units.len() as u64;
     units.truncate(MOST);
-    UnitList { total, units, yields: yields(by_serial.values()), unclear: None }
+    let counted = by_serial.values().filter(|runs| !runs.iter().any(|run| run.is_reference));
+    UnitList { total, units, yields: yields(counted), unclear: None }
 }
 
 /// `runs`: all runs of one unit, in order.
@@ -125,6 +138,7 @@ fn summary(runs: &[&UnitRunRecord]) -> Option<UnitSummary> {
         part: named(|unit| &unit.part),
         revision: named(|unit| &unit.revision),
         batch: named(|unit| &unit.batch),
+        reference: newest.is_reference,
         runs: runs.len() as u64,
         first_verdict,
         newest_verdict: newest_complete.and_then(|run| verdict(run)),
@@ -216,6 +230,7 @@ mod tests {
             created_at: "2026-01-31T00:00:00Z".into(),
             verdict: verdict.map(str::to_owned),
             limits: None,
+            is_reference: false,
         }
     }
 
@@ -267,6 +282,14 @@ mod tests {
             (YieldGroup::Batch, Some("9"), 0, 1),
         ];
         assert_eq!(figures, expected, "C has no verdict yet, D exceeds a limit");
+    }
+
+    #[test]
+    fn yields_exclude_reference_units() {
+        let measured = |number, serial| run(number, serial, None, RunState::Completed, Some("inconclusive"));
+        let list = unit_list(&[measured(1, "A"), UnitRunRecord { is_reference: true, ..measured(2, "REF") }]);
+        assert_eq!((list.total, list.units[0].reference, list.units[1].reference), (2, true, false));
+        assert!(list.yields.iter().all(|one| (one.units, one.passed) == (1, 0)), "{:?}", list.yields);
     }
 
     #[test]

@@ -36,6 +36,7 @@ const FILES: &[(&str, &str)] = &[
     ("0026_notifications.sql", include_str!("../../../migrations/0026_notifications.sql")),
     ("0027_run_quantities.sql", include_str!("../../../migrations/0027_run_quantities.sql")),
     ("0028_archive.sql", include_str!("../../../migrations/0028_archive.sql")),
+    ("0029_unit_references.sql", include_str!("../../../migrations/0029_unit_references.sql")),
 ];
 
 #[derive(Debug)]

@@ -124,6 +124,8 @@ pub struct UnitRunRecord {
     pub verdict: Option<String>,
     /// Outcome of its limits.
     pub limits: Option<String>,
+    /// The unit is a reference, which statistics exclude.
+    pub is_reference: bool,
 }
 
 /// A note on a run.

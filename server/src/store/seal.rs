@@ -93,12 +93,14 @@ pub const OWN_EFFECTS: Sealed =
     sealed("own_effects", &["kind", "effect", "version", "definition", "created_at"], &["effect", "version"]);
 /// Which users' effects the diagnosis of a run may suggest.
 pub const EFFECT_USES: Sealed = sealed("effect_uses", &["run", "kind", "effect", "used", "who", "at"], &["run", "id"]);
+pub const UNIT_REFERENCES: Sealed =
+    sealed("unit_references", &["serial", "is_reference", "who", "at"], &["serial", "id"]);
 pub const AUTOPILOT_STEPS: Sealed =
     sealed("autopilot_steps", &["autopilot", "sequence", "step"], &["autopilot", "sequence"]);
 pub const KEPT: Sealed = sealed("kept", &["subject", "id", "what", "software", "packed"], &["subject", "id", "what"]);
 
 /// Every checksum that [`super::verify`] compares. The cache (`kept`) is excluded: its results are computed again.
-pub const ALL: [&Sealed; 19] = [
+pub const ALL: [&Sealed; 20] = [
     &RUNS,
     &RUN_STATES,
     &RUN_UNITS,
@@ -117,6 +119,7 @@ pub const ALL: [&Sealed; 19] = [
     &INSTRUMENT_FAULTS,
     &OWN_EFFECTS,
     &EFFECT_USES,
+    &UNIT_REFERENCES,
     &AUTOPILOT_STEPS,
 ];
 

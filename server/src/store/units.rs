@@ -1,8 +1,8 @@
 //! The unit under test of each run.
 
-use super::seal::{RUN_UNITS, intact_records};
+use super::seal::{RUN_UNITS, UNIT_REFERENCES, intact_records};
 use super::search::Search;
-use super::values::word;
+use super::values::{now, word};
 use super::{Store, StoreError, UnitRecord, UnitRunRecord};
 use jointbench_procedure::RunId;
 use sqlx::sqlite::SqliteRow;
@@ -10,7 +10,9 @@ use sqlx::{QueryBuilder, Row, SqliteConnection};
 
 const UNIT_RUN: &str = "SELECT id, serial, part, revision, batch, operator, unit_checksum, procedure, state, created_at, \
     (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict, \
-    (SELECT limits FROM verdicts WHERE run = runs_told.id) AS limits \
+    (SELECT limits FROM verdicts WHERE run = runs_told.id) AS limits, \
+    (SELECT is_reference FROM unit_references WHERE unit_references.serial = runs_told.serial ORDER BY unit_references.id DESC LIMIT 1) \
+    AS is_reference \
     FROM runs_told WHERE serial ";
 
 impl Store {
@@ -30,6 +32,21 @@ impl Store {
         query.push(") ORDER BY id");
         Ok(intact_records(&query.build().fetch_all(&self.readers).await?, unit_run).into_iter().flatten().collect())
     }
+
+    /// Marks a unit as a reference, or ends that.
+    pub async fn set_unit_reference(&self, serial: &str, is_reference: bool, by: &str) -> Result<(), StoreError> {
+        let at = now();
+        let cells = [serial.into(), i64::from(is_reference).into(), by.into(), (&at).into()];
+        sqlx::query("INSERT INTO unit_references (serial, is_reference, who, at, checksum) VALUES (?, ?, ?, ?, ?)")
+            .bind(serial)
+            .bind(is_reference)
+            .bind(by)
+            .bind(&at)
+            .bind(UNIT_REFERENCES.seal(&cells))
+            .execute(&self.writer)
+            .await?;
+        Ok(())
+    }
 }
 
 fn unit_run(row: &SqliteRow) -> Result<Option<UnitRunRecord>, StoreError> {
@@ -42,6 +59,7 @@ fn unit_run(row: &SqliteRow) -> Result<Option<UnitRunRecord>, StoreError> {
         created_at: row.try_get("created_at")?,
         verdict: row.try_get("verdict")?,
         limits: row.try_get("limits")?,
+        is_reference: row.try_get::<Option<bool>, _>("is_reference")?.unwrap_or_default(),
     }))
 }
 

@@ -39,6 +39,8 @@ pub struct UnitSummary {
     pub part: Option<String>,
     pub revision: Option<String>,
     pub batch: Option<String>,
+    /// A reference unit, which yields and control charts exclude.
+    pub reference: bool,
     /// Number of runs, in any state.
     pub runs: u64,
     /// Verdict of the first complete run.
@@ -62,6 +64,14 @@ pub enum YieldGroup {
     Revision,
     /// All units of a batch of a revision of a part.
     Batch,
+}
+
+/// Whether a unit is a reference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct UnitReference {
+    /// Yields and control charts exclude reference units.
+    pub reference: bool,
 }
 
 /// First-pass yield: the fraction of units whose first complete run of a procedure was identified, with or without a
@@ -91,7 +101,7 @@ pub struct UnitList {
     pub total: u64,
     /// The units with the newest runs first, at most 1000.
     pub units: Vec<UnitSummary>,
-    /// Of all units that match the search.
+    /// Of all units that match the search, without reference units.
     pub yields: Vec<FirstPassYield>,
     /// Ignored terms of an incomplete search.
     pub unclear: Option<String>,

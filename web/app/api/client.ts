@@ -64,6 +64,7 @@ export const api = {
 	addNote: (id: number, text: string, at_s: number | null) =>
 		callApi('post', '/api/v1/runs/{id}/notes', { path: { id }, body: { text, at_s } }),
 	tags: (signal?: Signal) => callApi('get', '/api/v1/tags', {}, signal),
+	setUnitReference: (serial: string, reference: boolean) => callApi('put', '/api/v1/units/{serial}/reference', { path: { serial }, body: { reference } }),
 	setTags: (id: number, tags: string[]) => callApi('put', '/api/v1/runs/{id}/tags', { path: { id }, body: { tags } }),
 	samples: (id: number, query: { channels?: string; from_s?: number; to_s?: number; px?: number }, signal?: Signal) =>
 		callApi('get', '/api/v1/runs/{id}/samples', { path: { id }, query }, signal),

@@ -30,6 +30,7 @@ A run belongs to a unit if it was started with its serial number: `jointbench ru
   jointbench units                             all units, newest first
   jointbench units part:P batch:7              units with a run that matches, and their yield
   jointbench runs unit:SN123                   the runs of one unit
+  jointbench units --reference REF1            REF1 checks the bench: yields and control charts exclude it
 
 First-pass yield is the fraction of units whose first complete run of a procedure was identified, with its 95 % interval. Stopped \
 and failed runs do not count.";
@@ -39,6 +40,12 @@ pub struct Units {
     /// Words and terms as in `jointbench runs`, such as unit:SN1, part:P or batch:7; all must match
     #[arg(value_name = "TERM")]
     pub search: Vec<String>,
+    /// Mark a unit as a reference unit, which yields and control charts exclude
+    #[arg(long, value_name = "SERIAL", conflicts_with_all = ["search", "no_reference"])]
+    pub reference: Option<String>,
+    /// The unit is no reference unit any longer
+    #[arg(long, value_name = "SERIAL", conflicts_with = "search")]
+    pub no_reference: Option<String>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

@@ -21,6 +21,7 @@ async fn furnished() -> (TempDir, Store) {
     store.keep_fault("joint-a", "drive", "2026-01-31T00:00:00Z", "unplugged").await.unwrap();
     store.save_user_effect("friction", "rub", &json!({"formula": "tau = a"})).await.unwrap();
     store.use_effect(1, "friction", "rub", true, "Anna").await.unwrap();
+    store.set_unit_reference("SN1", true, "Anna").await.unwrap();
     let autopilot = store.create_autopilot("joint-a", &Default::default(), "running").await.unwrap();
     store.append_autopilot_step(autopilot, json!({"what": "measured"})).await.unwrap();
     (folder, store)
@@ -37,8 +38,8 @@ fn a_store_in_use_is_whole() {
         let report = verify(folder.path()).await.unwrap();
         assert!(report.is_whole(), "{report:?}");
         assert_eq!((report.runs, report.rows, report.without_checksum), (2, 110_000, 0));
-        // 3 blocks and 1 with 3 channels, a tail piece, 2 runs twice, 6 channels, 2 events, and 10 single records.
-        assert_eq!(report.records, 4 * 3 + 1 + 4 + 6 + 2 + 10);
+        // 3 blocks and 1 with 3 channels, a tail piece, 2 runs twice, 6 channels, 2 events, and 11 single records.
+        assert_eq!(report.records, 4 * 3 + 1 + 4 + 6 + 2 + 11);
         assert!(store.check(Duration::ZERO).await.unwrap().is_whole());
         let nothing = verify(&folder.path().join("elsewhere")).await.unwrap_err();
         assert!(matches!(nothing, StoreError::NoStore { .. }) && nothing.is_setup(), "{nothing}");
@@ -48,7 +49,7 @@ fn a_store_in_use_is_whole() {
 #[test]
 fn every_kind_of_damage_is_found_where_it_is() {
     block_on(async {
-        let cases: [(&'static str, Option<i64>, &str); 19] = [
+        let cases: [(&'static str, Option<i64>, &str); 20] = [
             ("UPDATE runs SET meta = '{}' WHERE id = 1", Some(1), "runs"),
             ("UPDATE runs SET reason = 'another' WHERE id = 2", Some(2), "runs"),
             ("UPDATE runs SET rows = 9, state_checksum = NULL WHERE id = 2", Some(2), "runs"),
@@ -67,6 +68,7 @@ fn every_kind_of_damage_is_found_where_it_is() {
             ("UPDATE calibrations SET run = 2", None, "calibrations"),
             ("UPDATE own_effects SET definition = '{}'", None, "own_effects"),
             ("UPDATE effect_uses SET used = 0", Some(1), "effect_uses"),
+            ("UPDATE unit_references SET is_reference = 0", None, "unit_references"),
             ("UPDATE autopilot_steps SET step = '{}'", None, "autopilot_steps"),
         ];
         for (sql, run, table) in cases {

@@ -22,8 +22,14 @@ use std::path::Path;
 use std::time::Duration;
 
 /// Tables whose rows belong to no run.
-const OF_NO_RUN: [&Sealed; 5] =
-    [&seal::BENCH_SAFETY, &seal::CALIBRATIONS, &seal::INSTRUMENT_FAULTS, &seal::OWN_EFFECTS, &seal::AUTOPILOT_STEPS];
+const OF_NO_RUN: [&Sealed; 6] = [
+    &seal::BENCH_SAFETY,
+    &seal::CALIBRATIONS,
+    &seal::INSTRUMENT_FAULTS,
+    &seal::OWN_EFFECTS,
+    &seal::UNIT_REFERENCES,
+    &seal::AUTOPILOT_STEPS,
+];
 /// Limits the number of faults that SQLite's own check lists.
 const MOST_FAULTS: &str = "PRAGMA integrity_check(100)";
 
