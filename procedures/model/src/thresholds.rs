@@ -81,23 +81,24 @@ thresholds! {
     FORMULA_ERROR = 0.002, "fraction of squared error", "the formula of an effect may leave this fraction of its contribution (4.5 % in RMS; encoders none)", "`evaluate --part hidden,null`";
     UNMISTAKABLE_SHARE = HALF, "fraction of squared error", "an effect that removes this fraction of the residual is no remainder of another formula", "`evaluate --part hidden,null`";
     ALIAS_SHARE = HALF, "fraction of amplitude", "a wave that shows less of its amplitude at other speeds is an alias", "`--test beats`";
-    SAME_SPEED = TENTH, "fraction of speed", "speeds this near to each other are one", "`--test beats`";
+    SAME_SPEED = TENTH, "fraction of speed", "speeds that differ by less are one", "`--test beats`";
     COMPARABLE_SPEED = 2.0, "ratio of speeds", "a wave is expected only at speeds up to this ratio: beyond it, the drive controller dominates", "`--test beats`";
     BETWEEN_LEGS = NEARLY_ALL, "fraction of squared column", "from this fraction on a column differs from leg to leg and hardly within one", "`--test legs`";
-    STEP_OVER_READINGS = 2.0, "standard deviations", "a step in time of this size is none of the scatter of the readings", "`--test legs`";
-    SIMPLER_GAIN = 0.8, "fraction of gain", "a simpler effect is as good where it brings this fraction of the gain of the best", "`evaluate --part hidden,null`";
+    STEP_OVER_READINGS = 2.0, "standard deviations", "a smaller step in time is scatter of the readings", "`--test legs`";
+    TIE_ERRORS = 2.0, "standard errors", "two models, or two orders of a wave, tie where their validation errors differ by less", "normal distribution, 5 %";
+    SIMPLER_GAIN = 0.8, "fraction of gain", "a simpler effect is preferred where it has this fraction of the gain of the best", "`evaluate --part hidden,null`";
     MOST_EXCHANGES = 2.0, "exchanges", "added effects that may be swapped for others", "`evaluate --part hidden,null`";
-    STAND_IN_LOSS = NEARLY_ALL, "ratio of squared validation errors", "a candidate above this ratio to a model that was given up only stands in for it", "`evaluate --part hidden,null`";
+    STAND_IN_LOSS = NEARLY_ALL, "ratio of squared validation errors", "a candidate whose error exceeds that of a rejected model by this ratio is only a substitute for the rejected effect", "`evaluate --part hidden,null`";
     BIASED_COEFFICIENT = 0.25, "fraction of coefficient", "a coefficient that moves by this fraction with an effect is biased without it", "mock joint A, seeds 17001 to 17012";
-    BIAS_TOLERANCE = TENTH, "fraction of squared column", "below this fraction of its own an effect looks like the model, or is a function of the axis", "mock joint A, seeds 17001 to 17012";
-    HYSTERESIS_SHARE = MOST, "fraction of squared error", "an effect with a memory explains this fraction around reversals", "simulated joints: 83 to 98 %, nothing else above 63 %";
-    DELAY_HALF_WIDTHS = 2.0, "half widths of the 95 % interval", "a delay lies so far from zero", "519 joints without a delay: none; 13 with 9 to 14 ms: at least 2.6";
-    DELAY_ROWS = 1.5, "rows", "a delay is longer than this: of which moment of its row a reading is is unknown", "seven mock runs, 0.9 to 1.1 rows late";
+    BIAS_TOLERANCE = TENTH, "fraction of squared column", "an effect of which the model leaves less looks like the model, or is a function of the axis", "mock joint A, seeds 17001 to 17012";
+    HYSTERESIS_SHARE = MOST, "fraction of squared error", "a hysteresis effect explains this fraction around reversals", "simulated joints: 83 to 98 %, nothing else above 63 %";
+    DELAY_HALF_WIDTHS = 2.0, "half widths of the 95 % interval", "a delay is named where it is so far from zero", "519 joints without a delay: none; 13 with 9 to 14 ms: at least 2.6";
+    DELAY_ROWS = 1.5, "rows", "a shorter delay is not named: the moment of a reading within its row is unknown", "seven mock runs, 0.9 to 1.1 rows late";
     DELAY_POWER = 0.43, "half widths of the 95 % interval", "added to the delay threshold for 80 % power", "z₀.₈ / z₀.₉₇₅";
     DETECTION_POWER = 1.3, "standard errors", "added to the critical size for 80 % power (z₀.₈ = 0.84, the rest for the scatter of the standard error)", "`evaluate --part detectable`";
     NEEDED_WHERE_OPEN = TENTH, "increase of squared validation error", "an effect at a bound, or with unexplained structure, stays where removing it costs this much", "`evaluate --part hidden,null`";
-    NEEDED_WITHOUT_SIZE = HALF, "increase of squared validation error", "the same of an effect whose coefficients could all be zero", "`evaluate --part hidden,null`";
-    NEEDED_WITHOUT_SIZE_AND_SHAPE = 1.0, "increase of squared validation error", "the same of an effect of neither size nor shape", "`evaluate --part hidden,null`";
+    NEEDED_WITHOUT_SIZE = HALF, "increase of squared validation error", "the same for an effect whose coefficients could all be zero", "`evaluate --part hidden,null`";
+    NEEDED_WITHOUT_SIZE_AND_SHAPE = 1.0, "increase of squared validation error", "the same for an effect whose size and shape are not determined", "`evaluate --part hidden,null`";
     STRUCTURE_SHARE = 0.15, "fraction of squared validation error", "a residual map that removes more is structure", "null runs: at most 2 %; well-explained runs: 11 %";
     WHOLE_EXPLANATION = MOST, "fraction of what any function of the axis explains", "an effect that explains less is only a part of the missing effect", "`--test humps`";
     PERIODS_SEEN = 2.0, "periods", "a wave that was seen less often is a curve over the angle", "`--test waves`";
@@ -105,7 +106,7 @@ thresholds! {
     FOLLOWED_RAD = 1.0, "rad", "a wave that advances further from sample to sample is not followed, and between two means it may be an alias", "`--test beats`";
     REPEATABLE_SHARE = HALF, "fraction of squared error", "more in common to all repeats is structure", "`evaluate --part hidden,null`";
     FLOOR_RATIO = 1.3, "ratio of RMS", "a validation error beyond this multiple of the noise floor is structure", "`evaluate --part hidden,null`";
-    EVENT_ERRORS = 7.0, "standard deviations", "a stretch that lies so far out of what stretches of its length scatter by, and by more than half a count of the encoders, is an event", "`evaluate --part null`: none in 800 runs; readings that jump: 7.4 to 51";
+    EVENT_ERRORS = 7.0, "standard deviations", "a section whose mean exceeds the scatter of sections of its length by this, and half a count of the encoders, is an event", "`evaluate --part null`: none in 800 runs; readings that jump: 7.4 to 51";
     NEGLIGIBLE_RMS = 0.002, "fraction of RMS of the response", "a residual below this is negligible (encoders excepted)", "`evaluate --part hidden,null`";
     FLOOR_INTERVAL_RATIO = 3.0, "ratio", "a noise floor with a wider interval is only about", "`--test repeats`";
     SCATTER_BAND = 0.3, "fraction of alpha", "error probability of a band that calls scatter structure", "220 null runs with coloured noise";
@@ -120,7 +121,7 @@ thresholds! {
     BETTER_FORM = 0.01, "fraction of squared error a parameter", "another form must take this fraction for each parameter more", "`evaluate --part hidden,null`";
     SECOND_AXIS_GAIN = 1.1, "ratio", "a second axis is named where both show this much more", "presentation";
     NOTHING_IN_COMMON = 0.01, "fraction of squared error", "less in common to all repeats is nothing", "presentation";
-    TOLD_LOSS = 0.99, "ratio of validation RMS", "a rejected effect is listed where it would lower the error to this ratio", "presentation";
+    LISTED_LOSS = 0.99, "ratio of validation RMS", "a rejected effect is listed where it would lower the error to this ratio", "presentation";
     STRONG_P_VALUE = 0.01, "probability", "a larger p-value is weak evidence", "convention";
     SMALL_REDUCTION = 0.05, "fraction of validation RMS", "a smaller reduction is small", "presentation";
     MASKED_RATIO = 2.0, "ratio", "effects whose joint gain exceeds this multiple of the single one mask each other", "`evaluate --part hidden,null`";
@@ -138,6 +139,7 @@ thresholds! {
 thresholds! {
     /// Thresholds of the signals, in the order of the documents: which rows are compared, and which effects a run can show.
     SIGNALS:
+    NOISE_ERRORS = 3.0, "standard errors", "what noise hardly ever reaches by chance", "normal distribution, 0.3 %";
     SETTLED_SHARE = 0.04, "fraction of size", "speed and load of a steady state deviate less from their median", "`--test steps`";
     KEPT_SHARE = 0.2, "fraction of speed", "the halves of a steady state differ less, in addition to their scatter", "`--test steps`";
     OSCILLATION = NEARLY_ALL, "correlation", "speeds without a common sample correlate so much where the motion itself oscillates", "unit tests of `residual_acceleration`";
@@ -158,8 +160,7 @@ thresholds! {
     FOLLOWED_ROWS = 0.02, "fraction of rows", "the filter passes the highest order of an angle in so many rows", "`evaluate FOLDER`";
     DRIFT_START = TENTH, "fraction of run", "earliest time constant of a drift", "`evaluate --part hidden`";
     SEVERAL_SPEEDS = 1.2, "ratio", "speeds of a brake with a smaller ratio are one", "`evaluate --part hidden`";
-    ORDERS_APART = 2.0, "standard errors", "two orders of a wave are distinguished where their losses differ by more", "normal distribution, 5 %";
-    CHANGEPOINT_ERRORS = 4.0, "standard errors", "changes of an offset with a larger excess kurtosis are events and no random walk", "`--test repeats`";
+    KURTOSIS_ERRORS = 4.0, "standard errors", "changes of an offset with a larger excess kurtosis are events and no random walk", "`--test repeats`";
     NO_CURRENT = 0.02, "fraction of largest current", "a smaller current of a brake is zero", "`--test iron`";
     ELEMENT_WEIGHT = 0.05, "fraction of Coulomb friction", "a bristle with less weight is not stated", "presentation";
     DRIVE_AXIS = NEARLY_ALL, "fraction", "the map over the motor torque, which follows from the motion, is ranked by this fraction of what it removes", "presentation";
@@ -182,7 +183,6 @@ thresholds! {
     COMPUTED_COLUMN = 1e-5, "fraction of RMS", "a load that equals a multiple of the current to this fraction was computed from it", "digits of a text file";
     DRIVEN_WORK = HALF, "fraction of work", "more work against the motion in both directions is a wrong sign", "unit tests of `unit_mismatch`";
     NOISE_BLOCKS = 40.0, "blocks", "fewer blocks do not show that a current is white noise", "unit tests of `unit_mismatch`";
-    NOISE_ERRORS = 3.0, "standard errors", "what noise hardly ever reaches by chance", "normal distribution, 0.3 %";
     TORQUE_RATIO = 2.0, "ratio", "motor and link torque differ by less: efficiency of the gear, friction under load", "unit tests of `torque_sign`";
     SLIPPED_IN_COMMON = MOST, "fraction of variance", "the two torques have so much in common where a unit or sign is wrong; the rest is friction", "unit tests of `torque_sign`";
     LOAD_SHARE = 0.25, "fraction of RMS", "so much of the torque varies at steady speed: a load", "unit tests of `torque_sign`";

@@ -11,9 +11,9 @@ pub enum Identified {
     Identified,
     /// Identified, although the run found a precondition broken; `warnings` lists them.
     IdentifiedWithWarning,
-    /// The run says too little; `advice` tells what to measure.
+    /// The run says too little; `advice` names what to measure.
     Inconclusive,
-    /// The run cannot be used; `summary` tells why.
+    /// The run cannot be used; `summary` gives the reason.
     Failed,
 }
 

@@ -63,21 +63,28 @@ fn runs_of_units_are_kept_found_and_counted() {
         [(&"part".into(), none, one), (&"revision".into(), none, one), (&"batch".into(), &"7".into(), one)]
     );
     assert!(yields[0]["ci95"][0].as_f64() < yields[0]["ci95"][1].as_f64(), "{list}");
+    assert_eq!(daemon.get("/api/v1/units?search=batch:8").1["total"], 1);
+    assert_eq!(daemon.get("/api/v1/units?search=colour:red").0, 422);
+    let (_, typing) = daemon.get("/api/v1/units?search=colour:red&typing=true");
+    assert!(typing["unclear"].as_str().unwrap().contains("there is no field colour"), "{typing}");
+}
+
+#[test]
+fn a_reference_unit_has_no_yield() {
+    let daemon = TestDaemon::start();
+    daemon.wait_for_end(started(&daemon, json!({"serial": "A/1"}), ""));
+    let list = daemon.wait_for("/api/v1/units", |list| !list["yields"].as_array().unwrap().is_empty());
     let mark = |serial: &str, reference: bool| {
         let body = json!({"reference": reference}).to_string();
         let path = format!("/api/v1/units/{serial}/reference");
         daemon.put_with(&path, body.as_bytes(), &[("content-type", "application/json")])
     };
-    let (status, marked) = mark("SN123", true);
+    let (status, marked) = mark("A%2F1", true);
     assert_eq!((status, &marked["reference"], &marked["runs"]), (200, &true.into(), &1.into()), "{marked}");
-    assert_eq!(daemon.get("/api/v1/units").1["yields"], json!([]), "a reference unit has no yield");
-    assert_eq!(mark("SN123", false).1["reference"], false);
+    assert_eq!(daemon.get("/api/v1/units").1["yields"], json!([]));
+    assert_eq!(mark("A%2F1", false).1["reference"], false);
     assert_eq!(daemon.get("/api/v1/units").1["yields"], list["yields"]);
     assert_eq!(mark("SN9", true).0, 404);
-    assert_eq!(daemon.get("/api/v1/units?search=batch:8").1["total"], 1);
-    assert_eq!(daemon.get("/api/v1/units?search=colour:red").0, 422);
-    let (_, typing) = daemon.get("/api/v1/units?search=colour:red&typing=true");
-    assert!(typing["unclear"].as_str().unwrap().contains("there is no field colour"), "{typing}");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::Unexplained;
 use crate::selection::removal::Withdrawn;
-use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, SMALL_REDUCTION, TOLD_LOSS};
+use crate::thresholds::{LISTED_LOSS, NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, SMALL_REDUCTION};
 use crate::words::{Scale, figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
@@ -353,7 +353,7 @@ fn unexplained(found: &Findings) -> &'static str {
 
 /// Rejected effects that would reduce the error, but whose size the run does not determine.
 fn undetermined<'f, 'p>(found: &'f Findings<'p>) -> impl Iterator<Item = &'f Withdrawn<'p>> {
-    let bound = TOLD_LOSS * found.end_validation_rms;
+    let bound = LISTED_LOSS * found.end_validation_rms;
     found.withdrawn.iter().filter(move |w| w.why == RemovalReason::Unidentified && w.validation_rms < bound)
 }
 

@@ -4,7 +4,7 @@ use crate::effect::ShapeSearch;
 use crate::preprocess::independent_blocks::independent_blocks;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState};
-use crate::thresholds::ORDERS_APART;
+use crate::thresholds::TIE_ERRORS;
 
 /// Extends the interval of an order that a partial turn does not determine, and the intervals of its coefficients.
 pub fn open(terms: &LinearModel, residual: &[f64], parameters: &mut [Parameter]) {
@@ -51,7 +51,7 @@ fn alike(terms: &LinearModel, residual: &[f64], term: usize, shape: usize) -> Ve
         let mean = loss.iter().sum::<f64>() / count as f64;
         let square: f64 = loss.iter().map(|l| (l - mean).powi(2)).sum();
         let scatter = (square / (count.max(2) - 1) as f64 / count as f64).sqrt();
-        (mean < ORDERS_APART * scatter).then(|| (order, linear.coefficients[term].clone()))
+        (mean < TIE_ERRORS * scatter).then(|| (order, linear.coefficients[term].clone()))
     };
     let free = |order: &f64| (bounds.min..=bounds.max).contains(order) && !found.contains(order);
     let way = |step: f64| (1..).map(move |k| found[shape] + step * f64::from(k)).take_while(free).map_while(other);

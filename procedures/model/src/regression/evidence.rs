@@ -6,13 +6,11 @@ use crate::linear::added_columns::{Added, Gain};
 use crate::linear::blocked_ridge::{BlockedRidge, Outside};
 use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::allows;
+use crate::regression::partial_regression::LEAST_TOLERANCE;
 use crate::stats::{student, summary};
 use crate::thresholds::{DECISION_SHARE, ONE_ERROR, UNMISTAKABLE_SHARE};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
-
-/// A candidate with a smaller tolerance (1 − R² on the model) is collinear with the model.
-pub const LEAST_VISIBLE: f64 = 1e-5;
 
 /// The evidence for one candidate effect.
 pub struct Evidence<'l, 'p> {
@@ -39,13 +37,18 @@ impl Evidence<'_, '_> {
     /// The minimum error reduction. Every model has form error: a candidate that it imitates has to explain most of the
     /// residual.
     pub fn least_share(&self) -> f64 {
-        if self.form_error_imitates { UNMISTAKABLE_SHARE } else { DECISION_SHARE }
+        least_share(self.form_error_imitates)
     }
 
     /// Whether the reduction exceeds the minimum share, is significant, and exceeds its standard error.
     pub fn passes(&self, alpha: f64) -> bool {
         self.gain > self.least_share() && self.p_value < alpha && self.errors > ONE_ERROR
     }
+}
+
+/// The minimum error reduction of an effect, which is larger if form error imitates the effect.
+pub fn least_share(form_error_imitates: bool) -> f64 {
+    if form_error_imitates { UNMISTAKABLE_SHARE } else { DECISION_SHARE }
 }
 
 /// Result of one form added to the base model.
@@ -102,7 +105,7 @@ fn attempt<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Optio
         return Tried::Rejected;
     }
     let is_steady = form.effect.regime() == Regime::SteadyState;
-    let shows_outside = match outside.map(|outside| (outside.left(), outside.added(&form.columns, LEAST_VISIBLE))) {
+    let shows_outside = match outside.map(|outside| (outside.left(), outside.added(&form.columns, LEAST_TOLERANCE))) {
         None => is_steady,
         Some((_, None)) if is_steady => return Tried::Hidden(form),
         Some((_, None)) => false,
@@ -119,7 +122,7 @@ fn attempt<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Optio
 /// The regression with this form added, unless the form is collinear with the model.
 pub fn visible(ridge: &BlockedRidge, form: &Regressor) -> Option<Added> {
     let added = Added::new(ridge, &form.columns);
-    (added.visible > LEAST_VISIBLE).then_some(added)
+    (added.visible > LEAST_TOLERANCE).then_some(added)
 }
 
 /// The form for each block is chosen on the other blocks, so that the choice does not bias the validation error.

@@ -14,7 +14,7 @@ use std::ops::Range;
 const MOST_GROUPS: usize = 400;
 
 /// A column with a smaller tolerance (1 − R² on the model) is collinear with the model.
-const LEAST_TOLERANCE: f64 = 1e-5;
+pub const LEAST_TOLERANCE: f64 = 1e-5;
 
 /// The residual of a model with the orthonormal basis of its tangent space.
 pub struct PartialRegression {

@@ -6,8 +6,8 @@ use crate::effects::friction::{presliding, signal_delay};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
 use crate::preprocess::form_error::{ErrorColumn, FormError, FormErrorKind};
-use crate::regression::evidence::LEAST_VISIBLE;
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
+use crate::regression::partial_regression::LEAST_TOLERANCE;
 use crate::regression::weights::weights;
 use crate::stats::jackknife;
 use crate::stats::summary::rms;
@@ -54,7 +54,7 @@ pub fn nuisance<'a>(
     let effects = Basis::of(model.terms.iter().flat_map(|term| &term.columns));
     let is_own = |c: &ErrorColumn| {
         let rest = effects.rest(&c.values);
-        c.kind.is_penalised() || dot(&rest, &rest) > LEAST_VISIBLE * dot(&c.values, &c.values)
+        c.kind.is_penalised() || dot(&rest, &rest) > LEAST_TOLERANCE * dot(&c.values, &c.values)
     };
     let is_nuisance = |c: &ErrorColumn| !is_out(c.kind) && !leaves_out(c.kind) && is_own(c);
     let columns = form_error.columns.iter().enumerate().filter(|(_, c)| is_nuisance(c));

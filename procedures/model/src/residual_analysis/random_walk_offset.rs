@@ -10,7 +10,7 @@ use crate::linear::basis::{Basis, dot};
 use crate::preprocess::Problem;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::signal::Signal;
-use crate::thresholds::CHANGEPOINT_ERRORS;
+use crate::thresholds::KURTOSIS_ERRORS;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Tested variances of the drift, relative to the variance that is new in every block.
@@ -183,7 +183,7 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
         let (_, news) = self.left(&Filter::new(self.memory, &self.gaps));
         let n = news.len() as f64;
         let moment = |power: i32| news.iter().map(|new| new.powi(power)).sum::<f64>() / n;
-        moment(4) / moment(2).powi(2) - NORMAL_KURTOSIS > CHANGEPOINT_ERRORS * (24.0 / n).sqrt()
+        moment(4) / moment(2).powi(2) - NORMAL_KURTOSIS > KURTOSIS_ERRORS * (24.0 / n).sqrt()
     }
 }
 

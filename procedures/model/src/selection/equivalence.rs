@@ -5,13 +5,14 @@ use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::alone;
 use crate::stats::summary::deviation;
+use crate::thresholds::TIE_ERRORS;
 
 /// Two models tie if the difference of their validation errors is within its own scatter over the folds.
 pub fn is_tie(a: &[f64], b: &[f64]) -> bool {
     let differences: Vec<f64> = b.iter().zip(a).map(|(b, a)| b - a).collect();
     let n = differences.len() as f64;
     let spread = deviation(&differences);
-    differences.iter().sum::<f64>() <= 2.0 * n.sqrt() * spread + 1e-9 * a.iter().sum::<f64>()
+    differences.iter().sum::<f64>() <= TIE_ERRORS * n.sqrt() * spread + 1e-9 * a.iter().sum::<f64>()
 }
 
 /// Whether `one` explains all that matters of `other`, and `other` does not explain all of `one`: the encompassing

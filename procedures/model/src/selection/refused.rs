@@ -1,10 +1,10 @@
 //! Results of the evidence beyond the named effects: unexplained structure, and rejected effects.
 
 use crate::effect::{Effect, Regime};
-use crate::regression::evidence::Evidence;
+use crate::regression::evidence::{self, Evidence};
 use crate::report::reasons::RejectionReason;
 use crate::residual_analysis::structure::Unexplained;
-use crate::thresholds::{DECISION_SHARE, ONE_ERROR, UNMISTAKABLE_SHARE};
+use crate::thresholds::ONE_ERROR;
 use crate::words::percent;
 
 /// Findings that remain after the decision.
@@ -62,8 +62,5 @@ impl<'p> Refused<'p> {
 
 /// An effect of transients competes with the form error of all models: it has to explain most of the residual.
 pub fn least_share(effect: &dyn Effect) -> f64 {
-    match effect.regime() {
-        Regime::SteadyState => DECISION_SHARE,
-        _ => UNMISTAKABLE_SHARE,
-    }
+    evidence::least_share(effect.regime() != Regime::SteadyState)
 }
