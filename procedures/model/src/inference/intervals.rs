@@ -38,10 +38,10 @@ pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
     // The replicates are steps from the full estimate, because the Gram matrices are built with the residual.
     let covariance = |a: usize, b: usize| jackknife::variance(replicates.iter().map(|r| r[a] * r[b]), groups);
     let variance: Vec<f64> = (0..p).map(|k| covariance(k, k)).collect();
-    let active = active(&grams);
+    let effective_blocks = grams.effective_groups(&spd);
     let mut parameters = Vec::new();
     for (k, slot) in slots.iter().enumerate() {
-        let freedom = (effective_blocks(&grams, &active, &spd, k) - 1.0).max(1.0);
+        let freedom = (effective_blocks[k] - 1.0).max(1.0);
         let t = student::half_width_95(freedom);
         let reach = if spd.is_dependent(k) { f64::INFINITY } else { t * variance[k].sqrt() };
         let ci95 = match slot.shape {
@@ -102,29 +102,6 @@ fn slots<'a>(
         slots.push(slot(*i, shape.name, terms.terms[*i].shape[*k], Some(shape)));
     }
     slots
-}
-
-/// Columns that are not zero throughout a block. Of the offsets for each power-up, a block has only one.
-fn active(grams: &BlockGrams) -> Vec<Vec<usize>> {
-    let p = grams.columns;
-    (0..grams.groups).map(|g| (0..p).filter(|a| grams.xx(g)[a * p + a] > 0.0).collect()).collect()
-}
-
-/// Effective number of blocks of a parameter: the number of equal blocks with the same accuracy, (Σ w)²/Σ w². The
-/// weight w is the share of a block in the variance of the parameter.
-fn effective_blocks(grams: &BlockGrams, active: &[Vec<usize>], spd: &Cholesky, k: usize) -> f64 {
-    let p = grams.columns;
-    let mut unit = vec![0.0; p];
-    unit[k] = 1.0;
-    let row = spd.solve(&unit);
-    let weight = |g: usize| {
-        let (xx, active) = (grams.xx(g), &active[g]);
-        let along = |a: usize| active.iter().map(|b| xx[a * p + b] * row[*b]).sum::<f64>();
-        active.iter().map(|a| row[*a] * along(*a)).sum::<f64>()
-    };
-    let weights: Vec<f64> = (0..grams.groups).map(weight).collect();
-    let squares: f64 = weights.iter().map(|w| w * w).sum();
-    if squares > 0.0 { weights.iter().sum::<f64>().powi(2) / squares } else { 1.0 }
 }
 
 /// Integer parameters as found, and changepoints with their intervals.

@@ -50,6 +50,11 @@ impl BlockGrams {
         self.sum(0..self.groups)
     }
 
+    /// Σ yy over all rows.
+    pub fn squares(&self) -> f64 {
+        self.yy.iter().sum()
+    }
+
     /// Squared error of each group, predicted from all others. A column that the others hardly contain is not used
     /// for the prediction.
     pub fn validation_losses(&self) -> Vec<f64> {
@@ -69,6 +74,29 @@ impl BlockGrams {
                 loss.max(0.0)
             })
             .collect()
+    }
+
+    /// Effective number of groups of each coefficient: the number of equal groups with the same accuracy, (Σ w)²/Σ w².
+    /// The weight w is the share of a group in the variance of the coefficient. `whole` factorizes the total.
+    pub fn effective_groups(&self, whole: &Cholesky) -> Vec<f64> {
+        let p = self.columns;
+        // Columns that are not zero throughout a group. Of the offsets for each power-up, a group has only one.
+        let active: Vec<Vec<usize>> =
+            (0..self.groups).map(|g| (0..p).filter(|a| self.xx(g)[a * p + a] > 0.0).collect()).collect();
+        let of_coefficient = |k: usize| {
+            let mut unit = vec![0.0; p];
+            unit[k] = 1.0;
+            let row = whole.solve(&unit);
+            let weight = |g: usize| {
+                let (xx, active) = (self.xx(g), &active[g]);
+                let along = |a: usize| active.iter().map(|b| xx[a * p + b] * row[*b]).sum::<f64>();
+                active.iter().map(|a| row[*a] * along(*a)).sum::<f64>()
+            };
+            let weights: Vec<f64> = (0..self.groups).map(weight).collect();
+            let squares: f64 = weights.iter().map(|w| w * w).sum();
+            if squares > 0.0 { weights.iter().sum::<f64>().powi(2) / squares } else { 1.0 }
+        };
+        (0..p).map(of_coefficient).collect()
     }
 
     /// Solution of the whole without each group in turn.
@@ -96,6 +124,16 @@ mod tests {
         assert!(spd.is_dependent(2) && !spd.is_dependent(1));
         let x = spd.solve(&[8.0, 5.0, 8.0]);
         assert!((4.0 * x[0] + 2.0 * x[1] - 8.0).abs() < 1e-9 && x[2] == 0.0, "{x:?}");
+    }
+
+    #[test]
+    fn equal_groups_count_fully_and_a_single_one_that_decides_counts_as_one() {
+        let x: Vec<f64> = (0..12).map(|i| f64::from(i % 4) - 1.5).collect();
+        let only: Vec<f64> = x.iter().enumerate().map(|(i, x)| if i < 4 { x * x } else { 0.0 }).collect();
+        let group: Vec<usize> = (0..12).map(|i| i / 4).collect();
+        let grams = BlockGrams::new(&[&x, &only], &x, &group, 3);
+        let effective = grams.effective_groups(&Cholesky::new(&grams.total().0, 2, 0.0));
+        assert!((effective[0] - 3.0).abs() < 1e-9 && (effective[1] - 1.0).abs() < 1e-9, "{effective:?}");
     }
 
     #[test]

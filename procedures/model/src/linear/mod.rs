@@ -8,6 +8,7 @@ pub(crate) mod blocked_ridge;
 pub(crate) mod cholesky;
 pub(crate) mod condition;
 pub(crate) mod gram;
+pub mod moments;
 pub(crate) mod non_negative;
 
 pub use crate::linear::augmented_gram::AugmentedGrams;
