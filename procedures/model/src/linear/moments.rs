@@ -95,8 +95,9 @@ mod tests {
         for block in [&rows[..7], &[], &rows[7..30], &rows[30..]] {
             merge(&mut merged, &state(block), 3);
         }
+        // The values of the second column, near 1e6, are themselves rounded to 1e-10.
         for (a, b) in merged.iter().zip(&whole) {
-            assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{merged:?} {whole:?}");
+            assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{merged:?} {whole:?}");
         }
         // The second column has the mean 1e6: sums about zero would have lost these digits.
         let variance = whole[1 + 3 + 2] / 50.0;
