@@ -90,7 +90,7 @@ thresholds! {
     MOST_EXCHANGES = 2.0, "exchanges", "added effects that may be swapped for others", "`evaluate --part hidden,null`";
     STAND_IN_LOSS = NEARLY_ALL, "ratio of squared validation errors", "a candidate whose error exceeds that of a rejected model by this ratio is only a substitute for the rejected effect", "`evaluate --part hidden,null`";
     BIASED_COEFFICIENT = 0.25, "fraction of coefficient", "a coefficient that moves by this fraction with an effect is biased without it", "mock joint A, seeds 17001 to 17012";
-    BIAS_TOLERANCE = TENTH, "fraction of squared column", "an effect of which the model leaves less looks like the model, or is a function of the axis", "mock joint A, seeds 17001 to 17012";
+    BIAS_TOLERANCE = TENTH, "fraction of squared column", "an effect with a smaller part outside of the model looks like the model, or is a function of the axis", "mock joint A, seeds 17001 to 17012";
     HYSTERESIS_SHARE = MOST, "fraction of squared error", "a hysteresis effect explains this fraction around reversals", "simulated joints: 83 to 98 %, nothing else above 63 %";
     DELAY_HALF_WIDTHS = 2.0, "half widths of the 95 % interval", "a delay is named where it is so far from zero", "519 joints without a delay: none; 13 with 9 to 14 ms: at least 2.6";
     DELAY_ROWS = 1.5, "rows", "a shorter delay is not named: the moment of a reading within its row is unknown", "seven mock runs, 0.9 to 1.1 rows late";
