@@ -56,6 +56,8 @@ impl Lab {
             if *content == ArchiveContent::Means {
                 meta.operating_points = true;
                 meta.sample_rate_hz = None;
+                // The means are those of the corrected torque.
+                meta.other.entry(TORQUE_ZERO).and_modify(|zero| *zero = 0.0.into());
                 more.labels = labels(&record);
             }
             self.upload_table(&archive, &path, &table, (&meta, *run), more).await?;

@@ -1,5 +1,6 @@
 //! The archive of ended runs: files, delays, and the removal of archived samples.
 
+use crate::calibrations::made;
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon};
 use jointbench::config::{Archive, parse};
 use jointbench_files::ReadOptions;
@@ -104,6 +105,29 @@ fn an_ended_run_is_archived_with_its_provenance() {
 
     let metrics = daemon.get_raw("/metrics").body_mut().read_to_string().unwrap();
     assert!(metrics.contains("jointbench_archive_owed 0.0"), "{metrics}");
+}
+
+#[test]
+fn the_zero_of_the_torque_sensor_is_subtracted_once() {
+    let folder = TempDir::new().unwrap();
+    let daemon = daemon(folder.path(), false);
+    let zero = made(&daemon, "torque_sensor_zero", json!({"duration_s": 60, "steady_nm_per_min": 1}));
+    let applied = json!({"procedure": "torque_sensor_zero", "run": zero}).to_string();
+    assert_eq!(daemon.post(&format!("/api/v1/bench/{BENCH}/calibrations"), &applied).0, 201);
+    let id = run(&daemon);
+    wait_until_archived(&daemon);
+
+    let (_, stored) = daemon.get(&format!("/api/v1/runs/{id}"));
+    assert!(stored["meta"]["torque_sensor_zero_nm"].as_f64().is_some_and(|zero_nm| zero_nm != 0.0), "{stored}");
+    let means = jointbench_files::read(&file(&table(&daemon, id, "means")), &ReadOptions::default()).unwrap();
+    let samples = daemon.get_raw(&format!("/api/v1/runs/{id}/export?format=parquet")).body_mut().read_to_vec().unwrap();
+    let samples = jointbench_files::read_bytes("x.parquet", &samples, &ReadOptions::default()).unwrap();
+    let [at_s, half_s] = [means.column("time_s").unwrap()[0], means.column("duration_s").unwrap()[0] / 2.0 + 1e-6];
+    let rows = samples.column("time_s").unwrap().iter().zip(samples.column("link_torque_nm").unwrap());
+    let within: Vec<f64> = rows.filter(|(t, _)| (*t - at_s).abs() < half_s).map(|(_, torque)| *torque).collect();
+    let expected = within.iter().sum::<f64>() / within.len() as f64;
+    let found = means.column("link_torque_nm").unwrap()[0];
+    assert!((found - expected).abs() < 1e-9, "{found} {expected}");
 }
 
 #[test]

@@ -145,7 +145,10 @@ fn units_are_started_and_listed_from_the_command_line() {
     assert!(command(&["stop"]).status.success());
     let listed = stdout(&command(&["units", "part:P"]));
     let [head, row] = listed.lines().collect::<Vec<_>>()[..] else { panic!("{listed}") };
-    assert!(head.contains("first verdict") && row.starts_with("SN123  P     B         7      1"), "{listed}");
+    assert!(
+        head.contains("first verdict") && row.starts_with("SN123             P     B         7      1"),
+        "{listed}"
+    );
     let json: Value = serde_json::from_str(&stdout(&command(&["units", "--json"]))).expect("JSON");
     assert_eq!((&json["total"], &json["units"][0]["serial"]), (&json!(1), &json!("SN123")), "{json}");
     assert!(stdout(&command(&["units", "unit:X"])).contains("no unit matches"));
