@@ -4,7 +4,9 @@
 //! between, runs are in two files; they are counted once, and the next `compact` removes the old files.
 
 use crate::Fault;
-use crate::archive::{Archive, ArchiveFile, CREATED_BY_COMPACTION, Content, Inventory, SOURCES, Selection, Source};
+use crate::archive::{
+    Archive, ArchiveFile, CREATED_BY_COMPACTION, Content, Inventory, SOURCES, Selection, Source, check,
+};
 use crate::query::refusal;
 use crate::table::facts_of_means;
 use datafusion::arrow::array::{ArrayRef, RecordBatch, new_null_array};
@@ -56,7 +58,7 @@ struct Partition<'i> {
 /// Joins the files of each partition of the means.
 ///
 /// # Errors
-/// [`Fault::Input`] for damaged files, and for a file that differs from another one with the same run;
+/// [`Fault::Input`] for damaged files, also those with another digest than in their footer, and for a file that differs from another one with the same run;
 /// [`Fault::Failed`] if a file cannot be written or is not equal when it is read back. No old file is removed then.
 pub fn compact(archive: &Archive, selection: &Selection) -> Result<Compacted, Fault> {
     let inventory = Inventory::read(archive, Content::Means, selection)?;
@@ -135,6 +137,7 @@ fn added(source: &Source) -> Vec<&'static str> {
 fn pieces(files: &[&ArchiveFile], schema: &SchemaRef) -> Result<Vec<Piece>, Fault> {
     let mut all = Vec::new();
     for file in files {
+        check(file).map_err(|damaged| refusal(&damaged))?;
         let rows = read(&file.path, schema)?;
         let mut start = 0;
         for source in &file.sources {

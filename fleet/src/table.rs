@@ -27,6 +27,7 @@ pub struct ArchiveTable {
     per_run: Vec<FieldRef>,
     /// Facts that are the same in each file.
     per_file: Vec<FieldRef>,
+    content: Content,
     files: Vec<ArchiveFile>,
 }
 
@@ -92,7 +93,7 @@ pub fn archive_table(inventory: &Inventory) -> Result<ArchiveTable, Fault> {
             }
         }
     }
-    Ok(ArchiveTable { in_files, per_run, per_file, files: inventory.files.clone() })
+    Ok(ArchiveTable { in_files, per_run, per_file, content: inventory.content, files: inventory.files.clone() })
 }
 
 impl ArchiveTable {
@@ -109,7 +110,6 @@ impl ArchiveTable {
             false => (self.in_files.clone(), [&self.per_run[..], &self.per_file].concat()),
         };
         let schema = TableSchema::builder(Arc::new(Schema::new(physical))).with_table_partition_cols(constant).build();
-        let content = if self.per_run.iter().any(|f| f.name() == "serial") { Content::Samples } else { Content::Means };
         let mut groups: Vec<Vec<PartitionedFile>> = vec![Vec::new(); partitions.min(files.len())];
         let count = groups.len();
         for (at, file) in files.into_iter().enumerate() {
@@ -117,7 +117,7 @@ impl ArchiveTable {
             let mut values: Vec<ScalarValue> = Vec::new();
             if !is_compacted {
                 let facts =
-                    facts(first, content).map_err(|fault| datafusion::common::exec_datafusion_err!("{fault}"))?;
+                    facts(first, self.content).map_err(|fault| datafusion::common::exec_datafusion_err!("{fault}"))?;
                 values.extend(facts.into_iter().map(|(_, value)| value));
             }
             values.extend(partition(first).into_iter().map(|(_, value)| value));

@@ -59,7 +59,7 @@ impl Units {
     /// Chooses the latest completed friction run of each serial number of a part.
     ///
     /// # Errors
-    /// [`Fault::Input`] for test conditions that are no JSON.
+    /// [`Fault::Input`] for test conditions that are no JSON, and without a unit.
     pub fn choose(inventory: &Inventory) -> Result<Self, Fault> {
         let damaged = inventory.damaged.clone();
         let mut omitted = Omitted { duplicates: inventory.duplicates, damaged, ..Omitted::default() };
@@ -80,6 +80,9 @@ impl Units {
                 let replaced = if later { latest.insert(same, unit) } else { Some(unit) };
                 omitted.earlier_runs += usize::from(replaced.is_some());
             }
+        }
+        if latest.is_empty() {
+            return Err(Fault::Input(no_unit(&omitted)));
         }
         let by_run = latest.into_values().map(|unit| ((unit.store.clone(), unit.run.clone()), unit)).collect();
         Ok(Self { by_run, omitted })
@@ -110,6 +113,14 @@ impl Units {
         let all: Result<Vec<Vec<T>>, Damaged> = inventory.files.par_iter().map(of_file).collect();
         Ok(all?.into_iter().flatten().collect())
     }
+}
+
+fn no_unit(omitted: &Omitted) -> String {
+    let Omitted { without_serial, not_completed, other_kind, .. } = omitted;
+    format!(
+        "no completed friction run of a unit in the selected part of the archive ({without_serial} runs without a serial \
+         number, {not_completed} not completed, {other_kind} of another kind): check --archive and --part"
+    )
 }
 
 fn unit(source: &Source) -> Option<Unit> {

@@ -58,6 +58,26 @@ fn truncated_foreign_and_corrupted_files_are_refused_by_name_and_omitted_on_requ
 }
 
 #[test]
+fn data_that_differ_from_their_digest_are_damaged() {
+    let folder = tempfile::tempdir().unwrap();
+    filled(folder.path());
+    let path = run(2).write(folder.path(), &table(0.03, 8e-4, 0.0, 2));
+    let mut bytes = fs::read(&path).unwrap();
+    let digest = b"jointbench.sha256";
+    let at = bytes.windows(digest.len()).position(|window| window == digest).unwrap() + digest.len() + 5;
+    bytes[at] = if bytes[at] == b'0' { b'1' } else { b'0' };
+    fs::write(&path, bytes).unwrap();
+    let archive = open(folder.path());
+    for text in [
+        compact(&archive, &Selection::default()).unwrap_err().to_string(),
+        fit(&archive, &Selection::default(), &model("stribeck").unwrap(), 2).unwrap_err().to_string(),
+    ] {
+        assert!(text.contains("-2.parquet: its data have the SHA-256"), "{text}");
+    }
+    assert_eq!(archive.files(Content::Means).unwrap().len(), 3, "nothing is removed");
+}
+
+#[test]
 fn another_program_or_layout_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     filled(folder.path());

@@ -8,6 +8,7 @@ use datafusion::parquet::arrow::ProjectionMask;
 use datafusion::parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use jointbench_instrument::zero::TORQUE_ZERO;
 use jointbench_instrument::{Channel, RunTable, Trace};
+use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -77,7 +78,24 @@ fn read(file: &ArchiveFile) -> Result<Columns, String> {
             values.extend_from_slice(array.values());
         }
     }
+    verify(file, &columns)?;
     Ok(columns)
+}
+
+/// Compares a file of the daemon with the digest in its footer: all columns of doubles, one after the other, each value
+/// as eight bytes, little endian. The columns of a file of `compact` were compared when it was written.
+fn verify(file: &ArchiveFile, columns: &Columns) -> Result<(), String> {
+    let [source] = &file.sources[..] else { return Ok(()) };
+    if file.is_compacted {
+        return Ok(());
+    }
+    let mut digest = Sha256::new();
+    columns.values.iter().flatten().for_each(|value| digest.update(value.to_le_bytes()));
+    let found: String = digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    match found == source.sha256() {
+        true => Ok(()),
+        false => Err(format!("its data have the SHA-256 {found}, its footer says {}", source.sha256())),
+    }
 }
 
 /// The rows of one run. A column without a value in any of them belongs to other runs of the file.

@@ -4,7 +4,7 @@ use clap::{Args, Parser, Subcommand};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-/// Answers questions over all joints of an archive: which effect is missing in which share of the units, how parameters
+/// Answers questions over all joints of an archive: which effect is missing in which proportion of the units, how parameters
 /// are distributed, which batches and units differ.
 ///
 /// The archive is the folder of Parquet files that jointbench writes ([archive] url = "file:///…"). This program only
@@ -45,7 +45,7 @@ pub enum Command {
         #[command(flatten)]
         common: Common,
     },
-    /// Find the missing effects of each unit: share of the units for each effect, by batch, and the list of the units.
+    /// Find the missing effects of each unit: proportion of units with each effect, by batch, and the list of the units.
     ///
     /// Each unit has the diagnosis of the daemon. The false discovery rate over units is 5 %.
     Diagnose {

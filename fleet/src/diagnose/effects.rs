@@ -101,14 +101,14 @@ pub struct UnitResult {
 }
 
 /// The decision on each tested unit.
-pub fn results(tested: &[&UnitDiagnosis], named: &[bool]) -> Vec<UnitResult> {
-    let result = |(unit, is_named): (&&UnitDiagnosis, &bool)| UnitResult {
+pub fn results(tested: &[&UnitDiagnosis], limit: f64) -> Vec<UnitResult> {
+    let result = |unit: &&UnitDiagnosis| UnitResult {
         unit: unit.fit.unit.clone(),
         missing: unit.missing.iter().map(|missing| missing.effect.clone()).collect(),
         p_value: unit.p_value(),
-        is_named: *is_named,
+        is_named: unit.p_value() <= limit,
     };
-    tested.iter().zip(named).map(result).collect()
+    tested.iter().map(result).collect()
 }
 
 /// Units in which structure remains that no effect of the library explains.
@@ -131,11 +131,12 @@ pub fn unexplained(tested: &[&UnitDiagnosis]) -> Unexplained {
     Unexplained { share, is_significant: share.ci95[0] > ALPHA, units }
 }
 
-/// Shares of all effects that are missing in named units, the most frequent first.
-pub fn shares(tested: &[&UnitDiagnosis], named: &[bool]) -> Vec<EffectShare> {
+/// Shares of all missing effects whose p-value is at most the limit of the units, the most frequent first.
+pub fn shares(tested: &[&UnitDiagnosis], limit: f64) -> Vec<EffectShare> {
     let mut found: BTreeMap<&str, Vec<(&UnitDiagnosis, &Missing)>> = BTreeMap::new();
-    for (unit, _) in tested.iter().zip(named).filter(|(_, is_named)| **is_named) {
-        unit.missing.iter().for_each(|missing| found.entry(&missing.effect).or_default().push((unit, missing)));
+    for unit in tested {
+        let missing = unit.missing.iter().filter(|missing| missing.p_value <= limit);
+        missing.for_each(|missing| found.entry(&missing.effect).or_default().push((unit, missing)));
     }
     let share = |(effect, units): (&str, Vec<(&UnitDiagnosis, &Missing)>)| EffectShare {
         effect: effect.to_owned(),

@@ -13,7 +13,7 @@ use crate::Fault;
 use crate::archive::{Archive, Inventory, Selection};
 use crate::fit::{FleetFit, Refused, chosen, combine};
 use crate::query::refusal;
-use crate::statistics::false_discovery::{RATE, discoveries};
+use crate::statistics::false_discovery::{RATE, limit};
 use crate::units::{Unit, Units};
 use jointbench_model::{ModelSpec, Options};
 use serde::Serialize;
@@ -72,18 +72,18 @@ pub fn diagnose(archive: &Archive, selection: &Selection, model: &ModelSpec) -> 
     }
     let tested: Vec<&UnitDiagnosis> = decided.iter().filter(|unit| unit.is_tested()).collect();
     let p_values: Vec<f64> = tested.iter().map(|unit| unit.p_value()).collect();
-    let named = discoveries(&p_values, RATE);
+    let limit = limit(&p_values, RATE);
     let fits = decided.iter().map(|unit| unit.fit.clone()).collect();
     Ok(FleetDiagnosis {
         model: model.effects.clone(),
         tested: tested.len(),
         false_discovery_rate: RATE,
-        effects: effects::shares(&tested, &named),
+        effects: effects::shares(&tested, limit),
         unexplained: effects::unexplained(&tested),
         not_testable: effects::not_testable(&decided),
         detection_limits: effects::limits(&tested),
         undecided: effects::undecided(&decided),
-        units: effects::results(&tested, &named),
+        units: effects::results(&tested, limit),
         fit: combine(model, fits, refused, units.omitted),
     })
 }

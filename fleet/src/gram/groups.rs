@@ -94,3 +94,45 @@ impl GroupsAccumulator for Groups {
         size_of_val(self) + self.states.capacity() * size_of::<f64>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use datafusion::arrow::array::Float64Array;
+    use datafusion::arrow::datatypes::Float64Type;
+    use std::sync::Arc;
+
+    /// Three columns with an absent value in row 4.
+    fn columns(rows: usize) -> Vec<ArrayRef> {
+        let value = |k: usize, i: usize| (k != 1 || i != 4).then(|| (0.7 * (i + 3 * k) as f64).sin() + k as f64);
+        let column = |k: usize| Arc::new((0..rows).map(|i| value(k, i)).collect::<Float64Array>()) as ArrayRef;
+        (0..3).map(column).collect()
+    }
+
+    fn numbers(array: &ArrayRef) -> Vec<Option<Vec<f64>>> {
+        let states = array.as_list::<i32>();
+        let of = |row: usize| states.value(row).as_primitive::<Float64Type>().values().to_vec();
+        (0..states.len()).map(|row| states.is_valid(row).then(|| of(row))).collect()
+    }
+
+    #[test]
+    fn rows_as_states_merge_to_the_states_of_the_groups() {
+        let columns = columns(30);
+        let groups: Vec<usize> = (0..30).map(|i| i % 4).collect();
+        let filter: BooleanArray = (0..30).map(|i| Some(i % 4 != 3)).collect();
+        let mut whole = Groups::new(3);
+        whole.update_batch(&columns, &groups, Some(&filter), 4).unwrap();
+        let states = whole.convert_to_state(&columns, Some(&filter)).unwrap();
+        let mut merged = Groups::new(3);
+        merged.merge_batch(&states, &groups, 4).unwrap();
+        let first = numbers(&whole.emit(EmitTo::First(3)));
+        let found = numbers(&merged.evaluate(EmitTo::All).unwrap());
+        assert_eq!((first.len(), numbers(&whole.emit(EmitTo::All))), (3, vec![None]), "group 3 has no row");
+        assert_eq!(found[3], None);
+        // Rows 0, 4, …, 28 are group 0; one of them has an absent value.
+        assert_eq!(first[0].as_ref().map(|state| state[0]), Some(7.0));
+        for (a, b) in first.iter().zip(&found).flat_map(|(a, b)| a.iter().flatten().zip(b.iter().flatten())) {
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
+        }
+    }
+}

@@ -59,8 +59,8 @@ fn of_effect(effect: &EffectShare) -> String {
     let number = |value: f64| format!("{value:.1}");
     for (title, what, groups) in [("by batch", "batch", &effect.batches), ("by week", "", &effect.weeks)] {
         let rows: Vec<Interval> = groups.iter().map(|group| row(group, what)).collect();
-        let title = format!("{}: share of units {title} (number of units)", effect.effect);
-        html += &intervals(&title, "share of units [%]", &rows, Some(0.0), number);
+        let title = format!("{}: units with the effect {title} (number of units)", effect.effect);
+        html += &intervals(&title, "units with the effect [%]", &rows, Some(0.0), number);
     }
     html += "<table><tr><th>serial number</th><th>part</th><th>batch</th><th>bench</th><th class=\"figure\">p-value</th>\
              <th class=\"figure\">reduction of the validation error</th><th>confounded with</th></tr>\n";

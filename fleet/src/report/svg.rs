@@ -14,7 +14,7 @@ const ROW: f64 = 24.0;
 const TALL: f64 = 150.0;
 /// Height of an axis with its label [px].
 const AXIS: f64 = 44.0;
-/// Ticks of an axis.
+/// Intervals between ticks of an axis, at most.
 const TICKS: usize = 5;
 
 /// A value with its interval.
@@ -54,11 +54,20 @@ impl Axis {
         LEFT + share * (WIDTH - LEFT - RIGHT)
     }
 
+    /// Round values: multiples of 1, 2 or 5 times a power of ten.
+    fn ticks(&self) -> Vec<f64> {
+        let least = (self.high - self.low) / TICKS as f64;
+        let power = 10f64.powf(least.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power).into_iter().find(|step| *step >= 0.999 * least);
+        let step = step.unwrap_or(least);
+        let (first, last) = ((self.low / step - 1e-9).ceil() as i64, (self.high / step + 1e-9).floor() as i64);
+        (first..=last).map(|tick| tick as f64 * step).collect()
+    }
+
     /// The axis below a plot of this height.
     fn draw(&self, top: f64, label: &str, number: impl Fn(f64) -> String) -> String {
         let mut svg = format!("<path class=\"axis\" d=\"M{LEFT} {top}H{}\"/>", WIDTH - RIGHT);
-        for tick in 0..=TICKS {
-            let value = self.low + (self.high - self.low) * tick as f64 / TICKS as f64;
+        for value in self.ticks() {
             let (x, number) = (self.x(value), number(value));
             let _ = write!(
                 svg,
@@ -163,6 +172,14 @@ mod tests {
         assert!(counts.len() > 3 && counts.len() <= 60, "{counts:?}");
         assert_eq!(histogram("t", "x", &[], |v| v.to_string()), "");
         assert!(histogram("t", "x", &[2.0, 2.0], |v| v.to_string()).contains("2 units"));
+    }
+
+    #[test]
+    fn ticks_are_round() {
+        let ticks = |low, high| Axis { low, high }.ticks();
+        assert_eq!(ticks(0.0, 10.5), [0.0, 5.0, 10.0]);
+        assert_eq!(ticks(24.4, 37.5), [25.0, 30.0, 35.0]);
+        assert_eq!(ticks(-0.4, 0.6).len(), 6);
     }
 
     #[test]

@@ -11,7 +11,7 @@ pub fn discoveries(p_values: &[f64], rate: f64) -> Vec<bool> {
 }
 
 /// The largest rejected p-value; negative if no hypothesis is rejected.
-fn limit(p_values: &[f64], rate: f64) -> f64 {
+pub fn limit(p_values: &[f64], rate: f64) -> f64 {
     let mut sorted: Vec<f64> = p_values.iter().copied().filter(|p| !p.is_nan()).collect();
     sorted.sort_by(f64::total_cmp);
     let step = rate / p_values.len().max(1) as f64;

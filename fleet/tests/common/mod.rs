@@ -8,6 +8,7 @@ use jointbench_instrument::{Channel, Kind, Meta, Trace};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
+use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -124,6 +125,26 @@ impl Default for Run {
     }
 }
 
+/// Samples of one run at 1 kHz in segments of 10,000: velocities and currents as whole counts of their instruments.
+pub fn samples(rows: usize, seed: u64) -> Trace {
+    let names = ["time_s", "segment", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "temperature_c"];
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let joint = Joint { coulomb_nm: 0.03, viscous_nm_s_per_rad: 8e-4, stribeck_nm: 0.0, stribeck_rad_s: 3.0 };
+    let noise = Normal::new(0.0, 1.0).unwrap();
+    let counted = |value: f64, count: f64| (value / count).round() * count;
+    let mut trace = Trace::new(names.map(Channel::new).to_vec());
+    let mut position = 0.0;
+    for row in 0..rows {
+        let segment = row / 10_000;
+        let speed = SPEEDS[segment % SPEEDS.len()] * if segment.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let velocity = counted(speed + 0.02 * noise.sample(&mut random), 0.01);
+        let current = counted((joint.torque(velocity) + 2e-3 * noise.sample(&mut random)) / KM, 1e-3);
+        position += 1e-3 * velocity;
+        trace.push_row(&[1e-3 * row as f64, segment as f64, counted(position, 1e-4), velocity, current, 25.0]);
+    }
+    trace
+}
+
 /// The means of one run of one joint with these parameters: Coulomb \[Nm\], viscous \[Nm·s/rad\], Stribeck \[Nm\].
 pub fn table(coulomb_nm: f64, viscous_nm_s_per_rad: f64, stribeck_nm: f64, seed: u64) -> Trace {
     let joint = Joint { coulomb_nm, viscous_nm_s_per_rad, stribeck_nm, stribeck_rad_s: 3.0 };
@@ -206,10 +227,37 @@ impl Run {
     }
 
     pub fn write_to(&self, path: &Path, means: &Trace) {
+        let labels = vec![
+            ("serial", Some(self.serial.clone())),
+            ("revision", Some("C".to_owned())),
+            ("procedure", Some("friction".to_owned())),
+            ("started_at", Some(self.created())),
+            ("run", Some(self.number.to_string())),
+        ];
+        self.write_table(path, "means", &Self::meta(), means, labels);
+    }
+
+    /// Writes the samples of this run. Returns the path.
+    pub fn write_samples(&self, root: &Path, samples: &Trace) -> PathBuf {
+        let folder = root.join(format!("samples/part={PART}/batch={}/bench=eol-1", self.batch));
+        fs::create_dir_all(&folder).unwrap();
+        let path = folder.join(format!("run-{}-{}.parquet", self.store, self.number));
+        self.write_table(&path, "samples", &Meta { operating_points: false, ..Self::meta() }, samples, Vec::new());
+        path
+    }
+
+    fn write_table(
+        &self,
+        path: &Path,
+        content: &str,
+        meta: &Meta,
+        table: &Trace,
+        labels: Vec<(&'static str, Option<String>)>,
+    ) {
         let file = fs::File::create(path).unwrap();
         let facts = [
             ("jointbench.schema_version", "1".to_owned()),
-            ("jointbench.content", "means".to_owned()),
+            ("jointbench.content", content.to_owned()),
             ("jointbench.store", self.store.to_owned()),
             ("jointbench.run", self.number.to_string()),
             ("jointbench.bench", "eol-1".to_owned()),
@@ -218,29 +266,22 @@ impl Run {
             ("jointbench.created_at", self.created()),
             ("jointbench.calibrations", r#"{"certificates":null}"#.to_owned()),
             ("jointbench.software_version", "0.2.0".to_owned()),
-            ("jointbench.sha256", digest(means)),
+            ("jointbench.sha256", digest(table)),
             ("jointbench.serial", self.serial.clone()),
             ("jointbench.part", PART.to_owned()),
             ("jointbench.revision", "C".to_owned()),
             ("jointbench.batch", self.batch.clone()),
         ];
-        let labels = vec![
-            ("serial", Some(self.serial.clone())),
-            ("revision", Some("C".to_owned())),
-            ("procedure", Some("friction".to_owned())),
-            ("started_at", Some(self.created())),
-            ("run", Some(self.number.to_string())),
-        ];
         let more = Annotations { footer: facts.into(), labels };
-        let mut parquet = ParquetWriter::annotated(file, &Self::meta(), means.channels(), more).unwrap();
-        parquet.write(means).unwrap();
+        let mut parquet = ParquetWriter::annotated(file, meta, table.channels(), more).unwrap();
+        parquet.write(table).unwrap();
         parquet.finish().unwrap();
     }
 }
 
-/// A digest in place of the SHA-256 of the daemon: other data have another one.
+/// SHA-256 of all columns, as the daemon computes it.
 fn digest(means: &Trace) -> String {
-    let bits = means.columns().iter().flatten().map(|value| value.to_bits());
-    let hash = bits.fold(0xcbf2_9ce4_8422_2325_u64, |hash, bits| (hash ^ bits).wrapping_mul(0x0100_0000_01b3));
-    format!("{hash:016x}").repeat(4)
+    let mut digest = Sha256::new();
+    means.columns().iter().flatten().for_each(|value| digest.update(value.to_le_bytes()));
+    digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
