@@ -1,8 +1,8 @@
 //! The population of each parameter over the units of a part: mean, variance between units, outliers and batches.
 
 use super::{UnitFit, UnitParameter};
-use crate::statistics::false_discovery::{RATE, discoveries};
-use crate::statistics::outliers::outliers;
+use crate::statistics::false_discovery::{RATE, discoveries, limit};
+use crate::statistics::outliers::{Deviation, deviations};
 use crate::statistics::random_effects::{Estimate, Population, population};
 use crate::statistics::shift::{BatchMean, batch_means};
 use crate::statistics::student_95;
@@ -33,7 +33,7 @@ pub struct PartParameter {
     pub population: Option<Population>,
     /// Each batch with at least five units, if there are two of them.
     pub batches: Vec<BatchFit>,
-    /// Units that differ from their batch.
+    /// Units that differ from the other units, at a false discovery rate of 5 % over all parts, parameters and units.
     pub outliers: Vec<Outlier>,
 }
 
@@ -54,7 +54,7 @@ pub struct BatchFit {
     pub is_shifted: bool,
 }
 
-/// A unit that differs from its batch.
+/// A unit that differs from the other units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outlier {
     /// Batch of the unit.
@@ -63,8 +63,10 @@ pub struct Outlier {
     pub serial: String,
     /// Its estimate.
     pub value: f64,
-    /// Deviation from the median of the batch, in standard deviations of a unit.
+    /// Deviation from the median of its batch, or of all units if batches are small, in standard deviations of a unit.
     pub deviation: f64,
+    /// Two-sided p-value of the deviation.
+    pub p_value: f64,
 }
 
 /// The parts of fitted units, which are sorted by part.
@@ -75,6 +77,11 @@ pub fn parts(units: &[UnitFit]) -> Vec<PartFit> {
     let shifted = discoveries(&p_values, RATE);
     let batches = parts.iter_mut().flat_map(|part| &mut part.parameters).flat_map(|parameter| &mut parameter.batches);
     batches.zip(shifted).for_each(|(batch, is_shifted)| batch.is_shifted = is_shifted);
+    let units = parts.iter().flat_map(|part| &part.parameters).flat_map(|parameter| &parameter.outliers);
+    let limit = limit(&units.map(|unit| unit.p_value).collect::<Vec<f64>>(), RATE);
+    for parameter in parts.iter_mut().flat_map(|part| &mut part.parameters) {
+        parameter.outliers.retain(|unit| unit.p_value <= limit);
+    }
     parts
 }
 
@@ -100,13 +107,15 @@ fn parameter<'u>(units: &'u [UnitFit], (effect, name, unit): (&str, &str, &str))
     let estimates: Vec<Estimate> = known.iter().map(|(_, estimate)| *estimate).collect();
     let group: Vec<usize> =
         known.iter().map(|(fit, _)| names.binary_search(&fit.unit.batch.as_str()).unwrap_or(0)).collect();
-    let found = known.iter().zip(outliers(&estimates, &group)).filter(|(_, (_, is_outlier))| *is_outlier);
-    let outlier = |((fit, estimate), (deviation, _)): (&(&UnitFit, Estimate), (f64, bool))| Outlier {
+    // All units: those that are no outliers are removed when the parameters of all parts are known.
+    let outlier = |((fit, estimate), found): (&(&UnitFit, Estimate), Deviation)| Outlier {
         batch: fit.unit.batch.clone(),
         serial: fit.unit.serial.clone(),
         value: estimate.value,
-        deviation,
+        deviation: found.score,
+        p_value: found.p_value,
     };
+    let found = known.iter().zip(deviations(&estimates, &group));
     let values: Vec<Vec<Estimate>> = by_batch.into_values().collect();
     let means = names.iter().zip(batch_means(&values));
     PartParameter {
