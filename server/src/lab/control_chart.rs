@@ -71,8 +71,12 @@ fn chosen(found: &[Found], name: Option<&str>, search: &str, procedure: &str) ->
     let named = name.map(|name| all().find(|quantity| quantity.name == name));
     named.unwrap_or(first).cloned().ok_or_else(|| {
         LabError::NotFound(match name {
-            Some(name) => format!("no complete run of {procedure} of these units has the quantity {name}"),
-            None => format!("no unit that matches {search:?} has a complete run of {procedure}"),
+            Some(name) => format!(
+                "no complete run of {procedure} of these units, without reference units, has the quantity {name}"
+            ),
+            None => {
+                format!("no unit that matches {search:?}, without reference units, has a complete run of {procedure}")
+            }
         })
     })
 }

@@ -102,7 +102,7 @@ impl Lab {
 
     /// Marks a unit as a reference, or ends that.
     pub async fn set_unit_reference(&self, serial: &str, reference: bool, by: &str) -> Answer<UnitSummary> {
-        let store = &self.inner.store;
+        let (store, serial) = (&self.inner.store, serial.trim());
         let none = || LabError::NotFound(format!("no run has the unit {serial}"));
         if store.runs_of_unit(serial).await?.is_empty() {
             return Err(none());

@@ -39,6 +39,9 @@ const FILES: &[(&str, &str)] = &[
     ("0029_unit_references.sql", include_str!("../../../migrations/0029_unit_references.sql")),
 ];
 
+/// Number of the newest migration.
+pub const NEWEST: i64 = FILES.len() as i64;
+
 #[derive(Debug)]
 pub struct Migrations;
 

@@ -13,7 +13,8 @@ impl Store {
     /// Samples from `from_s` to `to_s`, both included, as at most `px` points with the smallest and largest value of
     /// each channel. If the window has at most `px` rows, each row is a point.
     ///
-    /// Points end at bins of the [`pyramid`]: a point may contain rows of its neighbour, less than half a pixel.
+    /// Points end at bins of the [`pyramid`]: a point may contain rows of its neighbour, less than half a pixel. A run
+    /// whose samples are only in the archive has one point for two bins of the finest level.
     pub async fn window(
         &self,
         run: RunId,
@@ -33,9 +34,16 @@ impl Store {
         let count = (rows.end - rows.start).max(0) as usize;
         let exact = count <= px;
         let columns = match count / px.max(1) {
-            _ if exact => exactly(&mut reader, run, chosen, rows).await?,
-            few if few < 2 * FINE_ROWS => from_samples(&mut reader, run, chosen, rows, px).await?,
-            some => from_pyramid(&mut reader, run, chosen, rows, px, some >= 2 * COARSE_ROWS).await?,
+            _ if exact => exactly(&mut reader, run, chosen.clone(), rows.clone()).await,
+            few if few < 2 * FINE_ROWS => from_samples(&mut reader, run, chosen.clone(), rows.clone(), px).await,
+            some => from_pyramid(&mut reader, run, chosen.clone(), rows.clone(), px, some >= 2 * COARSE_ROWS).await,
+        };
+        let (columns, exact) = match columns {
+            Err(StoreError::Dropped { .. }) => {
+                let px = (count / (2 * FINE_ROWS)).max(1);
+                (from_pyramid(&mut reader, run, chosen, rows, px, false).await?, false)
+            }
+            columns => (columns?, exact),
         };
         let mut columns = columns.into_iter();
         let time_s = columns.next().map(|time| time.min).unwrap_or_default();

@@ -263,8 +263,11 @@ fn dropped_samples_are_named_and_give_the_same_result_after_an_import() {
     assert!(dropped.contains(&format!("ok    run {id}: dropped")), "{dropped}");
     assert!(command(&[]).contains("samples dropped"));
 
-    assert_eq!(daemon.get(&of_run("samples?px=100")).0, 200, "the overview is kept");
-    for path in ["samples?px=20000", "statistics", "export?format=csv"] {
+    let (status, overview) = daemon.get(&of_run("samples?px=20000"));
+    let points = overview["time_s"].as_array().map_or(0, Vec::len);
+    assert!(status == 200 && overview["exact"] == false && points > 10, "the overview is kept: {points} points");
+    assert_eq!(daemon.get(&format!("/api/v1/trends?search=id:{id}")).0, 200);
+    for path in ["samples?px=20000&from_s=1", "statistics", "export?format=csv"] {
         let (status, problem) = daemon.get(&of_run(path));
         let detail = problem["detail"].as_str().unwrap_or_else(|| panic!("{path}: {problem}"));
         assert_eq!((status, &problem["type"]), (410, &json!("urn:jointbench:gone")), "{path}: {problem}");

@@ -47,10 +47,10 @@ fn references() -> BTreeSet<(String, String)> {
     known
 }
 
-/// The comments of a source file, or the whole of a document.
+/// The comments of a source file, or a document without its blocks of code.
 fn prose(path: &str, text: &str) -> String {
     if path.ends_with(".md") {
-        return text.to_owned();
+        return text.split("\n```").step_by(2).collect();
     }
     let comment = |line: &str| {
         let line = line.trim_start();

@@ -47,6 +47,19 @@ fn a_store_in_use_is_whole() {
 }
 
 #[test]
+fn an_earlier_schema_lacks_later_tables_and_is_whole() {
+    block_on(async {
+        let (folder, store) = furnished().await;
+        damage(&store, "DROP TABLE unit_references").await;
+        assert!(!verify(folder.path()).await.unwrap().is_whole(), "a table of this schema is missing");
+        damage(&store, "DELETE FROM _sqlx_migrations WHERE version = (SELECT MAX(version) FROM _sqlx_migrations)")
+            .await;
+        let report = verify(folder.path()).await.unwrap();
+        assert!(report.is_whole(), "{report:?}");
+    });
+}
+
+#[test]
 fn every_kind_of_damage_is_found_where_it_is() {
     block_on(async {
         let cases: [(&'static str, Option<i64>, &str); 20] = [

@@ -15,12 +15,13 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Folders and files whose strings are messages for users.
-const SPOKEN: [&str; 16] = [
+const SPOKEN: [&str; 17] = [
     "procedures/procedure/src",
     "procedures/model/src",
     "drivers/files/src",
     "drivers/instrument/src",
     "drivers/devices/src",
+    "fleet/src",
     "server/src/api",
     "server/src/archive",
     "server/src/bench",
