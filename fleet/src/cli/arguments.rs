@@ -35,42 +35,18 @@ pub enum Command {
     /// Fit a model to the means of each unit: mean, variance between units, shifted batches and outliers.
     ///
     /// The latest completed friction run of each serial number represents its unit.
-    Fit {
-        /// Effects of the model; jointbench effects lists them.
-        #[arg(long, default_value = "coulomb + viscous")]
-        model: String,
-        /// Only units of this part number.
-        #[arg(long)]
-        part: Option<String>,
-        #[command(flatten)]
-        common: Common,
-    },
+    Fit(Modelled),
     /// Find the missing effects of each unit: proportion of units with each effect, by batch, and the list of the units.
     ///
     /// Each unit has the diagnosis of the daemon. The false discovery rate over units is 5 %.
-    Diagnose {
-        /// Effects of the model; jointbench effects lists them.
-        #[arg(long, default_value = "coulomb + viscous")]
-        model: String,
-        /// Only units of this part number.
-        #[arg(long)]
-        part: Option<String>,
-        #[command(flatten)]
-        common: Common,
-    },
+    Diagnose(Modelled),
     /// Diagnose, and write the result as one HTML page without references to other files.
     Report {
         /// The page.
         #[arg(long, value_name = "FILE.html")]
         out: PathBuf,
-        /// Effects of the model; jointbench effects lists them.
-        #[arg(long, default_value = "coulomb + viscous")]
-        model: String,
-        /// Only units of this part number.
-        #[arg(long)]
-        part: Option<String>,
         #[command(flatten)]
-        common: Common,
+        modelled: Modelled,
     },
     /// Join the small files of each partition of the means to one sorted file.
     ///
@@ -79,6 +55,19 @@ pub enum Command {
         #[command(flatten)]
         common: Common,
     },
+}
+
+/// A model over the units of the archive.
+#[derive(Debug, Args)]
+pub struct Modelled {
+    /// Effects of the model; jointbench effects lists them.
+    #[arg(long, default_value = "coulomb + viscous")]
+    pub model: String,
+    /// Only units of this part number.
+    #[arg(long)]
+    pub part: Option<String>,
+    #[command(flatten)]
+    pub common: Common,
 }
 
 #[derive(Debug, Args)]

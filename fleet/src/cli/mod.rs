@@ -4,10 +4,10 @@ mod arguments;
 
 use crate::archive::{Archive, Selection};
 use crate::compact::compact;
-use crate::diagnose::diagnose;
+use crate::diagnose::{FleetDiagnosis, diagnose};
 use crate::fit::{fit, model};
 use crate::{Fault, diagnose as diagnosis, fit as fitting, query, report};
-use arguments::{Arguments, Command, Common};
+use arguments::{Arguments, Command, Common, Modelled};
 use clap::Parser;
 use serde::Serialize;
 use std::io::Write;
@@ -46,25 +46,18 @@ fn execute(command: &Command) -> Result<String, Fault> {
             name_omitted(&found.session.samples.damaged);
             if common.json { query::json(&found.batches).map(|json| json + "\n") } else { query::text(&found.batches) }
         }
-        Command::Fit { model: text, part, common } => {
+        Command::Fit(Modelled { model: text, part, common }) => {
             let (archive, selection) = opened(common, part.as_deref())?;
             let found = fit(&archive, &selection, &model(text)?, threads(common))?;
             name_omitted(&found.omitted.damaged);
             written(common, &found, fitting::text)
         }
-        Command::Diagnose { model: text, part, common } => {
-            let (archive, selection) = opened(common, part.as_deref())?;
-            let found = in_threads(common, || diagnose(&archive, &selection, &model(text)?))?;
-            name_omitted(&found.fit.omitted.damaged);
-            written(common, &found, diagnosis::text)
-        }
-        Command::Report { model: text, part, out, common } => {
-            let (archive, selection) = opened(common, part.as_deref())?;
-            let found = in_threads(common, || diagnose(&archive, &selection, &model(text)?))?;
-            name_omitted(&found.fit.omitted.damaged);
+        Command::Diagnose(modelled) => written(&modelled.common, &diagnosed(modelled)?, diagnosis::text),
+        Command::Report { modelled, out } => {
+            let found = diagnosed(modelled)?;
             std::fs::write(out, report::page(&found))
                 .map_err(|fault| Fault::Failed(format!("{}: {fault}", out.display())))?;
-            written(common, &found, |_| format!("Report: {}\n", out.display()))
+            written(&modelled.common, &found, |_| format!("Report: {}\n", out.display()))
         }
         Command::Compact { common } => {
             let (archive, selection) = opened(common, None)?;
@@ -77,6 +70,13 @@ fn execute(command: &Command) -> Result<String, Fault> {
     }
 }
 
+fn diagnosed(Modelled { model: text, part, common }: &Modelled) -> Result<FleetDiagnosis, Fault> {
+    let (archive, selection) = opened(common, part.as_deref())?;
+    let found = in_threads(common, || diagnose(&archive, &selection, &model(text)?))?;
+    name_omitted(&found.fit.omitted.damaged);
+    Ok(found)
+}
+
 fn opened(common: &Common, part: Option<&str>) -> Result<(Archive, Selection), Fault> {
     let selection =
         Selection { part: part.map(str::to_owned), skip_damaged: common.skip_damaged, ..Selection::default() };
@@ -87,7 +87,7 @@ fn threads(common: &Common) -> usize {
     common.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from)
 }
 
-/// Computes on the demanded number of threads.
+/// Computes on the requested number of threads.
 fn in_threads<T: Send>(common: &Common, compute: impl FnOnce() -> Result<T, Fault> + Send) -> Result<T, Fault> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(common)).build();
     pool.map_err(|fault| Fault::Failed(format!("no threads: {fault}")))?.install(compute)

@@ -95,7 +95,7 @@ fn plain(line: &str) -> String {
 
 #[test]
 fn documents_are_read_as_paragraphs_items_and_rows_without_code() {
-    let document = "# Title\nOne **word**\nand [a link](docs/beside.md).\n\n    indented code\n\n```sh\ncode\n```\n\
+    let document = "# Title\nOne **word**\nand [a link](docs/archive.md).\n\n    indented code\n\n```sh\ncode\n```\n\
                     1. first\n   continued\n* second\n| a | b |\n| c | d |\nafter\n";
     let found = blocks(document).into_iter().map(|block| (block.is_table_row, block.line, block.text));
     let expected = [
