@@ -97,13 +97,13 @@ mod tests {
         }
         // The values of the second column, near 1e6, are themselves rounded to 1e-10.
         for (a, b) in merged.iter().zip(&whole) {
-            assert!((a - b).abs() <= 1e-8 * b.abs().max(1.0), "{merged:?} {whole:?}");
+            assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{merged:?} {whole:?}");
         }
         // The second column has the mean 1e6: sums about zero would have lost these digits.
         let variance = whole[1 + 3 + 2] / 50.0;
         let mean = rows.iter().map(|r| r[1] - 1e6).sum::<f64>() / 50.0;
         let expected = rows.iter().map(|r| (r[1] - 1e6 - mean).powi(2)).sum::<f64>() / 50.0;
-        assert!((variance - expected).abs() < 1e-8, "{variance} {expected}");
+        assert!((variance - expected).abs() < 1e-9, "{variance} {expected}");
     }
 
     #[test]
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!((found.groups, &found.rows), (5, &vec![8; 5]));
         for (found, expected) in [(&found.xx, &expected.xx), (&found.xy, &expected.xy), (&found.yy, &expected.yy)] {
             assert_eq!(found.len(), expected.len());
-            found.iter().zip(expected).for_each(|(a, b)| assert!((a - b).abs() < 1e-10, "{a} {b}"));
+            found.iter().zip(expected).for_each(|(a, b)| assert!((a - b).abs() < 1e-12, "{a} {b}"));
         }
     }
 
