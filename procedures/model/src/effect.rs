@@ -155,9 +155,63 @@ pub enum Regime {
     Hysteresis,
 }
 
+/// What the selection and the diagnosis have to know about an effect. Default: an effect at steady state without
+/// peculiarities.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Traits {
+    /// The part of the data that shows the effect.
+    pub regime: Regime,
+    /// The angle of a periodic effect; its nonlinear parameter is the number of waves in a turn.
+    pub wave: Option<Signal>,
+    /// A nonlinear parameter that only describes how suddenly the effect starts and ends. At the bound of its range
+    /// the effect is still identified.
+    pub exponent_parameter: Option<&'static str>,
+    /// The effect whose formula this one corrects: it is a candidate only together with that one (marginality, Nelder
+    /// 1977).
+    pub corrects: Option<&'static str>,
+    /// A temperature effect over time instead of temperature, as an inline user effect: if temperature follows time in
+    /// a run, both explain it.
+    pub over_time: Option<&'static str>,
+    /// The missing excitation, or why the effect is not visible. Default: how its residual looks.
+    pub unseen: Option<&'static str>,
+    /// Whether the formula is exact, so that the effect leaves no form error.
+    pub is_exact: bool,
+    /// Whether the coefficients belong to this run's repeats: another run has other values of the same size.
+    pub is_nuisance: bool,
+    /// Whether the effect is an offset term: it has the coefficient one and no parameters.
+    pub is_offset: bool,
+    /// Whether it is computed from the motion of the link. If one side of the joint is clamped, that motion is the
+    /// twist itself.
+    pub needs_motion: bool,
+    /// Whether a user wrote the formula. The selection prefers an effect of the library that explains the same.
+    pub is_user_defined: bool,
+    /// Whether a user has set parameters of the effect.
+    pub is_set: bool,
+}
+
+impl Default for Traits {
+    fn default() -> Self {
+        Self {
+            regime: Regime::SteadyState,
+            wave: None,
+            exponent_parameter: None,
+            corrects: None,
+            over_time: None,
+            unseen: None,
+            is_exact: false,
+            is_nuisance: false,
+            is_offset: false,
+            needs_motion: false,
+            is_user_defined: false,
+            is_set: false,
+        }
+    }
+}
+
 /// One physical cause as a sum of coefficients times columns. The columns may depend on nonlinear parameters.
 ///
-/// [`Effect::info`], [`Effect::forms`] and [`Effect::columns`] are required; the other methods have defaults.
+/// [`Effect::info`], [`Effect::forms`] and [`Effect::columns`] are required. [`Effect::traits`] differs where an effect is
+/// more than a column at steady state; the other methods have defaults too.
 ///
 /// ```
 /// use jointbench_instrument::Kind;
@@ -207,45 +261,9 @@ pub trait Effect: Sync {
         None
     }
 
-    /// The part of the data that shows the effect. Default: steady state.
-    fn regime(&self) -> Regime {
-        Regime::SteadyState
-    }
-
-    /// The angle of a periodic effect; its nonlinear parameter is the number of waves in a turn.
-    fn wave(&self) -> Option<Signal> {
-        None
-    }
-
-    /// A nonlinear parameter that only describes how suddenly the effect starts and ends. At the bound of its range
-    /// the effect is still identified.
-    fn exponent_parameter(&self) -> Option<&'static str> {
-        None
-    }
-
-    /// Whether the formula is exact, so that the effect leaves no form error.
-    fn is_exact(&self) -> bool {
-        false
-    }
-
-    /// Whether the coefficients belong to this run's repeats: another run has other values of the same size.
-    fn is_nuisance(&self) -> bool {
-        false
-    }
-
-    /// Whether a user wrote the formula. The selection prefers an effect of the library that explains the same.
-    fn is_user_defined(&self) -> bool {
-        false
-    }
-
-    /// Whether the effect is an offset term: it has the coefficient one and no parameters.
-    fn is_offset(&self) -> bool {
-        false
-    }
-
-    /// Whether a user has set parameters of the effect.
-    fn is_set(&self) -> bool {
-        false
+    /// What the selection and the diagnosis have to know about the effect.
+    fn traits(&self) -> Traits {
+        Traits::default()
     }
 
     /// Every coefficient of the only form, with the value of those that are fixed. Empty: none is fixed.
@@ -264,32 +282,9 @@ pub trait Effect: Sync {
         self.info().needs.iter().find(absent).copied()
     }
 
-    /// Whether it is computed from the motion of the link. If one side of the joint is clamped, that motion is the
-    /// twist itself.
-    fn needs_motion(&self) -> bool {
-        false
-    }
-
     /// The aliased effect that is identical to this one in such data, and represents both.
     fn same_as(&self, _view: &View) -> Option<&'static str> {
         None
-    }
-
-    /// The effect whose formula this one corrects: it is a candidate only together with that one (marginality, Nelder
-    /// 1977).
-    fn corrects(&self) -> Option<&'static str> {
-        None
-    }
-
-    /// A temperature effect over time instead of temperature, as an inline user effect: if temperature follows time in
-    /// a run, both explain it.
-    fn over_time(&self) -> Option<&'static str> {
-        None
-    }
-
-    /// The missing excitation, or why the effect is not visible.
-    fn unseen(&self) -> &str {
-        self.info().looks
     }
 
     /// Why this data cannot show the effect: a needed signal is missing or constant.
@@ -303,7 +298,7 @@ pub trait Effect: Sync {
             let meant = nearest(need, others).map(|near| format!("; did you mean {near}?"));
             return Some(format!("the run has no column {need}{}", meant.unwrap_or_default()));
         }
-        if view.constants.is_held && self.needs_motion() {
+        if view.constants.is_held && self.traits().needs_motion {
             let why = "one side of the joint is held, so that the only motion is the deformation itself; move the joint under load";
             return Some(why.into());
         }
@@ -316,7 +311,11 @@ pub trait Effect: Sync {
                 "the motion has one direction only, in which it equals {other}, which represents both; measure the other direction as well"
             ));
         }
-        if self.forms(view).is_empty() { Some(format!("it would not show: {}", self.unseen())) } else { None }
+        if self.forms(view).is_empty() {
+            Some(format!("it would not show: {}", self.traits().unseen.unwrap_or(info.looks)))
+        } else {
+            None
+        }
     }
 }
 

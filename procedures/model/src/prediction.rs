@@ -76,7 +76,7 @@ pub(crate) fn predict_on(
     };
     for id in &fit.effects {
         let effect = find_with_own(fit.kind, &fit.own, id)?;
-        if effect.is_offset() && effect.missing(view).is_none() {
+        if effect.traits().is_offset && effect.missing(view).is_none() {
             add(effect.columns("linear", &[], view), &[1.0]);
         }
     }

@@ -1,9 +1,8 @@
 //! An effect some of whose parameters a user has set.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Regime, Shape, ShapeSearch};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, Traits};
 use crate::effects;
 use crate::report::setting::ParameterSetting;
-use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic};
 use crate::view::View;
 use crate::{ModelError, OwnEffect};
@@ -136,8 +135,8 @@ impl Effect for SetEffect {
         columns
     }
 
-    fn is_set(&self) -> bool {
-        self.pinned.is_some() || !self.nonlinear.is_empty()
+    fn traits(&self) -> Traits {
+        Traits { is_set: self.pinned.is_some() || !self.nonlinear.is_empty(), ..self.whole().traits() }
     }
 
     fn coefficients(&self) -> &[(String, Option<f64>)] {
@@ -162,56 +161,12 @@ impl Effect for SetEffect {
         self.whole().formula_of(form)
     }
 
-    fn regime(&self) -> Regime {
-        self.whole().regime()
-    }
-
-    fn wave(&self) -> Option<Signal> {
-        self.whole().wave()
-    }
-
-    fn exponent_parameter(&self) -> Option<&'static str> {
-        self.whole().exponent_parameter()
-    }
-
-    fn is_exact(&self) -> bool {
-        self.whole().is_exact()
-    }
-
-    fn is_nuisance(&self) -> bool {
-        self.whole().is_nuisance()
-    }
-
-    fn is_user_defined(&self) -> bool {
-        self.whole().is_user_defined()
-    }
-
-    fn is_offset(&self) -> bool {
-        self.whole().is_offset()
-    }
-
     fn missing(&self, view: &View) -> Option<&'static str> {
         self.whole().missing(view)
     }
 
-    fn needs_motion(&self) -> bool {
-        self.whole().needs_motion()
-    }
-
     fn same_as(&self, view: &View) -> Option<&'static str> {
         self.whole().same_as(view)
-    }
-
-    fn corrects(&self) -> Option<&'static str> {
-        self.whole().corrects()
-    }
-
-    fn over_time(&self) -> Option<&'static str> {
-        self.whole().over_time()
-    }
-
-    fn unseen(&self) -> &str {
-        self.whole().unseen()
     }
 
     fn hidden(&self, view: &View) -> Option<String> {

@@ -40,6 +40,8 @@ macro_rules! levels {
     };
 }
 
+/// Constants, and the list that prints them.
+#[macro_export]
 macro_rules! thresholds {
     (
         $(#[$doc:meta])* $list:ident:
@@ -48,7 +50,7 @@ macro_rules! thresholds {
         $(#[doc = concat!($meaning, " [", $unit, "]")] pub const $name: f64 = $value;)*
 
         $(#[$doc])*
-        pub const $list: &[Threshold] = &[$(Threshold {
+        pub const $list: &[$crate::thresholds::Threshold] = &[$($crate::thresholds::Threshold {
             name: stringify!($name),
             value: $value,
             written: stringify!($value),
@@ -76,7 +78,7 @@ thresholds! {
     ONE_ERROR = 1.0, "standard errors", "the gain of an effect exceeds its own standard error over blocks so many times", "one-standard-error rule (Breiman and others 1984)";
     MOST_NAMED = 4.0, "effects", "largest number of effects that are added where samples are judged", "presentation";
     MOST_EFFECTS = 6.0, "effects", "largest number of effects that are added elsewhere", "presentation";
-    LEFT_SHARE = TENTH, "fraction of squared validation error", "a function of an axis, a line in time or neighbouring moments that take more are structure", "nulls of `evaluate FOLDER`";
+    LEFT_SHARE = TENTH, "fraction of squared validation error", "a function of an axis, a line in time or neighbouring moments that take more are structure; a rejected effect that takes more is listed", "nulls of `evaluate FOLDER`";
     CLEAR_ERRORS = 3.0, "standard errors", "structure of samples, and what an alias misses, exceed their own error so many times", "nulls of `evaluate --part styles --first 300000 --family friction`";
     FORMULA_ERROR = 0.002, "fraction of squared error", "the formula of an effect may leave this fraction of its contribution (4.5 % in RMS; encoders none)", "`evaluate --part hidden,null`";
     UNMISTAKABLE_SHARE = HALF, "fraction of squared error", "an effect that removes this fraction of the residual is no remainder of another formula", "`evaluate --part hidden,null`";
@@ -105,7 +107,7 @@ thresholds! {
     WHOLE_CURVE = 0.98, "fraction of what any function of the axis explains", "the bound for such a wave", "`--test waves`";
     FOLLOWED_RAD = 1.0, "rad", "a wave that advances further from sample to sample is not followed, and between two means it may be an alias", "`--test beats`";
     REPEATABLE_SHARE = HALF, "fraction of squared error", "more in common to all repeats is structure", "`evaluate --part hidden,null`";
-    FLOOR_RATIO = 1.3, "ratio of RMS", "a validation error beyond this multiple of the noise floor is structure", "`evaluate --part hidden,null`";
+    FLOOR_RATIO = 1.3, "ratio of RMS", "a validation error beyond this multiple of the noise floor is structure; form error in the place of a friction direction must not be better by more", "`evaluate --part hidden,null`";
     EVENT_ERRORS = 7.0, "standard deviations", "a section whose mean exceeds the scatter of sections of its length by this, and half a count of the encoders, is an event", "`evaluate --part null`: none in 800 runs; readings that jump: 7.4 to 51";
     NEGLIGIBLE_RMS = 0.002, "fraction of RMS of the response", "a residual below this is negligible (encoders excepted)", "`evaluate --part hidden,null`";
     FLOOR_INTERVAL_RATIO = 3.0, "ratio", "a noise floor with a wider interval is only about", "`--test repeats`";
@@ -211,17 +213,19 @@ thresholds! {
 pub fn tables() -> [String; 4] {
     let level = |l: &Level| format!("| {} | {} | {} |\n", l.name, l.value, l.meaning);
     let levels: String = LEVELS.iter().map(level).collect();
+    [format!("| level | value | means |\n| --- | --- | --- |\n{levels}"), table(ALL), table(SIGNALS), table(CHECKS)]
+}
+
+/// One list as the documents show it.
+pub fn table(list: &[Threshold]) -> String {
     let row = |t: &Threshold| {
         let level = if LEVELS.iter().any(|l| l.name == t.written) { t.written } else { "" };
         format!("| {} | {} | {level} | {} | {} | {} |\n", t.name, t.value, t.unit, t.meaning, t.calibrated_on)
     };
-    let table = |list: &[Threshold]| {
-        let rows: String = list.iter().map(row).collect();
-        format!(
-            "| threshold | value | level | unit | decides | calibrated on |\n| --- | --- | --- | --- | --- | --- |\n{rows}"
-        )
-    };
-    [format!("| level | value | means |\n| --- | --- | --- |\n{levels}"), table(ALL), table(SIGNALS), table(CHECKS)]
+    let rows: String = list.iter().map(row).collect();
+    format!(
+        "| threshold | value | level | unit | decides | calibrated on |\n| --- | --- | --- | --- | --- | --- |\n{rows}"
+    )
 }
 
 #[cfg(test)]

@@ -122,7 +122,7 @@ fn every_form_has_its_columns_names_and_bounds() {
                     |name: &str| name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_').len();
                 let known =
                     |name: &str| info.parameters.iter().any(|p| p.name == name || p.name == name[..family(name)]);
-                if !effect.is_offset() {
+                if !effect.traits().is_offset {
                     assert!(form.linear.iter().all(|n| known(n)), "{} {:?}", info.id, form.linear);
                 }
                 assert!(form.shape.iter().all(|s| known(s.name)), "{} {:?}", info.id, form.shape);

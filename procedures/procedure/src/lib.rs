@@ -31,6 +31,7 @@ pub mod resume;
 pub mod stage_pose;
 pub mod state;
 pub mod steady;
+pub mod thresholds;
 
 pub use bench_facts::BenchFacts;
 pub use brake_model::{BrakeModel, ComparedBrake};

@@ -7,7 +7,6 @@ use crate::report::diagnosis::Silent;
 use crate::report::reasons::{Invisible, InvisibleReason, LeftOut, RejectionReason};
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::model_selection::ModelSelection;
-use crate::selection::refused::Refused;
 use crate::selection::{hysteresis_stage, ramp_stage};
 use crate::stats::summary::rms;
 
@@ -38,7 +37,7 @@ impl ExcludedEffects {
             let tried = withdrawn.iter().find(|w| w.effect == id);
             let tried = tried.map(|w| (RejectionReason::Removed(w.why), w.why.words().to_owned()));
             let mut refused = selected.decided.iter().flat_map(|decided| &decided.refused);
-            let refused = || refused.find(|one| one.effect == id).map(Refused::reason);
+            let refused = || refused.find(|one| one.effect == id).map(|one| (one.reason, one.words()));
             let rejected = tried.or_else(refused).or_else(|| given(effect, end));
             let detection_limit = detection_limits.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
             match (rejected, detection_limit) {
@@ -69,7 +68,7 @@ impl ExcludedEffects {
 
 /// An offset term has a fixed size, so that it has no detection limit.
 fn given(effect: &dyn Effect, end: &TwoStageModel) -> Option<(RejectionReason, String)> {
-    let is_tried = effect.is_offset() && effect.hidden(&end.prepared.main.view).is_none();
+    let is_tried = effect.traits().is_offset && effect.hidden(&end.prepared.main.view).is_none();
     is_tried
         .then(|| (RejectionReason::NoReduction, "it is used as measured, and does not clearly reduce the error".into()))
 }
@@ -92,10 +91,12 @@ fn sought(effect: &dyn Effect, end: &TwoStageModel) -> Option<String> {
 /// Excitation of a run that would distinguish the effect from others.
 fn excitation(effect: &dyn Effect) -> &'static str {
     let needs = |column: &str| effect.info().needs.contains(&column);
-    match effect.regime() {
+    match effect.traits().regime {
         Regime::Hysteresis => "slow reversals over many steps of the encoder",
         Regime::Transient => "faster changes of the speed",
-        Regime::SteadyState if effect.wave().is_some() => "more of a turn of that angle, slowly, in both directions",
+        Regime::SteadyState if effect.traits().wave.is_some() => {
+            "more of a turn of that angle, slowly, in both directions"
+        }
         Regime::SteadyState if needs("temperature_c") => "the same motion at another temperature",
         Regime::SteadyState if needs("link_torque_nm") => "the same speeds under other loads",
         Regime::SteadyState if needs("link_position_rad") => "more of a turn of the link",
@@ -117,7 +118,7 @@ fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> (InvisibleReason, Stri
                         trajectory without steps";
     let prepared = end.prepared;
     let not_excited = |why: String| (InvisibleReason::NotExcited, why);
-    let view = match (end.is_apart(effect), effect.regime()) {
+    let view = match (end.is_apart(effect), effect.traits().regime) {
         (true, Regime::Hysteresis) => match &prepared.memory {
             Some(problem) => &problem.view,
             None => return not_excited("the run has no slow reversals".into()),

@@ -13,8 +13,8 @@ use crate::residual_analysis::events::{Event, Events};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::{lack_of_fit, noise_floor};
 use crate::selection::advance::SelectionStep;
+use crate::selection::evidence_search::refused::EvidenceResult;
 use crate::selection::model_selection::ModelSelection;
-use crate::selection::refused::EvidenceResult;
 use crate::selection::removal::Withdrawn;
 use crate::thresholds::{FLOOR_RATIO, REPEATABLE_SHARE, STRUCTURE_SHARE};
 use jointbench_instrument::Kind;
@@ -188,7 +188,7 @@ fn importance(end: &TwoStageModel, id: &str) -> f64 {
 /// The parts of a model that contain an effect, each with the part without it.
 fn parts_without<'a, 'p>(end: &'a TwoStageModel<'p>, id: &str) -> Vec<(&'a LinearModel<'p>, LinearModel<'p>)> {
     if let Ok(effect) = end.spec.find(id)
-        && effect.is_offset()
+        && effect.traits().is_offset
     {
         return vec![(&end.main, end.main.without_given(effect))];
     }

@@ -21,6 +21,7 @@ use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::maps::regions::reference;
 use crate::selection;
 use crate::selection::advance::SelectionStep;
+use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::MOST_EFFECTS;
 use crate::words::{figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
@@ -208,19 +209,7 @@ fn suggestions(
         let info = scored.term.effect.info();
         let confounded_with = found.ties_of(id);
         let tie = tie(found, id, &confounded_with, spec, options)?;
-        let evidence = if apart {
-            format!("Around reversals it reduces the squared error by {}.", percent(scored.share))
-        } else if let Some(retained) = found.retained.iter().find(|u| u.effect == id) {
-            format!("Removing it hardly changes the error, but without it {}.", narrative::elsewhere(retained, false))
-        } else if found.decided.is_some() && reduction <= 0.0 {
-            format!("Away from reversals and rest it reduces the squared error by {}.", percent(importance))
-        } else if found.decided.is_some() {
-            format!("It reduces the squared validation error by {}.", percent(importance))
-        } else {
-            let times = 1.0 / (1.0 - importance).max(f64::MIN_POSITIVE);
-            let times = if times > 1000.0 { "over 1000".to_owned() } else { format!("{times:.1}") };
-            format!("Removing it from the final model increases the squared error {times}-fold.")
-        };
+        let evidence = evidence_sentence(found, scored, reduction, importance, apart);
         let written = found.end().main.terms.iter().find(|term| term.id() == id).and_then(written);
         let instead = confounding::instead(scored.term.effect, found.start.prepared);
         let also: String = written.into_iter().chain(instead).map(|text| format!(" {text}.")).collect();
@@ -245,6 +234,29 @@ fn suggestions(
         });
     }
     Ok(out)
+}
+
+/// What speaks for an added effect, in a sentence.
+fn evidence_sentence(
+    found: &Findings,
+    scored: &ScoredCandidate,
+    reduction: f64,
+    importance: f64,
+    apart: bool,
+) -> String {
+    if apart {
+        format!("Around reversals it reduces the squared error by {}.", percent(scored.share))
+    } else if let Some(retained) = found.retained.iter().find(|u| u.effect == scored.term.id()) {
+        format!("Removing it hardly changes the error, but without it {}.", narrative::elsewhere(retained, false))
+    } else if found.decided.is_some() && reduction <= 0.0 {
+        format!("Away from reversals and rest it reduces the squared error by {}.", percent(importance))
+    } else if found.decided.is_some() {
+        format!("It reduces the squared validation error by {}.", percent(importance))
+    } else {
+        let times = 1.0 / (1.0 - importance).max(f64::MIN_POSITIVE);
+        let times = if times > 1000.0 { "over 1000".to_owned() } else { format!("{times:.1}") };
+        format!("Removing it from the final model increases the squared error {times}-fold.")
+    }
 }
 
 /// The effects that are confounded with an added one, in a sentence. Their contributions are compared in the final model.

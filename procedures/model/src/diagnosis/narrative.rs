@@ -1,7 +1,7 @@
 //! A diagnosis in plain sentences, with marked ids of effects.
 
 use crate::diagnosis::findings::Findings;
-use crate::effect::{Effect, Regime};
+use crate::effect::Regime;
 use crate::report::diagnosis::{Evidence, Imitated, Suggestion, UndecidedReason, Verdict};
 use crate::report::fit::{Parameter, ParameterState};
 use crate::report::maps::{PairMap, Region};
@@ -54,7 +54,7 @@ fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion])
     let effect = marked(&first.effect);
     let (error, with) = (unit.figure(fit.validation_rms), unit.figure(first.validation_rms));
     let floor = floor(found, complete, &unit);
-    let regime = found.start.spec.find(&first.effect).map_or(Regime::SteadyState, Effect::regime);
+    let regime = found.start.spec.find(&first.effect).map_or(Regime::SteadyState, |effect| effect.traits().regime);
     let place = if regime == Regime::Transient { "on ramps" } else { "around reversals" };
     let is_apart = regime != Regime::SteadyState && first.validation_rms > (1.0 - SMALL_REDUCTION) * fit.validation_rms;
     if let (true, Some(without), Some(alone)) = (is_apart, fit.effects_rms, first.effects_rms) {
@@ -191,7 +191,7 @@ fn attention(found: &Findings, fits: &[&Fit]) -> String {
     let impossible = impossible(fits).map(|what| format!("Implausible: {what}. "));
     let spec = found.start.spec;
     let view = &found.start.main.problem.view;
-    let is_dependent = |id: &str| spec.find(id).is_ok_and(|e| e.is_offset() && e.missing(view).is_none());
+    let is_dependent = |id: &str| spec.find(id).is_ok_and(|e| e.traits().is_offset && e.missing(view).is_none());
     let dead = found.start.hidden.iter().find(|h| is_dependent(&h.effect));
     let dead = dead.map(|h| format!("Data problem: {}; if that input was active, the results are wrong. ", h.why));
     data_errors.chain(impossible).chain(dead).collect()
@@ -383,6 +383,6 @@ fn rejected(found: &Findings, unit: &str) -> String {
         (!effects.is_empty()).then(|| format!(" Rejected: {} ({}).", list(&all_marked(&effects)), why.words()))
     });
     let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_confounded(r.effect));
-    let refused = refused.map(|refused| format!(" Rejected: {} ({}).", marked(refused.effect), refused.reason().1));
+    let refused = refused.map(|refused| format!(" Rejected: {} ({}).", marked(refused.effect), refused.words()));
     open.into_iter().chain(for_reason).chain(refused).collect()
 }

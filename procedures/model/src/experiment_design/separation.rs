@@ -103,7 +103,7 @@ impl<'a> Side<'a> {
 
     /// Whether the model has a nuisance effect that differs in each run.
     pub fn changes_by_run(&self) -> bool {
-        self.model.terms.iter().any(|term| term.effect.is_nuisance())
+        self.model.terms.iter().any(|term| term.effect.traits().is_nuisance)
     }
 
     /// Expected distance of the two models in standard deviations after the run, as the mean over both models being
@@ -164,7 +164,7 @@ impl<'a> Side<'a> {
         let there = elsewhere(self.model, run);
         let (mut known, mut new) = (Vec::new(), Vec::new());
         for (term, coefficients) in there.terms.iter().zip(&self.coefficients) {
-            if !term.effect.is_nuisance() {
+            if !term.effect.traits().is_nuisance {
                 known.extend(term.columns.iter().map(|c| noise.whiten(c, run)));
                 continue;
             }
@@ -215,7 +215,7 @@ pub fn predict(model: &LinearModel, problem: &Problem) -> Vec<f64> {
     let there = elsewhere(model, problem);
     let mut sum = vec![0.0; problem.rows()];
     let terms = there.terms.iter().zip(model.linear().coefficients);
-    for (term, coefficients) in terms.filter(|(term, _)| !term.effect.is_nuisance()) {
+    for (term, coefficients) in terms.filter(|(term, _)| !term.effect.traits().is_nuisance) {
         for (column, coefficient) in term.columns.iter().zip(coefficients) {
             sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
         }

@@ -50,7 +50,7 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, simulated: &[(&Choice, Probl
 /// `None` for an effect of the model, and for one that the other run cannot show either.
 fn columns_of(effect: &dyn Effect, model: &TwoStageModel, run: &Problem, worth: f64) -> Option<(Vec<f64>, Vec<f64>)> {
     let is_in_model = model.main.contains(effect.info().id);
-    let open = effect.regime() == Regime::SteadyState && !effect.is_offset() && !is_in_model;
+    let open = effect.traits().regime == Regime::SteadyState && !effect.traits().is_offset && !is_in_model;
     if !open || effect.hidden(&run.view).is_some() {
         return None;
     }

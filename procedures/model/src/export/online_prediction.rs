@@ -26,7 +26,7 @@ pub struct OnlinePrediction {
 impl OnlinePrediction {
     /// `None` for a model that needs more history than the previous row.
     pub fn new(fit: Fit, torque_constant_nm_per_a: f64, gear_ratio: f64) -> Option<Self> {
-        let stage = |id: &String| find_with_own(fit.kind, &fit.own, id).map(|effect| effect.regime());
+        let stage = |id: &String| find_with_own(fit.kind, &fit.own, id).map(|effect| effect.traits().regime);
         let knows = fit.effects.iter().all(|id| stage(id).is_ok_and(|stage| stage != Regime::Hysteresis));
         let velocity = fit.scope.as_ref()?.signals.iter().find(|signal| signal.name == "velocity")?;
         let still_rad_s = STILL * velocity.min.abs().max(velocity.max.abs());

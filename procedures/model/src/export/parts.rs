@@ -53,7 +53,7 @@ impl<'f> Parts<'f> {
         for id in &fit.effects {
             let effect = find_with_own(fit.kind, &fit.own, id)?;
             let title = effect.info().title;
-            if effect.is_offset() {
+            if effect.traits().is_offset {
                 let columns = vec![PartColumn::Formula(formula(fit, "load", &[])?)];
                 parts.parts.push(Part { effect: id, title, columns, coefficients: Vec::new(), shape: Vec::new() });
                 continue;

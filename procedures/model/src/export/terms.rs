@@ -16,9 +16,9 @@ pub fn check(fit: &Fit, effects: &[&dyn Effect]) -> Result<(), ModelError> {
         let fault = |what: String| Err(ModelError::BadFile(format!("{id} {what}")));
         let terms: Vec<&Term> = fit.terms.iter().filter(|t| t.effect == id).collect();
         match terms[..] {
-            [] if effect.is_offset() || is_hidden(fit, id) => {}
+            [] if effect.traits().is_offset || is_hidden(fit, id) => {}
             [] => return fault("has no term, but the run that was fitted shows it: a term for it is expected".into()),
-            [_] if effect.is_offset() => {
+            [_] if effect.traits().is_offset => {
                 return fault("has a term, but it enters as it is: no term is expected".into());
             }
             [term] => {
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn every_effect_of_the_library_shows() {
-        for effect in Kind::ALL.into_iter().flat_map(effects).filter(|e| !e.is_offset()) {
+        for effect in Kind::ALL.into_iter().flat_map(effects).filter(|e| !e.traits().is_offset) {
             let info = effect.info();
             let forms = forms(*effect, 3);
             assert!(!forms.is_empty(), "{}", info.id);

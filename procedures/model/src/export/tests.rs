@@ -46,7 +46,7 @@ fn terms_of_all(kind: Kind, n: usize, own: &[OwnEffect]) -> (Vec<String>, Vec<Te
     let mut ids: Vec<String> = Vec::new();
     for effect in user_effects::with_own(kind, own) {
         let forms = effect.forms(&view);
-        if effect.is_offset() {
+        if effect.traits().is_offset {
             ids.push(effect.info().id.into());
         } else if !forms.is_empty() {
             let form = &forms[n % forms.len()];

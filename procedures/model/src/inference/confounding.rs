@@ -29,7 +29,7 @@ pub fn instead(effect: &dyn Effect, prepared: &Prepared) -> Vec<String> {
 /// The same effect over time instead of temperature, as a formula, if this run cannot distinguish them.
 pub fn over_time(effect: &dyn Effect, prepared: &Prepared) -> Option<OwnEffect> {
     drift(prepared)?;
-    OwnEffect::inline(prepared.kind, effect.over_time()?).ok()
+    OwnEffect::inline(prepared.kind, effect.traits().over_time?).ok()
 }
 
 fn is_of_temperature(effect: &dyn Effect) -> bool {
@@ -65,7 +65,7 @@ mod tests {
         let all = [Kind::Friction, Kind::Encoder, Kind::Stiffness].map(|kind| {
             let effects: Vec<_> = of_temperature(kind).collect();
             for effect in &effects {
-                let own = OwnEffect::inline(kind, effect.over_time().unwrap()).unwrap();
+                let own = OwnEffect::inline(kind, effect.traits().over_time.unwrap()).unwrap();
                 assert_eq!(own.unit_warnings(None), []);
             }
             effects.len()

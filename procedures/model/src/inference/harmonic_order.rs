@@ -9,7 +9,8 @@ use crate::thresholds::TIE_ERRORS;
 /// Extends the interval of an order that a partial turn does not determine, and the intervals of its coefficients.
 pub fn open(terms: &LinearModel, residual: &[f64], parameters: &mut [Parameter]) {
     for (i, term) in terms.terms.iter().enumerate() {
-        let Some(turns) = term.effect.wave().map(|angle| terms.problem.view.turns(angle)).filter(|t| *t < 1.0) else {
+        let Some(turns) = term.effect.traits().wave.map(|angle| terms.problem.view.turns(angle)).filter(|t| *t < 1.0)
+        else {
             continue;
         };
         for k in (0..term.shape.len()).filter(|k| term.form.shape[*k].search == ShapeSearch::Whole) {

@@ -42,7 +42,7 @@ impl Scope {
     /// An effect that this run cannot show but the fitted run could, or the reverse.
     fn other_columns(&self, fit: &Fit, id: &str, prepared: &Prepared) -> Option<String> {
         let effect = find_with_own(fit.kind, &fit.own, id).ok()?;
-        if !effect.is_offset() {
+        if !effect.traits().is_offset {
             let is_fitted = fit.terms.iter().any(|t| t.effect == id);
             return (!is_fitted).then(|| format!("{id} counts as zero: the run that was fitted could not show it"));
         }

@@ -63,7 +63,7 @@ impl<'e> CandidateSet<'e> {
         let mut library =
             Self { kind: spec.kind, effects: spec.known().collect(), candidates: Vec::new(), invisible: Vec::new() };
         for effect in spec.known() {
-            if effect.is_offset() || !regimes.contains(&effect.regime()) || !wanted(effect) {
+            if effect.traits().is_offset || !regimes.contains(&effect.traits().regime) || !wanted(effect) {
                 continue;
             }
             if let Some(why) = effect.hidden(&problem.view) {

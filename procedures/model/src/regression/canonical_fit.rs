@@ -47,7 +47,7 @@ pub fn fit_canonical<'p>(
 /// Whether the effect has only one form and one grid point. The single grid point of a set effect may be the start of a
 /// search.
 fn is_fixed(effect: &dyn Effect, problem: &Problem) -> bool {
-    let is_start = |form: &Form| effect.is_set() && form.shape.iter().any(Shape::is_smooth);
+    let is_start = |form: &Form| effect.traits().is_set && form.shape.iter().any(Shape::is_smooth);
     matches!(&effect.forms(&problem.view)[..], [form] if form.grid.len() == 1 && !is_start(form))
 }
 

@@ -8,7 +8,7 @@ use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::allows;
 use crate::regression::partial_regression::LEAST_TOLERANCE;
 use crate::stats::{student, summary};
-use crate::thresholds::{DECISION_SHARE, ONE_ERROR, UNMISTAKABLE_SHARE};
+use crate::thresholds::DECISION_SHARE;
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -33,22 +33,6 @@ impl Evidence<'_, '_> {
     pub fn id(&self) -> &str {
         self.best.id()
     }
-
-    /// The minimum error reduction. Every model has form error: a candidate that it imitates has to explain most of the
-    /// residual.
-    pub fn least_share(&self) -> f64 {
-        least_share(self.form_error_imitates)
-    }
-
-    /// Whether the reduction exceeds the minimum share, is significant, and exceeds its standard error.
-    pub fn passes(&self, alpha: f64) -> bool {
-        self.gain > self.least_share() && self.p_value < alpha && self.errors > ONE_ERROR
-    }
-}
-
-/// The minimum error reduction of an effect, which is larger if form error imitates the effect.
-pub fn least_share(form_error_imitates: bool) -> f64 {
-    if form_error_imitates { UNMISTAKABLE_SHARE } else { DECISION_SHARE }
 }
 
 /// Result of one form added to the base model.
@@ -104,7 +88,7 @@ fn attempt<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Optio
     if !is_possible(&added.coefficients()) {
         return Tried::Rejected;
     }
-    let is_steady = form.effect.regime() == Regime::SteadyState;
+    let is_steady = form.effect.traits().regime == Regime::SteadyState;
     let shows_outside = match outside.map(|outside| (outside.left(), outside.added(&form.columns, LEAST_TOLERANCE))) {
         None => is_steady,
         Some((_, None)) if is_steady => return Tried::Hidden(form),

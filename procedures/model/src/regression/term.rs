@@ -41,7 +41,7 @@ impl<'e> Term<'e> {
 
     /// Whether a refined nonlinear parameter other than an exponent lies at the bound of the identifiable range.
     pub fn is_at_edge(&self) -> bool {
-        let sudden = self.effect.exponent_parameter();
+        let sudden = self.effect.traits().exponent_parameter;
         let mut slots = self.form.shape.iter().zip(&self.shape);
         slots.any(|(shape, value)| shape.is_smooth() && sudden != Some(shape.name) && shape.is_edge(*value))
     }

@@ -63,7 +63,7 @@ impl<'p> TwoStageModel<'p> {
             }
             if let Some(why) = effect.hidden(&prepared.main.view) {
                 assembly.hidden.push(Invisible::not_excited(id, why));
-            } else if effect.is_offset() {
+            } else if effect.traits().is_offset {
                 let given = columns(effect, "linear", &[], assembly.main.problem);
                 add(&mut assembly.main.given, &given, &[1.0]);
                 assembly.main.offsets.push(effect);
@@ -98,7 +98,7 @@ impl<'p> TwoStageModel<'p> {
             }
             if let Some(why) = effect.hidden(view) {
                 assembly.hidden.push(Invisible::not_excited(id, why));
-            } else if effect.is_offset() {
+            } else if effect.traits().is_offset {
                 let given = columns(effect, "linear", &[], assembly.main.problem);
                 add(&mut assembly.main.given, &given, &[1.0]);
                 assembly.main.offsets.push(effect);
@@ -114,7 +114,7 @@ impl<'p> TwoStageModel<'p> {
 
     /// Whether steady-state means cannot show the effect, so that it is fitted where the motion changes.
     pub fn is_apart(&self, effect: &dyn Effect) -> bool {
-        !self.prepared.regimes().contains(&effect.regime())
+        !self.prepared.regimes().contains(&effect.traits().regime)
     }
 
     /// Prediction of the model at the rows of another problem of the same run.
@@ -122,7 +122,7 @@ impl<'p> TwoStageModel<'p> {
         let mut sum = vec![0.0; problem.rows()];
         for id in &self.effects {
             let Ok(effect) = self.spec.find(id) else { continue };
-            if effect.is_offset() && !self.hidden.iter().any(|h| h.effect == *id) {
+            if effect.traits().is_offset && !self.hidden.iter().any(|h| h.effect == *id) {
                 add(&mut sum, &columns(effect, "linear", &[], problem), &[1.0]);
             }
         }
@@ -142,7 +142,7 @@ impl<'p> TwoStageModel<'p> {
         moving.terms.clear();
         for id in &self.effects {
             let Ok(effect) = self.spec.find(id) else { continue };
-            if effect.is_offset() && !self.hidden.iter().any(|h| h.effect == *id) {
+            if effect.traits().is_offset && !self.hidden.iter().any(|h| h.effect == *id) {
                 add(&mut moving.given, &columns(effect, "linear", &[], moving.problem), &[1.0]);
             }
         }
@@ -155,7 +155,8 @@ impl<'p> TwoStageModel<'p> {
     fn enter_moving(&mut self) {
         let is_in = |id: &str| self.effects.iter().any(|e| e == id) && !self.hidden.iter().any(|h| h.effect == id);
         let apart = self.spec.known().filter(|e| self.is_apart(*e) && is_in(e.info().id));
-        let (remembering, ramps): (Vec<&'p dyn Effect>, Vec<_>) = apart.partition(|e| e.regime() == Regime::Hysteresis);
+        let (remembering, ramps): (Vec<&'p dyn Effect>, Vec<_>) =
+            apart.partition(|e| e.traits().regime == Regime::Hysteresis);
         if self.moving.is_none() {
             let why = "the run has no ramps or reversals that could show it".to_owned();
             let apart = ramps.iter().chain(&remembering);
@@ -186,7 +187,7 @@ impl<'p> TwoStageModel<'p> {
         let mut ramp_offset = vec![0.0; self.ramp_offset.len()];
         if let Some(moving) = &self.moving {
             let fitted = moving.terms.iter().zip(moving.linear().coefficients);
-            for (term, coefficients) in fitted.filter(|(term, _)| term.effect.regime() == Regime::Transient) {
+            for (term, coefficients) in fitted.filter(|(term, _)| term.effect.traits().regime == Regime::Transient) {
                 add_term(&mut ramp_offset, term, &coefficients, self.main.problem);
             }
         }

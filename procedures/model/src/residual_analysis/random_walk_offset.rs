@@ -125,7 +125,7 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
     /// Gain in log likelihood by a term of the model, if it is not significant against the drifting offset. The test
     /// corrects for the best of this number of `effects`.
     pub fn gain(&self, term: &Term, effects: usize, options: &Options) -> Option<f64> {
-        if term.effect.regime() == Regime::Hysteresis {
+        if term.effect.traits().regime == Regime::Hysteresis {
             return None;
         }
         let without = self.now.without(term.id());

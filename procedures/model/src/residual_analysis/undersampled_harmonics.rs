@@ -13,7 +13,7 @@ const FEWEST: usize = 10;
 pub fn without_undersampled_harmonics(now: &LinearModel, mut residual: Vec<f64>) -> Vec<f64> {
     let view = &now.problem.view;
     for term in &now.terms {
-        let Some(angle) = term.effect.wave() else { continue };
+        let Some(angle) = term.effect.traits().wave else { continue };
         let Some(samples) = view.samples.find(angle).filter(|_| !view.chunks.is_empty()) else { continue };
         for order in &term.shape {
             let columns = view.harmonic(angle, *order);

@@ -29,3 +29,32 @@ pub fn encompasses(now: &LinearModel, one: &Term, other: &Term, options: &Option
     let ((needed, p_value), (needless, _)) = (left_for(one, other), left_for(other, one));
     needed >= options.practical_share && p_value <= options.alpha && needless < options.practical_share
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn models_tie_where_their_difference_is_within_its_scatter() {
+        let best = [1.0, 1.1, 0.9, 1.0, 1.2, 0.8];
+        assert!(is_tie(&best, &[1.1, 1.0, 1.0, 0.9, 1.3, 0.8]));
+        assert!(!is_tie(&best, &best.map(|loss| loss + 0.5)));
+        // One fold decides: the mean difference is within two of its standard errors.
+        assert!(is_tie(&best, &[1.0, 1.1, 0.9, 1.0, 1.2, 3.0]));
+    }
+
+    #[test]
+    fn a_wave_encompasses_another_order_only_if_the_data_contains_it() {
+        let encompasses = |waves: fn(f64) -> f64| {
+            let tiny = Tiny::new(Kind::Friction, &["coulomb"], |row| {
+                5.0 * row.direction + waves(row.angle) + 0.1 * row.scatter
+            });
+            let (one, other) = (tiny.term("gravity", Vec::new()), tiny.term("cogging", vec![2.0]));
+            super::encompasses(&tiny.model(), &one, &other, &tiny.options)
+        };
+        assert!(encompasses(f64::cos));
+        assert!(!encompasses(|angle| angle.cos() + (2.0 * angle).cos()));
+    }
+}

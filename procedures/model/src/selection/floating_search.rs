@@ -72,8 +72,10 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         let mut plain = start.clone();
         // The effects that the test conditions of the run imply.
         let baseline = &prepared.baseline;
-        plain.terms.retain(|t| baseline.is_empty() || baseline.iter().any(|b| b == t.id()) || t.effect.is_exact());
-        let exact = library.candidates.iter().filter(|c| c.effect.is_exact());
+        plain
+            .terms
+            .retain(|t| baseline.is_empty() || baseline.iter().any(|b| b == t.id()) || t.effect.traits().is_exact);
+        let exact = library.candidates.iter().filter(|c| c.effect.traits().is_exact);
         plain.terms.extend(exact.map(|c| c.term(start.problem)));
         plain.refine();
         let plain = plain.linear().sse;

@@ -7,8 +7,9 @@ use crate::regression::linear_model::{LinearModel, Term, varpro};
 use crate::regression::partial_regression::{Orthogonalized, PartialRegression};
 use crate::regression::significance::family_wise;
 use crate::report::reasons::AdditionReason;
+use crate::selection::acceptance::Candidate;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
-use crate::selection::acceptance::{aliasing, between_leg_variance};
+
 use crate::selection::equivalence::{encompasses, is_tie};
 use crate::thresholds::SIMPLER_GAIN;
 use rayon::prelude::*;
@@ -84,7 +85,7 @@ fn short_list<'l, 'p>(
     best.sort_by(|a, b| gains[*b].share.total_cmp(&gains[*a].share));
     best.retain(|b| gains[*b].share > 0.5 * options.practical_share);
     let (of_users, of_library): (Vec<_>, Vec<_>) =
-        best.into_iter().map(|at| open[at]).partition(|candidate| candidate.effect.is_user_defined());
+        best.into_iter().map(|at| open[at]).partition(|candidate| candidate.effect.traits().is_user_defined);
     [of_library, of_users].into_iter().flat_map(|list| list.into_iter().take(SHORT_LIST)).collect()
 }
 
@@ -95,22 +96,15 @@ fn acceptable<'p>(
     partial: &PartialRegression,
     threshold: AcceptanceThreshold,
 ) -> Vec<(Term<'p>, f64)> {
-    let PartialRegression { basis, residual, energy, .. } = partial;
-    let least_share = threshold.least_share(*energy);
     best.par_iter()
-        .map(|candidate| {
+        .filter_map(|candidate| {
             let mut term = [candidate.term(now.problem)];
-            let sse = varpro(&mut term, basis, residual, now.problem);
+            let sse = varpro(&mut term, &partial.basis, &partial.residual, now.problem);
             let [term] = term;
-            let possible = term.allows(&partial.own(&term.columns).coefficients())
-                && threshold.keeps_parameters_feasible(now, &term);
-            let possible = possible
-                && !between_leg_variance::is_random_leg_effect(&term, now, partial, threshold.kind, threshold.options)
-                && !aliasing::is_none(&term, now, partial);
-            let sse = if possible { sse } else { *energy };
-            (term, 1.0 - sse / energy)
+            let share = 1.0 - sse / partial.energy;
+            let is_acceptable = Candidate { term: &term, share, now, partial, threshold }.is_acceptable();
+            is_acceptable.then_some((term, share))
         })
-        .filter(|(_, share)| *share >= least_share)
         .collect()
 }
 
@@ -163,7 +157,7 @@ fn winner_and_ties<'p>(
 ) -> Option<(usize, Vec<&'p str>)> {
     let first = ranked.first()?;
     let mut ties: Vec<usize> = (1..ranked.len()).filter(|i| is_tie(&first.losses, &ranked[*i].losses)).collect();
-    let is_own = |i: usize| ranked[i].term.effect.is_user_defined();
+    let is_own = |i: usize| ranked[i].term.effect.traits().is_user_defined;
     // A formula of a user has to explain more than an effect of the library, not only to fit this data slightly better.
     let explains_the_same =
         |i: usize| is_own(0) && !is_own(i) && !encompasses(now, &first.term, &ranked[i].term, options);

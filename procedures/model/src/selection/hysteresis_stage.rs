@@ -36,3 +36,26 @@ pub fn detection_limits<'p>(now: &TwoStageModel<'p>) -> Vec<DetectionLimit<'p>> 
     seen.dedup();
     seen.into_iter().map(|effect| DetectionLimit { effect, detectable_rms }).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ModelSpec;
+    use crate::preprocess::prepare;
+    use crate::regression::solution::PRESLIDING;
+    use crate::selection::tiny::staircase;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn a_direction_that_follows_over_a_displacement_is_presliding() {
+        let options = Options::default();
+        let spec = ModelSpec::parse(Kind::Friction, "coulomb, viscous, inertia").unwrap();
+        let found = |displacement: f64| {
+            let prepared = prepare(&staircase(0, displacement), &options).unwrap();
+            let model = TwoStageModel::new(&prepared, &spec, &options).unwrap();
+            hysteresis_step(&model, &options).map(|scored| scored.term.id().to_owned())
+        };
+        assert_eq!(found(0.0), None);
+        assert_eq!(found(0.2).as_deref(), Some(PRESLIDING));
+    }
+}

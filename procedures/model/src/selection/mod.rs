@@ -2,19 +2,19 @@
 
 pub(crate) mod acceptance;
 pub(crate) mod advance;
-pub(crate) mod block_limits;
 pub(crate) mod detection_limit;
 pub(crate) mod equivalence;
 pub(crate) mod evidence_search;
 pub(crate) mod floating_search;
 pub(crate) mod forward_step;
 pub(crate) mod hysteresis_stage;
+#[cfg(test)]
+mod listed_rules;
 pub(crate) mod model_selection;
 pub(crate) mod offset_terms;
 pub(crate) mod omitted_variable_bias;
 pub(crate) mod pruning;
 pub(crate) mod ramp_stage;
-pub(crate) mod refused;
 pub(crate) mod removal;
 pub(crate) mod staged_search;
 #[cfg(test)]

@@ -21,7 +21,8 @@ pub fn advance<'p>(
 ) -> Option<SelectionStep<'p>> {
     let problem = start.main.problem;
     let is_out = |id: &str| !start.effects.iter().any(|e| e == id);
-    let missing = |e: &&dyn crate::Effect| e.is_offset() && is_out(e.info().id) && e.hidden(&problem.view).is_none();
+    let missing =
+        |e: &&dyn crate::Effect| e.traits().is_offset && is_out(e.info().id) && e.hidden(&problem.view).is_none();
     let effect = start.spec.known().find(missing)?;
     let form = effect.forms(&problem.view).into_iter().next()?;
     let term = Term::new(effect, form, Vec::new(), problem);

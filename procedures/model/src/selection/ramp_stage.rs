@@ -73,3 +73,25 @@ fn is_testable(effect: &dyn Effect, now: &TwoStageModel) -> bool {
     let is_in = |id: &str| now.effects.iter().any(|effect| effect == id);
     now.is_apart(effect) && is_in(inertia::ID) && !is_in(DELAY)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ModelSpec;
+    use crate::preprocess::prepare;
+    use crate::selection::tiny::staircase;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn a_torque_that_follows_the_motion_late_is_a_delay() {
+        let options = Options::default();
+        let spec = ModelSpec::parse(Kind::Friction, "coulomb, viscous, inertia").unwrap();
+        let found = |late: usize| {
+            let prepared = prepare(&staircase(late, 0.0), &options).unwrap();
+            let model = TwoStageModel::new(&prepared, &spec, &options).unwrap();
+            delay(&model, &options).map(|(scored, _)| scored.term.id().to_owned())
+        };
+        assert_eq!(found(0), None);
+        assert_eq!(found(6).as_deref(), Some(DELAY));
+    }
+}

@@ -7,11 +7,13 @@ use crate::regression::candidates::CandidateSet;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::report::fit::Preparation;
+use crate::selection::acceptance::Candidate;
+use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use crate::selection::floating_search::FloatingSearch;
 use crate::signal::{Signal, Signals};
 use crate::view::View;
 use crate::{ModelSpec, Options, ResidualKind};
-use jointbench_instrument::{Kind, Motion};
+use jointbench_instrument::{Channel, Kind, Meta, Motion, RunTable, Trace};
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 
@@ -58,6 +60,37 @@ fn row(at: usize) -> Row {
     }
 }
 
+fn prepared(kind: Kind, main: Problem) -> Prepared {
+    let about = Preparation {
+        residual: ResidualKind::PlateauMean,
+        sample_rate_hz: 2.0,
+        cutoff_hz: None,
+        velocity_lag_s: None,
+        decimation: 1,
+        bristles: None,
+        chunk_s: None,
+        samples: main.rows(),
+        rows: main.rows(),
+        blocks: LEGS,
+        segments_from: "column".into(),
+        repeats_from: "none".into(),
+    };
+    Prepared {
+        kind,
+        motion: Motion::Rotary,
+        baseline: Vec::new(),
+        main,
+        bristled: None,
+        moving: None,
+        memory: None,
+        load_scale: 1.0,
+        constants: Vec::new(),
+        data_errors: DataErrors::default(),
+        warnings: Vec::new(),
+        about,
+    }
+}
+
 /// A table with its model and options.
 pub struct Tiny {
     pub prepared: Prepared,
@@ -73,7 +106,23 @@ impl Tiny {
 
     /// The same with a temperature [°C].
     pub fn warmed(kind: Kind, effects: &[&str], temperature: impl Fn(Row) -> f64, target: impl Fn(Row) -> f64) -> Self {
-        let rows: Vec<Row> = (0..LEGS * ROWS).map(row).collect();
+        Self::with(kind, effects, 1.0, temperature, target)
+    }
+
+    /// The same at 25 °C, where every leg covers this part of a turn.
+    pub fn over(turns: f64, kind: Kind, effects: &[&str], target: impl Fn(Row) -> f64) -> Self {
+        Self::with(kind, effects, turns, |_| 25.0, target)
+    }
+
+    fn with(
+        kind: Kind,
+        effects: &[&str],
+        turns: f64,
+        temperature: impl Fn(Row) -> f64,
+        target: impl Fn(Row) -> f64,
+    ) -> Self {
+        let of_turn = |row: Row| Row { angle: turns * row.angle, ..row };
+        let rows: Vec<Row> = (0..LEGS * ROWS).map(|at| of_turn(row(at))).collect();
         let mut signals = Signals::new(rows.len());
         signals.set(Signal::Time, (0..rows.len()).map(|at| 0.5 * at as f64).collect());
         signals.set(Signal::Velocity, rows.iter().map(|row| row.velocity).collect());
@@ -101,36 +150,17 @@ impl Tiny {
             bandwidths: Vec::new(),
             memo: Memo::default(),
         };
-        let about = Preparation {
-            residual: ResidualKind::PlateauMean,
-            sample_rate_hz: 2.0,
-            cutoff_hz: None,
-            velocity_lag_s: None,
-            decimation: 1,
-            bristles: None,
-            chunk_s: None,
-            samples: rows.len(),
-            rows: rows.len(),
-            blocks: LEGS,
-            segments_from: "column".into(),
-            repeats_from: "none".into(),
-        };
-        let prepared = Prepared {
-            kind,
-            motion: Motion::Rotary,
-            baseline: Vec::new(),
-            main,
-            bristled: None,
-            moving: None,
-            memory: None,
-            load_scale: 1.0,
-            constants: Vec::new(),
-            data_errors: DataErrors::default(),
-            warnings: Vec::new(),
-            about,
-        };
+        let prepared = prepared(kind, main);
         let spec = ModelSpec::new(kind, effects.iter().copied()).expect("known effects");
         Self { prepared, options: Options::default(), spec }
+    }
+
+    /// Whether a rule accepts an effect in its first form, with these nonlinear parameters.
+    pub fn passes(&self, rule: fn(&Candidate) -> bool, id: &str, shape: Vec<f64>) -> bool {
+        let (now, term, partial) = (self.model(), self.term(id, shape), self.partial());
+        let own = partial.own(&term.columns).share;
+        let threshold = AcceptanceThreshold { plain: partial.energy, kind: self.prepared.kind, options: &self.options };
+        rule(&Candidate { term: &term, share: own, now: &now, partial: &partial, threshold })
     }
 
     /// The effect that a rule removes from the model with these added effects.
@@ -165,4 +195,33 @@ impl Tiny {
     pub fn partial(&self) -> PartialRegression {
         PartialRegression::of(&self.model())
     }
+}
+
+/// A run in steps of 2 to 16 rad/s in both directions at 250 Hz, with Coulomb, viscous and inertia torque. The torque is
+/// late by some rows, and the direction of friction follows the motion over a displacement [rad].
+pub fn staircase(late: usize, displacement: f64) -> RunTable {
+    const STEP_S: f64 = 0.004;
+    let speed_of = |leg: usize| 2.0 * (leg / 2 % 8 + 1) as f64 * if leg.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let (mut motion, mut torques) = (Vec::new(), Vec::new());
+    let (mut position, mut velocity, mut direction) = (0.0, 0.0, 0.0_f64);
+    for leg in 0..32 {
+        let from = velocity;
+        for at in 0..500 {
+            let target = from + (speed_of(leg) - from) * (f64::from(at) * STEP_S / 0.4).min(1.0);
+            let acceleration = (target - velocity) / STEP_S;
+            velocity = target;
+            position += velocity * STEP_S;
+            direction += velocity * STEP_S / displacement.max(1e-3) * (1.0 - direction * velocity.signum());
+            direction = if displacement > 0.0 { direction } else { velocity.signum() };
+            motion.push(position);
+            let noise = 1e-3 * scatter(motion.len());
+            torques.push(0.03 * direction + 0.001 * velocity + 2e-4 * acceleration + noise);
+        }
+    }
+    let mut trace = Trace::new(["time_s", "motor_position_rad", "motor_current_a"].map(Channel::new).to_vec());
+    for (at, position) in motion.iter().enumerate() {
+        trace.push_row(&[STEP_S * at as f64, *position, torques[at.saturating_sub(late)] / 0.08]);
+    }
+    let kind = Some(Kind::Friction);
+    RunTable::new(Meta { kind, torque_constant_nm_per_a: Some(0.08), ..Meta::default() }, trace).expect("a valid run")
 }

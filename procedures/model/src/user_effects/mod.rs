@@ -7,7 +7,7 @@ pub(crate) mod ranges;
 pub use crate::user_effects::definition::{Definition, OwnParameter};
 
 use crate::ModelError;
-use crate::effect::{Columns, Effect, EffectInfo, Form, ParameterInfo, Regime, Shape};
+use crate::effect::{Columns, Effect, EffectInfo, Form, ParameterInfo, Regime, Shape, Traits};
 use crate::effects;
 use crate::formula::fault::{FormulaFault, Mistake};
 use crate::formula::signals::NamedSignal;
@@ -167,21 +167,19 @@ impl Effect for OwnEffect {
         vec![Form { grid, ..self.form(view) }]
     }
 
-    fn is_user_defined(&self) -> bool {
-        true
-    }
-
-    fn unseen(&self) -> &str {
-        "its formula is zero or not finite on this data"
-    }
-
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         self.evaluate(shape, view)
     }
 
-    fn regime(&self) -> Regime {
+    fn traits(&self) -> Traits {
         let of_ramps = |s: Signal| matches!(s, Signal::Acceleration | Signal::Jerk);
-        if self.formula.signals.iter().any(|s| of_ramps(s.signal)) { Regime::Transient } else { Regime::SteadyState }
+        let is_transient = self.formula.signals.iter().any(|s| of_ramps(s.signal));
+        Traits {
+            regime: if is_transient { Regime::Transient } else { Regime::SteadyState },
+            unseen: Some("its formula is zero or not finite on this data"),
+            is_user_defined: true,
+            ..Traits::default()
+        }
     }
 }
 

@@ -13,6 +13,7 @@ use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdic
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Phase, Plan, PlanFault};
 use crate::profile::Profile;
+use crate::thresholds::{LEAST_SPAN_K, NO_CHANGE};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelSpec, Options, fit_prepared};
 
@@ -27,10 +28,6 @@ const SCHEMA: &[Parameter] = &[
     sample_rate(100.0),
 ];
 
-/// Least temperature span for a result.
-const LEAST_SPAN_K: f64 = 2.0;
-/// A smaller relative change of the friction counts as none.
-const NOTHING: f64 = 0.01;
 /// Reference temperature of the coefficients.
 const REFERENCE_C: f64 = 25.0;
 
@@ -119,7 +116,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let most_nm = points.iter().map(|p| (p.target - p.load_nm).abs()).fold(0.0, f64::max);
     // Significant, and above the least change over the whole temperature span, at the highest speed.
     let moves = |effect: &str, name: &str, times: f64| {
-        let least_nm = NOTHING * most_nm;
+        let least_nm = NO_CHANGE * most_nm;
         parameter(&fit, effect, name).is_some_and(|p| {
             (p.ci95[0] > 0.0 || p.ci95[1] < 0.0) && (p.value * times * (high_c - low_c)).abs() > least_nm
         })
@@ -139,7 +136,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
 /// Changes with temperature in words. `dry`, `wet`: Coulomb and viscous friction change significantly.
 fn changes(fit: &Fit, dry: bool, wet: bool) -> String {
     match (dry, wet) {
-        (false, false) => format!("Coulomb and viscous friction change by less than {:.0} %", 100.0 * NOTHING),
+        (false, false) => format!("Coulomb and viscous friction change by less than {:.0} %", 100.0 * NO_CHANGE),
         (true, false) => "only Coulomb friction changes".to_owned(),
         (_, true) => {
             let share = parameter(fit, "temperature_viscous", "c_t").map_or(0.0, |p| p.value)

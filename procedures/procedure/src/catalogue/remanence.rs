@@ -5,12 +5,11 @@ use super::legs::{Legs, turn_s};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{Hold, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Quantity, Series};
+use crate::thresholds::REMANENCE;
 use jointbench_instrument::RunTable;
 use jointbench_model::words;
 use std::f64::consts::TAU;
 
-/// Largest remaining torque ripple, peak to peak, as a share of the rated torque.
-const LEFT_SHARE: f64 = 0.005;
 /// Angles of a turn at which the torque is averaged: several for each of up to 25 poles.
 const PLACES: usize = 120;
 /// The range of this number of noise means is about this multiple of their standard deviation.
@@ -76,7 +75,7 @@ impl Remanence {
         let turns: Vec<Turn> = holds.iter().map(|hold| Turn::of(hold, angle, torque, load_gear_ratio(run))).collect();
         let most = |of: fn(&Turn) -> f64| turns.iter().map(of).reduce(f64::max);
         let (left_nm, noise_nm) = (most(|turn| turn.range_nm)?, most(|turn| turn.noise_nm)?);
-        let allowed_nm = LEFT_SHARE * rated_nm(run)? + noise_nm;
+        let allowed_nm = REMANENCE * rated_nm(run)? + noise_nm;
         Some(Self { turns, left_nm, noise_nm, allowed_nm })
     }
 

@@ -13,9 +13,11 @@ use crate::findings::{
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
+use crate::thresholds::{FASTER_LEG, VAGUE_OFFSET};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::preprocess::Prepared;
 use jointbench_model::signal::Signal;
+use jointbench_model::thresholds::ALPHA;
 use jointbench_model::words;
 use nalgebra::{Matrix2, Vector2};
 use rand::SeedableRng;
@@ -44,13 +46,6 @@ const TURNING_SHARE: f64 = 0.5;
 /// Shortest dwell, absolute and relative to both ramps together, that contains a detectable steady state.
 const SHORTEST_S: f64 = 0.3;
 const OF_RAMPS: f64 = 1.0;
-/// A leg faster than the strokes by this ratio magnetises or demagnetises the brake.
-const FASTER: f64 = 1.05;
-/// Error probability of the test for gravity.
-const ALPHA: f64 = 0.05;
-/// Relative half interval from which on an offset is not determined.
-const VAGUE: f64 = 0.5;
-
 impl Procedure for Strokes {
     fn id(&self) -> &'static str {
         "strokes"
@@ -134,11 +129,11 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let heaviest = legs.iter().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
     let prepared = settled(&select_legs(run, legs.iter().filter(|leg| leg.brake_nm == Some(heaviest)))?)?;
     let planned = values.number("top_speed_rad_s");
-    let is_stroke = |p: &Plateau| p.velocity_rad_s.abs() < FASTER * planned;
+    let is_stroke = |p: &Plateau| p.velocity_rad_s.abs() < FASTER_LEG * planned;
     let points: Vec<Plateau> = plateaus(&prepared).into_iter().filter(is_stroke).collect();
     let weighed = match run.column("link_torque_nm") {
         Some(_) => None,
-        None => without_gravity(&prepared, &points, FASTER * planned),
+        None => without_gravity(&prepared, &points, FASTER_LEG * planned),
     };
     let plain = || Lines { sides: [1.0, -1.0].map(|sign| side(&points, sign, [0.0; 2])), half_difference: None };
     let lines = weighed.unwrap_or_else(plain);
@@ -260,12 +255,13 @@ impl Lines {
         if fitted.len() < 2 {
             return Some("A line requires at least two speeds. Increase speeds.".to_owned());
         }
-        if FASTER * top_rad_s < planned_rad_s {
+        if FASTER_LEG * top_rad_s < planned_rad_s {
             return Some(format!(
                 "The strokes at {planned_rad_s:.1} rad/s held no steady state. Increase travel_rad or acceleration_rad_s2."
             ));
         }
-        let is_vague = |line: &Line| 0.5 * (line.offset_ci95[1] - line.offset_ci95[0]) > VAGUE * line.offset.abs();
+        let is_vague =
+            |line: &Line| 0.5 * (line.offset_ci95[1] - line.offset_ci95[0]) > VAGUE_OFFSET * line.offset.abs();
         let vague: Vec<&str> = fitted.iter().filter(|(.., line)| is_vague(line)).map(|(suffix, ..)| *suffix).collect();
         if !vague.is_empty() && self.half_difference.is_some() {
             return Some(format!(

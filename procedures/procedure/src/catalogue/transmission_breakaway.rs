@@ -15,6 +15,7 @@ use crate::findings::{Unusable, verdict};
 use crate::identification::{Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{EndCondition, Plan, PlanFault};
+use crate::thresholds::JOLT;
 use jointbench_instrument::{Kind, RunTable};
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -45,11 +46,9 @@ const MOVING_RAD_S: f64 = 0.5 * UNTIL.speed_rad_s;
 /// The breakaway torque is the largest mean over this time, so that it is not the largest noise (s).
 const MEAN_S: f64 = 0.04;
 
-/// A torque that rises in this time by more than twice its ramp and this share of the peak has a dynamic part: a joint
-/// with more stiction than friction moves with a jolt. Smaller jolts change the result by less than this share.
+/// A torque that rises in this time by more than twice its ramp and [`JOLT`] has a dynamic part: a joint with more
+/// stiction than friction moves with a jolt.
 const JOLT_S: f64 = 0.1;
-const JOLT_SHARE: f64 = 0.05;
-
 const WHAT: &str = "Breakaway torque of the transmission";
 
 impl Procedure for TransmissionBreakaway {
@@ -143,7 +142,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         let (peak, torque_nm) = means.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let risen_nm = torque_nm - means[peak.saturating_sub(rise)];
         let is_moving = sign * velocity[ramp.end - 1] >= MOVING_RAD_S;
-        jolts += u32::from(is_moving && risen_nm > 2.0 * JOLT_S * ramp_nm_s + JOLT_SHARE * torque_nm);
+        jolts += u32::from(is_moving && risen_nm > 2.0 * JOLT_S * ramp_nm_s + JOLT * torque_nm);
         is_moving.then(|| BreakawayPoint { link_rad: link(ramp.end - 1).rem_euclid(TAU), torque_nm, sign })
     };
     let points: Vec<BreakawayPoint> = moved.into_iter().filter_map(point).collect();

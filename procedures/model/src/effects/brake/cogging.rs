@@ -1,6 +1,6 @@
 //! Cogging.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, orders, waves};
 use crate::view::View;
@@ -40,8 +40,8 @@ impl Effect for Cogging {
         forms
     }
 
-    fn wave(&self) -> Option<Signal> {
-        Some(Signal::Position)
+    fn traits(&self) -> Traits {
+        Traits { wave: Some(Signal::Position), ..Traits::default() }
     }
 
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {

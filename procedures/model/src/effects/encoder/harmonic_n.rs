@@ -1,6 +1,6 @@
 //! Higher harmonic.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, orders, waves};
 use crate::view::View;
@@ -38,8 +38,8 @@ impl Effect for HarmonicN {
         forms
     }
 
-    fn wave(&self) -> Option<Signal> {
-        Some(Signal::Position)
+    fn traits(&self) -> Traits {
+        Traits { wave: Some(Signal::Position), ..Traits::default() }
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

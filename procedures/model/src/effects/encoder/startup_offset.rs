@@ -1,6 +1,6 @@
 //! Start-up offset.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic};
 use crate::view::View;
@@ -39,8 +39,8 @@ impl Effect for StartupOffset {
         }
     }
 
-    fn is_nuisance(&self) -> bool {
-        true
+    fn traits(&self) -> Traits {
+        Traits { is_nuisance: true, ..Traits::default() }
     }
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {

@@ -1,6 +1,6 @@
 //! Temperature drift.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -37,7 +37,7 @@ impl Effect for TemperatureDrift {
         formula("temperature - 25")
     }
 
-    fn over_time(&self) -> Option<&'static str> {
-        Some("over_time: error = a * time; a [rad/s]")
+    fn traits(&self) -> Traits {
+        Traits { over_time: Some("over_time: error = a * time; a [rad/s]"), ..Traits::default() }
     }
 }

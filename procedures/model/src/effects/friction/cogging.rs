@@ -1,6 +1,6 @@
 //! Cogging.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, orders, waves};
 use crate::thresholds::COGGING_TURN;
@@ -43,8 +43,8 @@ impl Effect for Cogging {
         forms
     }
 
-    fn wave(&self) -> Option<Signal> {
-        Some(Signal::Position)
+    fn traits(&self) -> Traits {
+        Traits { wave: Some(Signal::Position), ..Traits::default() }
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

@@ -1,6 +1,6 @@
 //! Friction ripple.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, orders, waves};
 use crate::thresholds::RIPPLE_PERIOD;
@@ -45,8 +45,8 @@ impl Effect for FrictionRipple {
         forms
     }
 
-    fn wave(&self) -> Option<Signal> {
-        Some(Signal::Link)
+    fn traits(&self) -> Traits {
+        Traits { wave: Some(Signal::Link), ..Traits::default() }
     }
 
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {

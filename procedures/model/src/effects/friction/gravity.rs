@@ -1,6 +1,6 @@
 //! Gravity.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, waves};
 use crate::view::View;
@@ -32,8 +32,8 @@ impl Effect for Gravity {
         if view.constants.slides { Vec::new() } else { vec![Form::linear(&["g_c", "g_s"])] }
     }
 
-    fn is_exact(&self) -> bool {
-        true
+    fn traits(&self) -> Traits {
+        Traits { is_exact: true, ..Traits::default() }
     }
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {

@@ -1,6 +1,6 @@
 //! Rotor inertia.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Regime, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -39,7 +39,7 @@ impl Effect for Inertia {
         formula("acceleration")
     }
 
-    fn regime(&self) -> crate::effect::Regime {
-        crate::effect::Regime::Transient
+    fn traits(&self) -> Traits {
+        Traits { regime: Regime::Transient, ..Traits::default() }
     }
 }

@@ -1,6 +1,6 @@
 //! Load through the gear.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits};
 use crate::signal::Signal;
 use crate::view::View;
 use jointbench_instrument::Kind;
@@ -34,7 +34,7 @@ impl Effect for LoadTransmission {
         vec![view.get(Signal::Load).to_vec()]
     }
 
-    fn is_offset(&self) -> bool {
-        true
+    fn traits(&self) -> Traits {
+        Traits { is_offset: true, ..Traits::default() }
     }
 }

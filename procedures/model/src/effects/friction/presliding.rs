@@ -1,6 +1,6 @@
 //! Presliding hysteresis.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Regime, Shape, ShapeSearch, Traits, parameter};
 use crate::hysteresis_operators;
 use crate::signal::Signal;
 use crate::symbolic::{Column, FittedForm, Rule, Symbolic, memory};
@@ -87,7 +87,7 @@ impl Effect for Presliding {
         }
     }
 
-    fn regime(&self) -> crate::effect::Regime {
-        crate::effect::Regime::Hysteresis
+    fn traits(&self) -> Traits {
+        Traits { regime: Regime::Hysteresis, ..Traits::default() }
     }
 }

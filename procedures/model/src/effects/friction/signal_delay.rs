@@ -1,6 +1,6 @@
 //! Delay between torque and velocity.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Regime, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -40,7 +40,7 @@ impl Effect for SignalDelay {
         formula("jerk")
     }
 
-    fn regime(&self) -> crate::effect::Regime {
-        crate::effect::Regime::Transient
+    fn traits(&self) -> Traits {
+        Traits { regime: Regime::Transient, ..Traits::default() }
     }
 }

@@ -1,6 +1,6 @@
 //! Stribeck effect.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, Traits, parameter};
 use crate::fast_math;
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
@@ -92,11 +92,7 @@ impl Effect for Stribeck {
         formula("exp(-(abs(velocity) / omega_s) ^ delta) * direction")
     }
 
-    fn exponent_parameter(&self) -> Option<&'static str> {
-        Some("delta")
-    }
-
-    fn corrects(&self) -> Option<&'static str> {
-        Some("coulomb")
+    fn traits(&self) -> Traits {
+        Traits { exponent_parameter: Some("delta"), corrects: Some("coulomb"), ..Traits::default() }
     }
 }

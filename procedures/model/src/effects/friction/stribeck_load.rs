@@ -1,6 +1,6 @@
 //! Stribeck effect that grows with the load.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -45,7 +45,7 @@ impl Effect for StribeckLoad {
         formula("exp(-(abs(velocity) / omega_s) ^ delta) * direction * abs(load)")
     }
 
-    fn exponent_parameter(&self) -> Option<&'static str> {
-        Some("delta")
+    fn traits(&self) -> Traits {
+        Traits { exponent_parameter: Some("delta"), ..Traits::default() }
     }
 }

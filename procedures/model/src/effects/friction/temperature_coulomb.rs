@@ -1,6 +1,6 @@
 //! Temperature-dependent Coulomb friction.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -37,11 +37,11 @@ impl Effect for TemperatureCoulomb {
         formula("(temperature - 25) * direction")
     }
 
-    fn over_time(&self) -> Option<&'static str> {
-        Some("over_time: tau = a * time * direction; a [Nm/s]")
-    }
-
-    fn corrects(&self) -> Option<&'static str> {
-        Some("coulomb")
+    fn traits(&self) -> Traits {
+        Traits {
+            over_time: Some("over_time: tau = a * time * direction; a [Nm/s]"),
+            corrects: Some("coulomb"),
+            ..Traits::default()
+        }
     }
 }

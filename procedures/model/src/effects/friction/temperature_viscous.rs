@@ -1,6 +1,6 @@
 //! Temperature-dependent viscous friction.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -37,11 +37,11 @@ impl Effect for TemperatureViscous {
         formula("(temperature - 25) * velocity")
     }
 
-    fn over_time(&self) -> Option<&'static str> {
-        Some("over_time: tau = a * time * velocity; a [Nm/rad]")
-    }
-
-    fn corrects(&self) -> Option<&'static str> {
-        Some("viscous")
+    fn traits(&self) -> Traits {
+        Traits {
+            over_time: Some("over_time: tau = a * time * velocity; a [Nm/rad]"),
+            corrects: Some("viscous"),
+            ..Traits::default()
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Viscous asymmetry.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -41,7 +41,7 @@ impl Effect for ViscousAsymmetry {
         view.is_one_directional().then_some("viscous")
     }
 
-    fn corrects(&self) -> Option<&'static str> {
-        Some("viscous")
+    fn traits(&self) -> Traits {
+        Traits { corrects: Some("viscous"), ..Traits::default() }
     }
 }

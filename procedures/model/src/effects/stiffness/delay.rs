@@ -1,6 +1,6 @@
 //! Delay.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -29,8 +29,8 @@ impl Effect for Delay {
         vec![Form::linear(&["t_d"])]
     }
 
-    fn needs_motion(&self) -> bool {
-        true
+    fn traits(&self) -> Traits {
+        Traits { needs_motion: true, ..Traits::default() }
     }
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {

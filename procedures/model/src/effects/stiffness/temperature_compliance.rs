@@ -1,6 +1,6 @@
 //! Temperature-dependent compliance.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -37,7 +37,7 @@ impl Effect for TemperatureCompliance {
         formula("(temperature - 25) * load")
     }
 
-    fn over_time(&self) -> Option<&'static str> {
-        Some("over_time: torsion = a * time * load; a [rad/(Nm·s)]")
+    fn traits(&self) -> Traits {
+        Traits { over_time: Some("over_time: torsion = a * time * load; a [rad/(Nm·s)]"), ..Traits::default() }
     }
 }

@@ -1,6 +1,6 @@
 //! Transmission error.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, orders, waves};
 use crate::view::View;
@@ -33,12 +33,8 @@ impl Effect for TransmissionError {
         crate::effects::harmonic_form(view, Signal::Link, 1..=60)
     }
 
-    fn wave(&self) -> Option<Signal> {
-        Some(Signal::Link)
-    }
-
-    fn needs_motion(&self) -> bool {
-        true
+    fn traits(&self) -> Traits {
+        Traits { wave: Some(Signal::Link), needs_motion: true, ..Traits::default() }
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

@@ -7,8 +7,9 @@
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::Problem;
 use crate::preprocess::design::segments::stretches;
-use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::linear_model::Term;
 use crate::regression::partial_regression::{PartialRegression, products};
+use crate::selection::acceptance::Candidate;
 use crate::signal::{Signal, Signals};
 use crate::thresholds::{ALIAS_SHARE, CLEAR_ERRORS, COMPARABLE_SPEED, FOLLOWED_RAD, SAME_SPEED};
 use crate::view::View;
@@ -17,13 +18,14 @@ use std::ops::Range;
 /// More sample rows than these add no information.
 const MOST_ROWS: usize = 4_000;
 
-/// Whether the wave is missing in data where it has to be present.
-pub fn is_none(term: &Term, now: &LinearModel, partial: &PartialRegression) -> bool {
-    if term.effect.wave().is_none() || !now.problem.settled || term.columns.is_empty() {
-        return false;
+/// Passes all candidates but waves that are missing in data where they have to be present.
+pub(super) fn passes(candidate: &Candidate) -> bool {
+    let Candidate { term, now, partial, .. } = candidate;
+    if term.effect.traits().wave.is_none() || !now.problem.settled || term.columns.is_empty() {
+        return true;
     }
     let part = Part::of(term, now.problem, partial);
-    part.shows_at_one_speed(now.problem) || part.is_beat(term, now.problem)
+    !part.shows_at_one_speed(now.problem) && !part.is_beat(term, now.problem)
 }
 
 /// A candidate wave, orthogonal to the model, with its least-squares coefficients.
@@ -71,7 +73,7 @@ impl Part {
     /// contain it.
     fn is_beat(&self, term: &Term, problem: &Problem) -> bool {
         let view = &problem.view;
-        let Some(angle) = term.effect.wave().and_then(|angle| view.samples.find(angle)) else { return false };
+        let Some(angle) = term.effect.traits().wave.and_then(|angle| view.samples.find(angle)) else { return false };
         let order = term.shape.first().copied().unwrap_or_default();
         let is_fast = |rows: &Range<usize>| {
             let chunks = &view.chunks[rows.clone()];
@@ -128,7 +130,6 @@ fn is_missing(found: &[f64], expected: &[f64]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::selection::tiny::Tiny;
     use jointbench_instrument::Kind;
 
@@ -139,7 +140,7 @@ mod tests {
                 let wave = if shows(row.velocity.abs()) { (2.0 * row.angle).cos() } else { 0.0 };
                 5.0 * row.direction + wave + 0.1 * row.scatter
             });
-            is_none(&tiny.term("cogging", vec![2.0]), &tiny.model(), &tiny.partial())
+            !tiny.passes(super::passes, "cogging", vec![2.0])
         };
         assert!(is_alias(|speed| speed == 6.0));
         assert!(!is_alias(|_| true));

@@ -13,46 +13,43 @@ use crate::preprocess::independent_blocks::legs;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::{PartialRegression, jackknife_p_value, products};
 use crate::regression::significance::chance;
+use crate::selection::acceptance::Candidate;
+use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use crate::stats::grouped::{means, within};
 use crate::thresholds::{BETWEEN_LEGS, STEP_OVER_READINGS};
 use jointbench_instrument::Kind;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::ops::Range;
 
-/// Whether the part of an effect that is orthogonal to the model is explained by the scatter of whole legs. An effect
+/// Rejects an effect whose part that is orthogonal to the model is explained by the scatter of whole legs. An effect
 /// that differs from leg to leg has to pass an F-test of the leg means. A step counts as one of several places: it
 /// can lie between any two legs, and a step within a leg moves the mean of that leg too.
-pub fn is_random_leg_effect(
-    term: &Term,
-    now: &LinearModel,
-    partial: &PartialRegression,
-    kind: Kind,
-    options: &Options,
-) -> bool {
+pub(super) fn passes(candidate: &Candidate) -> bool {
+    let Candidate { term, now, partial, threshold: AcceptanceThreshold { kind, options, .. }, .. } = *candidate;
     // A friction run has one leg for each speed and direction, so that its blocks already are its legs.
     if kind == Kind::Friction {
-        return false;
+        return true;
     }
     let legs = stretches(&legs(now.problem));
     let steps = term.form.shape.iter().any(|shape| shape.search == ShapeSearch::Jump);
     let own: Vec<Vec<f64>> = term.columns.iter().map(|column| partial.basis.rest(column)).collect();
     if !steps && !own.iter().all(|column| is_between(column, &legs)) {
-        return !shows_within(&own, &legs, partial, now.problem, options)
-            && !shows_between(&own, term, &legs, partial, options);
+        return shows_within(&own, &legs, partial, now.problem, options)
+            || shows_between(&own, term, &legs, partial, options);
     }
     // The leg-constant columns of the model use degrees of freedom of the leg means.
     let taken = now.columns().into_iter().filter(|column| is_between(column, &legs)).count() as f64;
     let explained = own.len() as f64;
     let free = legs.len() as f64 - taken - explained;
     if free < 1.0 {
-        return steps && own.iter().all(|column| is_small(column, &partial.residual));
+        return !(steps && own.iter().all(|column| is_small(column, &partial.residual)));
     }
     let plain = means(&partial.residual, &legs);
     let left = Basis::of(&own.iter().map(|column| means(column, &legs)).collect::<Vec<_>>()).rest(&plain);
     let (before, after) = (dot(&plain, &plain), dot(&left, &left));
     let f = (before - after) / explained / (after / free).max(f64::MIN_POSITIVE);
     let places = if steps { legs.len() as f64 - 1.0 } else { 1.0 };
-    FisherSnedecor::new(explained, free).is_ok_and(|law| places * (1.0 - law.cdf(f)) > options.alpha)
+    !FisherSnedecor::new(explained, free).is_ok_and(|law| places * (1.0 - law.cdf(f)) > options.alpha)
 }
 
 /// Whether an effect of a model is significant within blocks, with a separate offset for each block.
@@ -108,8 +105,8 @@ fn is_between(column: &[f64], legs: &[Range<usize>]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::selection::tiny::Tiny;
+    use jointbench_instrument::Kind;
 
     #[test]
     fn a_temperature_that_is_unrelated_to_the_scatter_of_legs_is_rejected() {
@@ -121,8 +118,7 @@ mod tests {
                 |row| 25.0 + warm(row.leg),
                 |row| of_temperature * warm(row.leg) + of_legs * row.leg_scatter + 0.1 * row.scatter,
             );
-            let term = tiny.term("temperature_drift", Vec::new());
-            is_random_leg_effect(&term, &tiny.model(), &tiny.partial(), Kind::Encoder, &tiny.options)
+            !tiny.passes(super::passes, "temperature_drift", Vec::new())
         };
         assert!(is_random(0.0, 1.0) && !is_random(1.0, 0.1));
     }

@@ -1,6 +1,7 @@
 //! A candidate enters only if it explains more than the formula error of the other effects.
 
 use crate::Options;
+use crate::selection::acceptance::Candidate;
 use crate::thresholds::{FORMULA_ERROR, UNMISTAKABLE_SHARE};
 use jointbench_instrument::Kind;
 
@@ -17,6 +18,11 @@ pub struct AcceptanceThreshold<'l> {
 /// RMS). Encoder errors are waves over the encoder's own angle, steps and slopes. Their formulas are exact.
 fn form_error(kind: Kind) -> f64 {
     if kind == Kind::Encoder { 0.0 } else { FORMULA_ERROR }
+}
+
+/// Rejects a candidate that explains no more than the formulas of the other effects may leave.
+pub(super) fn passes(candidate: &Candidate) -> bool {
+    candidate.share >= candidate.threshold.least_share(candidate.partial.energy)
 }
 
 impl AcceptanceThreshold<'_> {

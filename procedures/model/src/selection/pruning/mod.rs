@@ -2,6 +2,7 @@
 
 pub(crate) mod infeasible;
 pub(crate) mod insignificant;
+pub(crate) mod local_bump;
 pub(crate) mod mutually_cancelling;
 pub(crate) mod partial_explanation;
 pub(crate) mod random_walk;
@@ -44,23 +45,27 @@ struct Rule {
     rejected: for<'p> fn(&Trial<'_, '_, 'p>) -> Option<Rejected<'p>>,
 }
 
-/// All rules, in the order in which they run.
-const RULES: [Rule; 10] = {
+/// All rules by name, in the order in which they run.
+const RULES: [(&str, Rule); 10] = {
     use Point::{EachMove, End, Exchange, NoCandidate, Structure};
+    use RemovalReason as Why;
     [
-        rule(RemovalReason::Redundant, EachMove, |trial| plain(trial.search.redundant())),
-        rule(RemovalReason::Infeasible, NoCandidate, |trial| plain(trial.search.infeasible(&trial.search.now))),
-        rule(RemovalReason::MutuallyCancelling, NoCandidate, |trial| plain(trial.search.mutually_cancelling())),
-        rule(RemovalReason::Insignificant, NoCandidate, |trial| plain(trial.search.insignificant())),
-        rule(RemovalReason::Swapped, Exchange, |trial| trial.search.swapped()),
-        rule(RemovalReason::RandomWalk, End, |trial| plain(trial.search.follows_random_walk())),
-        rule(RemovalReason::Unidentified, End, |trial| plain(unidentified::unidentified(trial.search))),
-        rule(RemovalReason::PartialExplanation, Structure, |trial| {
-            plain(partial_explanation::partially_explained(trial))
-        }),
-        rule(RemovalReason::Spurious, Structure, |trial| plain(spurious::spurious(trial))),
-        // A weak bump leaves no structure over an axis.
-        rule(RemovalReason::PartialExplanation, Structure, |trial| plain(partial_explanation::bump(trial.search))),
+        ("redundant", rule(Why::Redundant, EachMove, |trial| plain(trial.search.redundant()))),
+        ("infeasible", rule(Why::Infeasible, NoCandidate, |trial| plain(trial.search.infeasible(&trial.search.now)))),
+        (
+            "mutually cancelling",
+            rule(Why::MutuallyCancelling, NoCandidate, |trial| plain(trial.search.mutually_cancelling())),
+        ),
+        ("insignificant", rule(Why::Insignificant, NoCandidate, |trial| plain(trial.search.insignificant()))),
+        ("swapped", rule(Why::Swapped, Exchange, |trial| trial.search.swapped())),
+        ("random walk", rule(Why::RandomWalk, End, |trial| plain(trial.search.follows_random_walk()))),
+        ("unidentified", rule(Why::Unidentified, End, |trial| plain(unidentified::unidentified(trial.search)))),
+        (
+            "partial explanation",
+            rule(Why::PartialExplanation, Structure, |trial| plain(partial_explanation::partially_explained(trial))),
+        ),
+        ("spurious", rule(Why::Spurious, Structure, |trial| plain(spurious::spurious(trial)))),
+        ("local bump", rule(Why::PartialExplanation, Structure, |trial| plain(local_bump::bump(trial.search)))),
     ]
 };
 
@@ -90,7 +95,8 @@ impl<'s, 'l, 'p> Trial<'s, 'l, 'p> {
 
     /// The first effect that a rule of this point rejects, with the reason.
     pub fn rejected(&self, point: Point) -> Option<(Rejected<'p>, RemovalReason)> {
-        RULES.iter().filter(|rule| rule.point == point).find_map(|rule| Some(((rule.rejected)(self)?, rule.reason)))
+        let mut of_point = RULES.iter().map(|(_, rule)| rule).filter(|rule| rule.point == point);
+        of_point.find_map(|rule| Some(((rule.rejected)(self)?, rule.reason)))
     }
 
     pub fn maps(&self) -> &Maps {
@@ -110,25 +116,11 @@ impl<'s, 'l, 'p> Trial<'s, 'l, 'p> {
 #[cfg(test)]
 mod tests {
     use super::RULES;
+    use crate::selection::listed_rules;
 
     #[test]
     fn the_docs_list_the_rules_in_the_order_in_which_they_run() {
-        let docs = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/diagnosis.md")).unwrap();
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/selection/pruning");
-        let mut files: Vec<String> = (std::fs::read_dir(folder).unwrap())
-            .filter_map(|file| Some(file.unwrap().file_name().to_str()?.strip_suffix(".rs")?.to_owned()))
-            .filter(|name| name != "mod")
-            .collect();
-        files.sort();
-        assert!(RULES.is_sorted_by_key(|rule| rule.point), "the search passes its points in their order");
-        let name = |rule: &super::Rule| serde_json::to_value(rule.reason).unwrap().as_str().unwrap().to_owned();
-        let mut rules: Vec<String> = RULES.iter().map(name).collect();
-        assert_eq!(rules.pop().as_deref(), Some("partial_explanation"), "runs a second time, for a weak bump");
-        let mut sorted = rules.clone();
-        sorted.sort();
-        assert_eq!(sorted, files, "a rule is a file of selection/pruning");
-        let row = |rule: &String| docs.find(&format!("\n| {} |", rule.replace('_', " ")));
-        let rows: Vec<usize> = rules.iter().map(|rule| row(rule).unwrap_or_else(|| panic!("{rule}"))).collect();
-        assert!(rows.is_sorted(), "the rows of docs/diagnosis.md follow another order: {rows:?}");
+        assert!(RULES.is_sorted_by_key(|(_, rule)| rule.point), "the search passes its points in their order");
+        listed_rules::check("pruning", &RULES.map(|(name, _)| name));
     }
 }

@@ -24,7 +24,7 @@ impl<'p> FloatingSearch<'_, 'p> {
         if all == 0 {
             return None;
         }
-        let of_now = self.testable().filter(|term| term.effect.regime() != Regime::Hysteresis);
+        let of_now = self.testable().filter(|term| term.effect.traits().regime != Regime::Hysteresis);
         let of_now: Vec<&str> = of_now.map(Term::id).collect();
         let freed = of_now.into_par_iter().filter_map(|id| {
             let without = self.model_without(id);

@@ -14,25 +14,12 @@ use crate::thresholds::{PERIODS_SEEN, WHOLE_CURVE, WHOLE_EXPLANATION};
 pub fn partially_explained<'p>(trial: &Trial<'_, '_, 'p>) -> Option<&'p str> {
     let search = trial.search;
     // Hysteresis is a function of no axis, even if a repeated motion makes it look like one.
-    let of_axes = search.added().filter(|term| term.effect.regime() != Regime::Hysteresis);
+    let of_axes = search.added().filter(|term| term.effect.traits().regime != Regime::Hysteresis);
     least_whole(search, of_axes, trial.axis()?)
 }
 
-/// A wave with less than two periods in the covered part of a turn, if a free function of the angle would explain
-/// more: the cause is a local bump. A weak bump leaves no significant structure.
-pub fn bump<'p>(search: &FloatingSearch<'_, 'p>) -> Option<&'p str> {
-    let view = &search.now.problem.view;
-    let is_open = |term: &&Term<'p>| {
-        let turns = term.effect.wave().map(|angle| view.turns(angle));
-        turns.zip(term.shape.first()).is_some_and(|(turns, order)| turns < 1.0 && order * turns < PERIODS_SEEN)
-    };
-    let open = search.added().find(is_open)?;
-    let axis = search.prepared.column_name(open.effect.wave()?);
-    least_whole(search, search.added().filter(is_open), axis)
-}
-
 /// The effect with the smallest share of what a free function of the axis explains, if that share is too small.
-fn least_whole<'s, 'p: 's>(
+pub(super) fn least_whole<'s, 'p: 's>(
     search: &'s FloatingSearch<'_, 'p>,
     terms: impl Iterator<Item = &'s Term<'p>>,
     axis: &str,
@@ -57,7 +44,7 @@ fn least_whole<'s, 'p: 's>(
 
 /// Least share of a free function of its axis that an effect has to explain.
 fn least_share(term: &Term, problem: &Problem) -> f64 {
-    let wave = term.effect.wave().zip(term.shape.first());
+    let wave = term.effect.traits().wave.zip(term.shape.first());
     match wave.is_some_and(|(angle, order)| order * problem.view.turns(angle) < PERIODS_SEEN) {
         true => WHOLE_CURVE,
         false => WHOLE_EXPLANATION,

@@ -31,7 +31,7 @@ fn over<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str) -> Option<
         own.visible > BIAS_TOLERANCE
             && (own.share < options.practical_share || alone(term, &partial, options) > options.alpha)
     };
-    search.added().filter(|term| term.effect.regime() != Regime::Hysteresis).find(is_spurious).map(Term::id)
+    search.added().filter(|term| term.effect.traits().regime != Regime::Hysteresis).find(is_spurious).map(Term::id)
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ pub struct Undetermined {
 impl Undetermined {
     pub fn of(term: &Term, terms: &LinearModel, parameters: &[Parameter], prepared: &Prepared) -> Self {
         let own = |p: &&Parameter| p.effect == term.id();
-        let sudden = term.effect.exponent_parameter();
+        let sudden = term.effect.traits().exponent_parameter;
         let mut others = parameters.iter().filter(own).filter(|p| sudden != Some(p.name.as_str()));
         // One of the two coefficients of a wave may be zero.
         let any = |parameters: &[Parameter]| {

@@ -10,6 +10,7 @@ use crate::brake_model::{ComparedBrake, CurrentHistory};
 use crate::findings::{Mean, bounded, quantity, t95};
 use crate::identification::{Axis, Figure, Form, Mark, Quantity, Series};
 use crate::plan::PlanFault;
+use crate::thresholds::SAME_RANGE;
 use jointbench_instrument::{Meta, RunTable};
 
 /// Names of facts of the run: the other brake, and the run that measured it.
@@ -17,16 +18,13 @@ const OTHER: &str = "compared_brake";
 const OTHER_RUN: &str = "compared_brake_of_run";
 /// Half width of a 95 % interval of a normal deviate.
 const NORMAL95: f64 = 1.96;
-/// Part by which the largest currents of both runs may differ.
-const SAME: f64 = 1.01;
-
 /// Stores the other brake with the run.
 pub fn add_to(meta: &mut Meta, bench: &BenchFacts, top_a: f64) -> Result<(), PlanFault> {
     let other = bench.compared_brake.as_ref().ok_or_else(|| PlanFault::Contradiction {
         what: "the run of compare_run has no brake model".into(),
         cure: "enter a completed run of brake_hysteresis",
     })?;
-    if top_a > SAME * other.model.top_a() {
+    if top_a > SAME_RANGE * other.model.top_a() {
         let (known_a, cure) = (other.model.top_a(), "reduce top_current, or repeat that run with a larger one");
         let what = format!("the brake of compare_run is known up to {known_a:.3} A, and this run has {top_a:.3} A");
         return Err(PlanFault::Contradiction { what, cure });

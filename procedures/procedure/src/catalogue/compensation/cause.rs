@@ -2,10 +2,8 @@
 
 use super::followed::Followed;
 use crate::findings::{Mean, bounded};
+use crate::thresholds::MAIN_CAUSE;
 use jointbench_model::words;
-
-/// A part explains the error if it takes at least this share of the squared error.
-const MAIN_SHARE: f64 = 0.5;
 
 /// What the error can be proportional to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,7 +16,7 @@ enum Part {
 /// The evidence and its physical cause, in sentences.
 pub(super) fn sentences(best: &Followed) -> String {
     let parts = [Part::Velocity, Part::Acceleration, Part::Direction].map(|part| (part, share(best, part)));
-    let main = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, share)| *share >= MAIN_SHARE);
+    let main = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, share)| *share >= MAIN_CAUSE);
     let Some((part, share)) = main else {
         return "Its error is proportional neither to the velocity nor to the acceleration nor to the sign of the \
                 velocity."

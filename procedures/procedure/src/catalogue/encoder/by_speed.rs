@@ -3,10 +3,8 @@
 use super::quantities::quantity;
 use crate::findings::{Solved, solve, t95};
 use crate::identification::{Axis, Figure, Form, Mark, Quantity, Series};
+use crate::thresholds::SAME_SET_POINT;
 use std::f64::consts::TAU;
-
-/// Largest difference of measured speeds that belong to one set-point, relative.
-const SAME_SPEED: f64 = 0.02;
 
 /// Speed of a sweep, and its mean encoder difference.
 pub type Point = (f64, f64);
@@ -97,7 +95,7 @@ impl<'a> BySpeed<'a> {
         let scatter_rad = (points.iter().map(|point| rest(point).powi(2)).sum::<f64>() / freedom).sqrt();
         let mut sorted = points.to_vec();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let is_same = |a: &Point, b: &Point| (b.0 - a.0).abs() < SAME_SPEED * a.0.abs();
+        let is_same = |a: &Point, b: &Point| (b.0 - a.0).abs() < SAME_SET_POINT * a.0.abs();
         let speed = |repeats: &[Point]| {
             let n = repeats.len() as f64;
             Speed {

@@ -15,13 +15,11 @@ use crate::identification::{Identification, Quantity, SeriesRole, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
 use crate::stage_pose::StagePose;
+use crate::thresholds::TARGET_BITS;
 use jointbench_instrument::{Kind, RunTable};
 use std::f64::consts::TAU;
 
 pub struct EncoderLinearity;
-
-/// The thesis reaches 14 usable bits; this is the target for an extended compensation.
-const BEYOND_BITS: f64 = 15.0;
 
 impl Procedure for EncoderLinearity {
     fn id(&self) -> &'static str {
@@ -216,10 +214,10 @@ fn summary([before, table, velocity, direction]: [f64; 4], entries: usize, poles
 
 /// Whether table and velocity, the terms of the thesis, are sufficient for more than its 14 bits.
 fn what_it_takes(without_direction: f64, full: f64) -> String {
-    match (without_direction >= BEYOND_BITS, full >= BEYOND_BITS) {
-        (true, _) => format!("Table and velocity term are sufficient for {BEYOND_BITS} bits."),
-        (false, true) => format!("{BEYOND_BITS} bits require the direction term."),
-        (false, false) => format!("{BEYOND_BITS} bits are not reached, not even with the direction term."),
+    match (without_direction >= TARGET_BITS, full >= TARGET_BITS) {
+        (true, _) => format!("Table and velocity term are sufficient for {TARGET_BITS} bits."),
+        (false, true) => format!("{TARGET_BITS} bits require the direction term."),
+        (false, false) => format!("{TARGET_BITS} bits are not reached, not even with the direction term."),
     }
 }
 

@@ -7,13 +7,11 @@ use super::sweeps::Sweep;
 use super::table::{Class, Table, Terms};
 use crate::findings::jackknife95;
 use crate::identification::Quantity;
+use jointbench_model::thresholds::ALPHA;
 use std::f64::consts::{LN_2, TAU};
 
 /// Positions in each entry at which table and smoothed error are compared.
 const IN_ENTRY: usize = 8;
-/// Probability that noise alone adds a harmonic to the smoothed error.
-const CHANCE: f64 = 0.05;
-
 /// Mean and maximum difference (rad) between the table and the smoothed error.
 #[derive(Debug, Clone, Copy)]
 pub struct Reduction {
@@ -72,7 +70,7 @@ fn significant(table: &Table) -> Vec<u32> {
     sorted.sort_by(f64::total_cmp);
     let median = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
     // The squared amplitude of noise has an exponential distribution.
-    let limit = median / LN_2 * (squares.len() as f64 / CHANCE).ln();
+    let limit = median / LN_2 * (squares.len() as f64 / ALPHA).ln();
     (1..).zip(squares).filter(|(_, square)| *square > limit).map(|(order, _)| order).collect()
 }
 

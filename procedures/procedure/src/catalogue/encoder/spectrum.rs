@@ -3,12 +3,11 @@
 use super::sweeps::Sweep;
 use super::table::Table;
 use crate::findings::solve;
+use crate::thresholds::POLE_PAIRS_APART;
 
 /// Number of orders in the spectrum, and the lowest order of the pole pairs.
 pub const ORDERS: u32 = 160;
 const FIRST_POLE_PAIR: u32 = 8;
-/// The pole pairs are uncertain if the second-best order exceeds this share of the best.
-const APART: f64 = 0.5;
 /// 95 % limit of a noise amplitude relative to the half interval of a wave's cosine and sine: √(−2 ln 0.05) standard
 /// errors over 1.96.
 const NOISE: f64 = 2.448 / 1.960;
@@ -34,7 +33,7 @@ impl PolePairs {
             (FIRST_POLE_PAIR..=last).filter(other).map(amplitude).max_by(|a, b| a.1.total_cmp(&b.1))
         };
         let (order, amplitude_rad) = best(None)?;
-        let or = best(Some(order)).filter(|(_, next)| *next > APART * amplitude_rad).map(|(order, _)| order);
+        let or = best(Some(order)).filter(|(_, next)| *next > POLE_PAIRS_APART * amplitude_rad).map(|(order, _)| order);
         Some(Self { order, amplitude_rad, or })
     }
 

@@ -12,15 +12,13 @@ use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{InitialState, Plan, PlanFault};
 use crate::stage_pose::StagePose;
+use crate::thresholds::START_APART;
 use jointbench_instrument::{Kind, RunTable};
 
 pub struct EncoderStartup;
 
 /// Pairs of motions at each power-up; their scatter is the repeatability without a power-up.
 const PAIRS: u32 = 2;
-/// A spread above this multiple of the scatter within one power-up is significant.
-const APART: f64 = 3.0;
-
 impl Procedure for EncoderStartup {
     fn id(&self) -> &'static str {
         "encoder_startup"
@@ -98,7 +96,7 @@ impl Procedure for EncoderStartup {
         let ends = |pick: fn(f64, f64) -> f64| zeros.iter().copied().reduce(pick).unwrap_or(0.0);
         let range = ends(f64::max) - ends(f64::min);
         let point_rad = step_rad(run, "test_position_rad");
-        let differs = spread > APART * repeats_to.max(point_rad / 12_f64.sqrt());
+        let differs = spread > START_APART * repeats_to.max(point_rad / 12_f64.sqrt());
         let summary = match differs {
             true => format!(
                 "Zero varies between power-ups: standard deviation {:.1} counts (n = {}), range {:.1} counts. Without \

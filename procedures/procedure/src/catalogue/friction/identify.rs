@@ -8,22 +8,19 @@ use crate::findings::{
     select_legs, settled,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
+use crate::thresholds::{AMBIGUOUS_COULOMB, LINE_SPAN};
 use jointbench_instrument::RunTable;
 use jointbench_model::preprocess::Prepared;
 use jointbench_model::words;
 use std::panic::resume_unwind;
 use std::thread;
 
-/// Share by which Coulomb friction changes if a quadratic drag replaces the Stribeck part: a Stribeck part that
-/// decays slowly looks like both.
-const ELSEWHERE: f64 = 0.15;
-
 fn coulomb_with_quadratic_drag(run: &Prepared, whole: &FreeFriction) -> Option<f64> {
     whole.stribeck.as_ref()?;
     let square = fit_with(run, &["stribeck", "viscous_quadratic"]).ok()?;
     parameter(&square, "viscous_quadratic", "c_2")?;
     let coulomb_nm = parameter(&square, "coulomb", "tau_c")?.value;
-    ((coulomb_nm - whole.coulomb.0).abs() > ELSEWHERE * coulomb_nm.abs()).then_some(coulomb_nm)
+    ((coulomb_nm - whole.coulomb.0).abs() > AMBIGUOUS_COULOMB * coulomb_nm.abs()).then_some(coulomb_nm)
 }
 
 /// The legs without load after the warm-up.
@@ -218,9 +215,6 @@ fn quantity_of(words: [&str; 4], figure: Figured) -> Quantity {
     quantity(words, figure.0, Some(figure.1))
 }
 
-/// The line starts at most at this share of the highest speed, so that it spans several speeds.
-const SPANNED: f64 = 0.7;
-
 fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let mut series = sides(points, 1.0);
@@ -232,7 +226,7 @@ fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
         let fast = points.iter().filter(|p| p.velocity_rad_s * sign > clear);
         let fast: Vec<(f64, f64)> = fast.map(|p| (p.velocity_rad_s, friction_nm(p))).collect();
         let slowest = fast.iter().map(|(speed, _)| speed.abs()).fold(top, f64::min);
-        if slowest <= SPANNED * top
+        if slowest <= LINE_SPAN * top
             && let Some(line) = Line::through(&fast)
         {
             let way = if sign > 0.0 { "positive" } else { "negative" };

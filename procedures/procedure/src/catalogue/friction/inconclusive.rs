@@ -3,16 +3,11 @@
 
 use super::free_friction::{FreeFriction, friction_nm};
 use crate::findings::{Plateau, solve};
+use crate::thresholds::{EXPLAINED, SMALL_REST, SMALL_RISE};
 use jointbench_model::words;
 
-/// A rise below this share of Coulomb friction is negligible.
-const SMALL_RISE: f64 = 0.1;
 /// Tested Stribeck velocities relative to the expected one.
 const WHERE_IT_RISES: [f64; 3] = [0.5, 1.0, 2.0];
-/// Speed explains friction if r² reaches this value, or if the remaining RMS is below this share of Coulomb friction.
-const EXPLAINED: f64 = 0.9;
-const SMALL_REST: f64 = 0.02;
-
 /// The largest rise or fall at low speed that is compatible with the points at 95 %. The directions may differ.
 pub(super) fn hidden_rise_nm(points: &[Plateau], expected_rad_s: f64) -> Option<f64> {
     let values: Vec<f64> = points.iter().map(|p| friction_nm(p) * p.velocity_rad_s.signum()).collect();

@@ -8,6 +8,7 @@ use super::dahl::{Dahl, top_nm};
 use super::loops::{Swings, dahl};
 use crate::findings::{jackknife95, quantity, solve};
 use crate::identification::Quantity;
+use crate::thresholds::SAME_AMPLITUDE;
 use jointbench_model::words;
 
 const ROUNDS: usize = 8;
@@ -16,8 +17,6 @@ const SHARE: f64 = 1e-5;
 const ROWS: f64 = 0.1;
 /// Control periods to which the delay of drive and encoder is known: one for the command, one for the reading.
 const KNOWN_ROWS: f64 = 2.0;
-/// Steps whose largest torques differ by less than this share have the same amplitude.
-const SAME: f64 = 0.05;
 /// Amplitudes that the interval needs.
 const AMPLITUDES: usize = 3;
 
@@ -74,7 +73,7 @@ impl Damping {
 }
 
 fn is_same(a_nm: f64, b_nm: f64) -> bool {
-    (a_nm - b_nm).abs() < SAME * a_nm.max(b_nm)
+    (a_nm - b_nm).abs() < SAME_AMPLITUDE * a_nm.max(b_nm)
 }
 
 /// Each amplitude of the steps once.

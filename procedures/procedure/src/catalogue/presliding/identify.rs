@@ -6,6 +6,7 @@ use super::loops::{Swings, dahl, swings};
 use crate::findings::{Unusable, curve, jackknife95, quantity, scatter, solve};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::Values;
+use crate::thresholds::WIDEST_PRESLIDING;
 use jointbench_instrument::RunTable;
 use jointbench_model::words;
 
@@ -14,9 +15,6 @@ const ROUNDS: usize = 30;
 const ELEMENTS: usize = 4;
 /// End of the polygon, as a share of the Coulomb torque.
 const POLYGON_END: f64 = 0.98;
-/// Largest relative half width of the interval of an identified parameter.
-const WIDEST: f64 = 0.25;
-
 pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
     let torque_constant = run.meta().torque_constant_nm_per_a.unwrap_or(1.0);
     let Some(all) = swings(run, torque_constant) else {
@@ -41,7 +39,9 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
     let jackknife: Vec<Dahl> = (0..held.len()).filter_map(without).collect();
     let interval = |figure: &dyn Fn(Dahl) -> f64| spread(&jackknife, figure).map(|reach| around(figure(dahl), reach));
     let points: usize = held.iter().map(|swings| swings.points.len()).sum();
-    let wide = |ci95: Option<[f64; 2]>, value: f64| ci95.is_none_or(|[low, high]| high - low > 2.0 * WIDEST * value);
+    let wide = |ci95: Option<[f64; 2]>, value: f64| {
+        ci95.is_none_or(|[low, high]| high - low > 2.0 * WIDEST_PRESLIDING * value)
+    };
     let (k, coulomb, reach) = (interval(&Dahl::stiffness), interval(&|d| d.coulomb_nm), interval(&Dahl::reach_rad));
     // The zero of a torque sensor, divided by the gear ratio, looks like such a torque. It is the same in every step,
     // so that the scatter does not contain it.

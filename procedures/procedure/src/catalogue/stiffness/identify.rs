@@ -3,15 +3,13 @@
 use super::zones::zones;
 use crate::findings::{Hold, Mean, Unusable, holds, interval_of, parameter, quantity, scatter, select_rows};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, SeriesRole, Verdict};
+use crate::thresholds::{BETTER_CURVE, LOST_MOTION, SAME_CURVE};
 use jointbench_instrument::RunTable;
 use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit, residuals};
 use std::ops::Range;
 
 /// Steady-state share at the end of a hold, after the wind-up of joint and brake.
 const SETTLED: f64 = 0.5;
-/// A nonlinear model replaces the line if its validation error is smaller than this share.
-const BETTER: f64 = 0.85;
-
 /// A soft start: additional torsion at low load that saturates at φ, with an unknown sharpness. φ corresponds to β₀
 /// of a line through high loads.
 const SOFT: &str = "soft_start";
@@ -21,9 +19,6 @@ const SHAPES: [&str; 2] = [
     "torsion = phi * load / (t_h^p + abs(load)^p)^(1/p)",
     "torsion = phi * sign(load) * (1 - (1 + abs(load) / t_h)^(-p))",
 ];
-
-/// Shapes whose errors differ by less than this share of φ are equally good, because no shape is exact.
-const ALIKE: f64 = 0.005;
 
 /// `None`: the load is too small.
 fn softening(run: &RunTable, shape: &str) -> Option<OwnEffect> {
@@ -76,10 +71,10 @@ impl Fits {
         let line = with("directional_offset", Vec::new())?;
         let curve_of = |shape: &&str| with(SOFT, vec![softening(settled, shape)?]).ok();
         let mut curves: Vec<Fit> = SHAPES.iter().filter_map(curve_of).collect();
-        curves.retain(|curve| curve.validation_rms < BETTER * line.validation_rms);
+        curves.retain(|curve| curve.validation_rms < BETTER_CURVE * line.validation_rms);
         curves.sort_by(|a, b| a.validation_rms.total_cmp(&b.validation_rms));
         let end = curves.first().and_then(|best| Some(parameter(best, SOFT, "phi")?.value.abs()));
-        let bound = curves.first().map_or(0.0, |best| best.validation_rms.max(ALIKE * end.unwrap_or(0.0)));
+        let bound = curves.first().map_or(0.0, |best| best.validation_rms.max(SAME_CURVE * end.unwrap_or(0.0)));
         curves.retain(|curve| curve.validation_rms <= bound);
         let is_curved = !curves.is_empty();
         let selected = if is_curved { curves } else { vec![line.clone()] };
@@ -295,10 +290,6 @@ impl Reversal {
         Series::new("loop at maximum load", Mark::Line, x, y).with_role(SeriesRole::Loop)
     }
 }
-
-/// Torque range of the lost motion to either side, as a share of the highest torque. Catalogues of strain wave gears
-/// use 3 or 4 % of the rated torque.
-const LOST_MOTION: f64 = 0.03;
 
 /// Mean torsion where a branch crosses a torque, because noise causes several crossings. `None` without a crossing.
 fn crossing(branch: &[Point], torque: f64) -> Option<f64> {

@@ -10,7 +10,7 @@ use crate::regression::evidence::visible;
 use crate::regression::solution::{DELAY, Solution, effect_coefficient, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::detection_limit::DetectionLimit;
-use crate::selection::refused::least_share;
+use crate::selection::evidence_search::rules::error_reduction::least_share;
 use crate::stats::student;
 use crate::stats::summary::quantile;
 use crate::thresholds::{DELAY_ROWS, DETECTION_POWER};
@@ -32,7 +32,7 @@ pub fn detection_limits<'p>(
     let without_jerk = without(&end.main, solution, FormErrorKind::Jerk);
     let without_bristle = without(&end.main, solution, FormErrorKind::Bristle);
     let size = |form: &&Regressor<'p>| {
-        let ridge = match form.effect.regime() {
+        let ridge = match form.effect.traits().regime {
             Regime::Hysteresis => &without_bristle,
             _ if form.id() == DELAY => &without_jerk,
             _ => &solution.ridge,
@@ -57,7 +57,8 @@ fn smallest(
 ) -> Option<f64> {
     let added = visible(ridge, form)?;
     let scatter = added.scatter(&added.coefficients());
-    let share = least_share(form.effect);
+    // An effect of transients competes with the form error of all models.
+    let share = least_share(form.effect.traits().regime != Regime::SteadyState);
     let least = share / (1.0 - share) * ridge.loss();
     let delay = || {
         let form_error = end.main.problem.form_error.as_deref()?;

@@ -1,0 +1,199 @@
+//! Adds effects by one decision rule. An effect is added if it reduces the validation error by a minimum share, is
+//! significant, and exceeds its own standard error.
+//!
+//! The error reduction ranks the candidates; significance is only a condition. A candidate that form error imitates has to
+//! explain most of the residual.
+
+mod candidates;
+mod detection_limits;
+mod insignificant;
+mod power_balance;
+pub(crate) mod refused;
+pub(crate) mod rules;
+
+use crate::preprocess::Prepared;
+use crate::regression::candidates::CandidateSet;
+use crate::regression::evidence::Evidence;
+use crate::regression::linear_model::LinearModel;
+use crate::regression::solution::Solution;
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::reasons::{AdditionReason, RemovalReason};
+use crate::residual_analysis::maps::Maps;
+use crate::residual_analysis::structure::{self, Unexplained};
+use crate::selection::advance::{Path, SelectionStep};
+use crate::selection::equivalence::is_tie;
+use crate::selection::evidence_search::candidates::{candidates, in_turn, is_tied};
+use crate::selection::evidence_search::insignificant::insignificant;
+use crate::selection::evidence_search::power_balance::power_balance;
+use crate::selection::evidence_search::refused::{EvidenceResult, Refused};
+use crate::selection::evidence_search::rules::Figures;
+use crate::selection::forward_step::ScoredCandidate;
+use crate::selection::model_selection::ModelSelection;
+use crate::thresholds::{LEFT_SHARE, MOST_NAMED};
+use crate::{ModelError, ModelSpec, Options};
+use std::cell::OnceCell;
+
+/// Candidate sets of a run: for a friction direction that switches at once, and for one with presliding.
+struct Libraries<'p> {
+    plain: OnceCell<CandidateSet<'p>>,
+    bristled: OnceCell<CandidateSet<'p>>,
+}
+
+impl<'p> Libraries<'p> {
+    /// The candidate set that matches the friction direction of a model.
+    fn of(&self, model: &LinearModel<'p>, prepared: &'p Prepared, spec: &'p ModelSpec) -> &CandidateSet<'p> {
+        let is_plain = std::ptr::eq(model.problem, &prepared.main);
+        let known = if is_plain { &self.plain } else { &self.bristled };
+        known.get_or_init(|| CandidateSet::new(spec, model.problem, prepared.regimes()))
+    }
+}
+
+/// Data and state of the search.
+struct Search<'a, 'p> {
+    prepared: &'p Prepared,
+    spec: &'p ModelSpec,
+    options: &'a Options,
+    path: Path<'a, 'p>,
+    libraries: Libraries<'p>,
+}
+
+/// `on_advance` gets each step when it is made.
+pub fn search<'p>(
+    prepared: &'p Prepared,
+    spec: &'p ModelSpec,
+    options: &Options,
+    most: usize,
+    on_advance: &mut dyn FnMut(&SelectionStep),
+) -> Result<ModelSelection<'p>, ModelError> {
+    let start = TwoStageModel::new(prepared, spec, options)?;
+    let libraries = Libraries { plain: OnceCell::new(), bristled: OnceCell::new() };
+    let mut search = Search { prepared, spec, options, path: Path::new(start, on_advance), libraries };
+    // Contradicting columns make every effect spurious: none is tested.
+    let mut refused = Vec::new();
+    if prepared.data_errors.fatal.is_empty() {
+        if most > 0
+            && let Some(step) = power_balance(&search.path.start, options)
+        {
+            search.path.push(step);
+        }
+        refused = search.grow(most.min(MOST_NAMED as usize))?;
+    }
+    while let Some(id) = insignificant(search.path.end(), spec) {
+        search.remove(id, RemovalReason::Insignificant)?;
+    }
+    let left = search.left()?;
+    search.finish(left, refused)
+}
+
+impl<'p> Search<'_, 'p> {
+    /// Adds the effect with the largest error reduction as long as one passes. Returns the rejected effects with a
+    /// large error reduction.
+    fn grow(&mut self, most: usize) -> Result<Vec<Refused<'p>>, ModelError> {
+        loop {
+            let now = self.path.end();
+            let library = self.libraries.of(&now.main, self.prepared, self.spec);
+            let Some(solution) = Solution::of(&now.main) else { return Ok(Vec::new()) };
+            let forms = library.candidates.iter().filter(|c| !self.spec.contains(c.id())).count();
+            let all = candidates(now, &solution, library, forms);
+            let added = self.path.advances.iter().filter(|a| a.added.is_some()).count();
+            let figures = |e: &Evidence| Figures::of(e, self.options.alpha, added >= most);
+            let passing: Vec<&Evidence> = all.iter().filter(|e| rules::rejection(&figures(e)).is_none()).collect();
+            let mut named = None;
+            for e in in_turn(&passing) {
+                let effects = now.effects.iter().cloned().chain([e.id().to_owned()]).collect();
+                let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+                if rules::model_rejection(now, &solution, &after).is_none() {
+                    named = Some((e, after));
+                    break;
+                }
+            }
+            let Some((best, after)) = named else {
+                let large = all.iter().filter(|e| e.gain > LEFT_SHARE);
+                return Ok(large.map(|e| Refused::of(e.best.id(), figures(e))).collect());
+            };
+            let id = best.best.id();
+            let mut ties = Vec::new();
+            for tied in all.iter().filter(|e| e.id() != id && is_tied(best, e)) {
+                if self.fits_alike(tied.best.id(), &after)? && !ties.contains(&tied.best.id()) {
+                    ties.push(tied.best.id());
+                }
+            }
+            let scored = ScoredCandidate {
+                term: best.best.term(now.main.problem),
+                share: best.gain,
+                validation_losses: best.losses.iter().sum(),
+                p_value: best.p_value,
+                reason: AdditionReason::ErrorReduction,
+                losses: best.losses.clone(),
+            };
+            self.path.push(SelectionStep { added: Some(scored), removed: None, ties, after });
+        }
+    }
+
+    /// Whether it predicts left-out blocks as well in the place of the added effect.
+    fn fits_alike(&self, rival: &str, after: &TwoStageModel<'p>) -> Result<bool, ModelError> {
+        let effects = self.path.end().effects.iter().cloned().chain([rival.to_owned()]).collect();
+        let other = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+        let losses = |model: &LinearModel| Solution::of(model).map(|solution| solution.validation_losses(model));
+        Ok(match (losses(&after.main), losses(&other.main)) {
+            (Some(best), Some(losses)) => is_tie(&best, &losses),
+            _ => true,
+        })
+    }
+
+    fn remove(&mut self, id: &'p str, why: RemovalReason) -> Result<(), ModelError> {
+        let effects = self.path.end().effects.iter().filter(|e| *e != id).cloned().collect();
+        let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+        self.path.push(SelectionStep { added: None, removed: Some((id, why)), ties: Vec::new(), after });
+        Ok(())
+    }
+
+    /// Unexplained structure. If a function of one axis explains more than all added effects together, these effects
+    /// are removed.
+    fn left(&mut self) -> Result<Option<Unexplained>, ModelError> {
+        let of = |Self { path, .. }: &Self| {
+            Solution::of(&path.end().main).and_then(|solution| structure::left(&path.start, path.end(), &solution))
+        };
+        let left = of(self);
+        if !left.as_ref().is_some_and(|left| left.is_all) {
+            return Ok(left);
+        }
+        let spec = self.spec;
+        for id in self.path.end().effects.clone().iter().filter(|e| !spec.contains(e)) {
+            self.remove(spec.find(id)?.info().id, RemovalReason::Spurious)?;
+        }
+        Ok(of(self).or(left))
+    }
+
+    fn finish(self, left: Option<Unexplained>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
+        let end = self.path.end();
+        let now = end.main.clone();
+        let detection_limits = Solution::of(&now).map_or_else(Vec::new, |solution| {
+            detection_limits::detection_limits(
+                end,
+                &solution,
+                self.libraries.of(&now, self.prepared, self.spec),
+                self.options,
+            )
+        });
+        let residual = now.linear().residual;
+        let is_in = |id: &str| end.effects.iter().any(|e| e == id);
+        let named = self.path.advances.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
+        let ties = named.flat_map(|(id, ids)| ids.iter().map(move |scored| (id, *scored)));
+        let ties = ties.filter(|(id, scored)| is_in(id) && !is_in(scored)).collect();
+        let maps = Maps::new(self.prepared, residual.clone(), self.options);
+        Ok(ModelSelection {
+            start: self.path.start,
+            advances: self.path.advances,
+            withdrawn: Vec::new(),
+            now,
+            residual,
+            maps,
+            detection_limits,
+            ties,
+            retained: Vec::new(),
+            open: None,
+            decided: Some(EvidenceResult { left, refused }),
+        })
+    }
+}
