@@ -52,10 +52,15 @@ export async function zoomWhileFollowing(page, base) {
 	await page.keyboard.type('walked by');
 	await page.keyboard.press('Enter');
 	// The note appears after it is stored durably, which takes as long as the disk needs.
-	await page.locator('li', { hasText: 'walked by' }).waitFor({ timeout: TIMEOUT_MS }).catch(async () => expect(false, `Enter does not keep a note: ${await page.getByRole('form', { name: 'Note' }).locator('xpath=../..').innerText()}`));
+	const notes = page.getByRole('list', { name: 'Notes' });
+	await notes.locator('li', { hasText: 'walked by' }).waitFor({ timeout: TIMEOUT_MS }).catch(async () => expect(false, `Enter does not keep a note: ${await page.getByRole('form', { name: 'Note' }).locator('xpath=../..').innerText()}`));
 	// The focus returns to the former element, or to the notes if there was none.
 	const returned = (from) => document.activeElement === (from === document.body ? document.querySelector('ol[aria-label=Notes]') : from);
 	await page.waitForFunction(returned, focused, { timeout: TIMEOUT_MS }).catch(() => expect(false, 'Enter in a note loses the focus'));
+	await post(`/runs/${id}/notes`, { at_s: 1, text: 'heard by another client' });
+	for (const list of [notes, page.getByRole('list', { name: 'Journal' })]) {
+		await list.getByText('heard by another client').waitFor({ timeout: TIMEOUT_MS }).catch(() => expect(false, 'a note of another client does not appear on the open run page'));
+	}
 	const box = await plot.boundingBox();
 	const followed = page.url();
 	await page.mouse.move(box.x + box.width * 0.3, box.y + 50);

@@ -533,7 +533,7 @@ class LimitResult(BaseModel):
     upper: float | None = None
 
 
-class LiveMessage5(BaseModel):
+class LiveMessage6(BaseModel):
     """The columns of the following binary frames, including `time_s`."""
 
     bench: str
@@ -542,7 +542,7 @@ class LiveMessage5(BaseModel):
     type: Literal['channels']
 
 
-class LiveMessage6(BaseModel):
+class LiveMessage7(BaseModel):
     """A model version was fitted."""
 
     model: int
@@ -550,7 +550,7 @@ class LiveMessage6(BaseModel):
     type: Literal['model']
 
 
-class LiveMessage7(BaseModel):
+class LiveMessage8(BaseModel):
     """The result of a run has been computed."""
 
     run: int
@@ -558,7 +558,7 @@ class LiveMessage7(BaseModel):
     verdict: Identified
 
 
-class LiveMessage8(BaseModel):
+class LiveMessage9(BaseModel):
     """User-defined effects of a kind were added, changed or deleted."""
 
     effect: str
@@ -566,7 +566,7 @@ class LiveMessage8(BaseModel):
     type: Literal['effects']
 
 
-class LiveMessage9(BaseModel):
+class LiveMessage10(BaseModel):
     """The queue of a bench has changed."""
 
     bench: str
@@ -583,7 +583,7 @@ class LogEntry(BaseModel):
     """
 
     at_s: float | None = None
-    """Since the start of the run, on the bench's clock."""
+    """Since the start of the run, on the bench's clock; of a note the moment that it is about, if it has one."""
 
     bench: str | None = None
     by: str | None = None
@@ -594,8 +594,8 @@ class LogEntry(BaseModel):
 
     kind: str
     """
-    `stopped`, `blocked`, `reset` or `calibration` of a bench; `started`, `imported` or `model` of a run; the kind of an entry of the run's
-    journal; `token`.
+    `stopped`, `blocked`, `reset` or `calibration` of a bench; `started`, `imported`, `user_note` or `model` of a run;
+    the kind of an entry of the run's journal; `token`.
     """
 
     model: int | None = None
@@ -609,7 +609,7 @@ class LogEntry(BaseModel):
     """Number in the journal of the run."""
 
     text: str
-    """One sentence."""
+    """One sentence; the text of a note, which may have several lines."""
 
 
 class Loss(BaseModel):
@@ -630,6 +630,9 @@ Byte = TypeAliasType("Byte", Annotated[int, Field(ge=0)])
 
 
 class MemoryVariable(BaseModel):
+    note: int | None = None
+    """The note."""
+
     """One variable of the memory."""
 
     address: Annotated[int, Field(ge=0)]
@@ -1762,7 +1765,15 @@ class LiveMessage4(BaseModel):
     type: Literal['event']
 
 
-class LiveMessage10(BaseModel):
+class LiveMessage5(BaseModel):
+    """A user has written a note about a run."""
+
+    note: Note
+    run: int
+    type: Literal['note']
+
+
+class LiveMessage11(BaseModel):
     """An autopilot has completed a step or has ended."""
 
     autopilot: int
@@ -2271,7 +2282,7 @@ class LiveMessage1(BaseModel):
     type: Literal['bench']
 
 
-LiveMessage = TypeAliasType("LiveMessage", LiveMessage1 | LiveMessage2 | LiveMessage3 | LiveMessage4 | LiveMessage5 | LiveMessage6 | LiveMessage7 | LiveMessage8 | LiveMessage9 | LiveMessage10)
+LiveMessage = TypeAliasType("LiveMessage", LiveMessage1 | LiveMessage2 | LiveMessage3 | LiveMessage4 | LiveMessage5 | LiveMessage6 | LiveMessage7 | LiveMessage8 | LiveMessage9 | LiveMessage10 | LiveMessage11)
 """One text frame of `GET /api/v1/events`."""
 
 

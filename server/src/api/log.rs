@@ -20,8 +20,8 @@ pub struct LogQuery {
     pub before: Option<i64>,
 }
 
-/// Event log with users, newest first: safety records, journals of runs, model versions, and tokens for callers with
-/// full access
+/// Event log with users, newest first: safety records, journals of runs, notes, model versions, and tokens for callers
+/// with full access
 #[utoipa::path(get, path = "/log", operation_id = "get_log", tag = "daemon", params(LogQuery),
     responses((status = 200, description = "The entries", body = Vec<LogEntry>), Refusals))]
 pub async fn log(

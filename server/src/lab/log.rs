@@ -1,4 +1,4 @@
-//! The log: safety records of the benches, events of runs, model versions and tokens in one list.
+//! The log: safety records of the benches, events of runs, notes, model versions and tokens in one list.
 
 use super::{Answer, Lab, LabError};
 use crate::store::{CalibrationRecord, RunFilter, RunRecord, SafetyRecord};
@@ -80,6 +80,26 @@ impl Lab {
                 ..of_run.clone()
             });
         }
+        for note in self.notes(run.id).await? {
+            log.push(LogEntry {
+                at: note.created_at,
+                kind: "user_note".into(),
+                text: note.text,
+                note: Some(note.id),
+                at_s: note.at_s,
+                ..of_run.clone()
+            });
+        }
+        self.add_versions(run, effects, &of_run, log).await
+    }
+
+    async fn add_versions(
+        &self,
+        run: &RunRecord,
+        effects: &[Effect],
+        of_run: &LogEntry,
+        log: &mut Vec<LogEntry>,
+    ) -> Answer<()> {
         let title = |id: &String| effects.iter().find(|one| one.id == *id).map_or(id.clone(), |one| one.title.clone());
         let titles = |ids: &[String]| ids.iter().map(title).collect::<Vec<_>>().join(", ");
         for version in self.inner.store.versions(run.id).await? {

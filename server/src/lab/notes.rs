@@ -3,7 +3,7 @@
 use super::names::{self, LONGEST_NOTE, LONGEST_TAG};
 use super::{Answer, Lab, LabError};
 use crate::store::NoteRecord;
-use crate::view::{NewNote, Note, Run};
+use crate::view::{LiveMessage, NewNote, Note, Run};
 
 const MOST_TAGS: usize = 20;
 
@@ -14,7 +14,9 @@ impl Lab {
 
     pub async fn write_note(&self, run: i64, new: &NewNote) -> Answer<Note> {
         let text = names::checked_text("text", &new.text, LONGEST_NOTE)?;
-        Ok(view(self.inner.store.save_note(run, new.at_s, text).await?))
+        let note = view(self.inner.store.save_note(run, new.at_s, text).await?);
+        self.hub().publish(LiveMessage::Note { run, note: note.clone() });
+        Ok(note)
     }
 
     /// Replaces the tags of a run.

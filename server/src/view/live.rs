@@ -1,6 +1,6 @@
 //! Text frames of the live stream. The binary frames are in [`crate::live::frame`].
 
-use super::{AutopilotState, AutopilotStep, Bench, ChannelInfo, Identified, Progress, RunEvent, RunState, Safe};
+use super::{AutopilotState, AutopilotStep, Bench, ChannelInfo, Identified, Note, Progress, RunEvent, RunState, Safe};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -30,6 +30,11 @@ pub enum LiveMessage {
         bench: String,
         run: i64,
         event: RunEvent,
+    },
+    /// A user has written a note about a run.
+    Note {
+        run: i64,
+        note: Note,
     },
     /// The columns of the following binary frames, including `time_s`.
     Channels {

@@ -10,10 +10,10 @@ pub struct LogEntry {
     /// latest.
     #[schema(format = DateTime)]
     pub at: String,
-    /// `stopped`, `blocked`, `reset` or `calibration` of a bench; `started`, `imported` or `model` of a run; the kind of an entry of the run's
-    /// journal; `token`.
+    /// `stopped`, `blocked`, `reset` or `calibration` of a bench; `started`, `imported`, `user_note` or `model` of a run;
+    /// the kind of an entry of the run's journal; `token`.
     pub kind: String,
-    /// One sentence.
+    /// One sentence; the text of a note, which may have several lines.
     pub text: String,
     /// Who did it: name of the token, or `local`.
     pub by: Option<String>,
@@ -23,9 +23,11 @@ pub struct LogEntry {
     pub procedure: Option<String>,
     /// The created version.
     pub model: Option<i64>,
+    /// The note.
+    pub note: Option<i64>,
     /// Number in the journal of the run.
     pub sequence: Option<u64>,
-    /// Since the start of the run, on the bench's clock.
+    /// Since the start of the run, on the bench's clock; of a note the moment that it is about, if it has one.
     pub at_s: Option<f64>,
     /// A stop, a fault or an exceeded limit.
     pub grave: bool,

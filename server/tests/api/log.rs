@@ -56,6 +56,34 @@ fn the_log_contains_users_and_actions() {
 }
 
 #[test]
+fn a_note_is_in_the_log_and_reaches_other_clients() {
+    let daemon = TestDaemon::start();
+    let (_, run) = daemon.post("/api/v1/runs", SHORT_RUN);
+    let id = run["id"].as_i64().unwrap();
+    let (mut other, _) = tungstenite::connect(format!("ws://{}/api/v1/events", daemon.address())).unwrap();
+    let mark = json!({"at_s": 1.25, "text": "a knock\nat the gear"});
+    let (status, note) = daemon.post(&format!("/api/v1/runs/{id}/notes"), &mark.to_string());
+    assert_eq!(status, 201, "{note}");
+    let message = loop {
+        let message = other.read().unwrap();
+        let Ok(text) = message.to_text() else { continue };
+        match serde_json::from_str::<Value>(text) {
+            Ok(message) if message["type"] == "note" => break message,
+            _ => {}
+        }
+    };
+    assert_eq!(message, json!({"type": "note", "run": id, "note": note}));
+    daemon.wait_for_end(id);
+    for path in [format!("/api/v1/log?run={id}"), "/api/v1/log".to_owned()] {
+        let (_, log) = daemon.get(&path);
+        let notes: Vec<&Value> = log.as_array().unwrap().iter().filter(|entry| entry["kind"] == "user_note").collect();
+        assert_eq!(notes.len(), 1, "{path}: {log}");
+        assert_eq!((&notes[0]["note"], &notes[0]["run"]), (&note["id"], &json!(id)), "{path}");
+        assert_eq!((&notes[0]["text"], &notes[0]["at_s"]), (&note["text"], &json!(1.25)), "{path}");
+    }
+}
+
+#[test]
 fn the_log_has_pages_from_any_run() {
     let daemon = TestDaemon::start();
     let short = format!(r#"{{"bench": "{BENCH}", "procedure": "friction", "parameters": {{"load_levels": 1}}}}"#);

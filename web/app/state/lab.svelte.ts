@@ -34,6 +34,8 @@ class LabState {
 	frames = $state(0);
 	/** Incremented when any model version or verdict of a run changes. */
 	models = $state(0);
+	/** Incremented when a note about any run is written. */
+	notes = $state(0);
 	/** Incremented when a user's effect changes, so that diagnoses that may suggest it are requested again. */
 	effects = $state(0);
 	/** Incremented when the queue of a bench changes. */
@@ -143,6 +145,9 @@ class LabState {
 			case 'event':
 				this.feedOf(message.run).add(message.event);
 				this.events += 1;
+				break;
+			case 'note':
+				this.notes += 1;
 				break;
 			case 'channels':
 				this.streamed = this.feedOf(message.run);
