@@ -57,7 +57,11 @@ impl Lab {
         {
             return Ok(Some(map));
         }
-        let map: ResidualMap = self.compute(Job::ResidualMap { models: shown, region }).await?;
+        let map: ResidualMap = match self.compute(Job::ResidualMap { models: shown, region }).await {
+            Ok(map) => map,
+            Err(LabError::Gone(why)) => return Ok(Some(ResidualMap { figure: None, why_not: Some(why) })),
+            Err(fault) => return Err(fault),
+        };
         self.inner.store.cache_result(subject, &what, &super::computation::json(&map)?).await?;
         Ok(Some(map))
     }
