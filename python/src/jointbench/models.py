@@ -94,6 +94,10 @@ AutopilotAction = TypeAliasType("AutopilotAction", Literal['measure', 'measured'
 AutopilotState = TypeAliasType("AutopilotState", Literal['running', 'finished', 'budget_spent', 'stopped', 'failed', 'interrupted'])
 
 
+AxisKind = TypeAliasType("AxisKind", Literal['time', 'order', 'direction', 'position', 'velocity', 'temperature', 'current', 'load', 'response', 'other'])
+"""The quantity of an axis."""
+
+
 BenchState = TypeAliasType("BenchState", Literal['idle', 'running', 'paused', 'securing', 'stopped', 'fault', 'offline'])
 
 
@@ -1041,6 +1045,7 @@ class ResidualSet(BaseModel):
 
     held_out: list[bool]
     """Points outside the fit (ramps, reversals): shown, not evaluated."""
+    kind: AxisKind
 
     measured: list[float]
     piece: list[PieceItem]

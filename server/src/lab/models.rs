@@ -8,7 +8,7 @@ use crate::job::Job;
 use crate::store::{ModelRecord, NewModel, Subject, packed, unpacked};
 use crate::view::{
     self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ParameterSetting, ResidualSet, diagnosis_view, finite,
-    model_view, reread,
+    model_view, reread, residual_set,
 };
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, OwnEffect};
@@ -164,7 +164,7 @@ impl Lab {
             fit: reread(&fit)?,
             diagnosis: diagnosis.as_ref().map(reread).transpose()?,
         })?;
-        if let Some(json) = left.and_then(|left| written(&left, excluded).ok()) {
+        if let Some(json) = left.and_then(|left| written(left, excluded).ok()) {
             answer.push(b'\n');
             answer.extend(packed(&json)?);
         }
@@ -234,7 +234,7 @@ impl Lab {
         let fit: Fit = reread(&model.fit)?;
         let table = self.tables(&model.runs()).await?;
         let left = blocking(move || jointbench_model::residuals(&table, &fit, &Options::default())).await?;
-        Ok(packed(&written(&left, &reread::<_, Vec<Exclusion>>(&model.excluded)?)?)?)
+        Ok(packed(&written(left, &reread::<_, Vec<Exclusion>>(&model.excluded)?)?)?)
     }
 
     /// The diagnosis of a version. Data and version never change: it is computed once, and again after a change of the
@@ -300,18 +300,15 @@ impl Lab {
     }
 }
 
-/// The residuals in the format of the API. Long lists are slow as `Value`, so they are parsed from text, which also
-/// refuses non-finite values.
-fn written(left: &jointbench_model::ResidualSet, excluded: &[Exclusion]) -> Answer<Vec<u8>> {
-    let unfit =
-        |fault: serde_json::Error| LabError::Internal(format!("the residuals are not finite or not whole: {fault}"));
-    let mut set: ResidualSet = serde_json::from_slice(&serde_json::to_vec(left).map_err(unfit)?).map_err(unfit)?;
+/// The residuals in the format of the API.
+fn written(left: jointbench_model::ResidualSet, excluded: &[Exclusion]) -> Answer<Vec<u8>> {
+    let mut set: ResidualSet = residual_set(left)?;
     if !excluded.is_empty()
         && let Some(time) = set.axes.iter().find(|axis| axis.name == "time_s")
     {
         set.excluded = exclusions::marked(&time.values, excluded);
     }
-    serde_json::to_vec(&set).map_err(unfit)
+    json(&set)
 }
 
 /// The diagnosis with the recommended next run.

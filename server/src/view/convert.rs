@@ -1,8 +1,9 @@
 //! Converts records of the store and types of the lower crates to views.
 
 use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyRecord, UnitRecord};
-use crate::view;
+use crate::view::{self, AxisKind};
 use jointbench_instrument::Motion;
+use jointbench_model::Axis;
 use jointbench_procedure::{Control, EventKind, RunState, Safe};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -188,6 +189,46 @@ pub fn model_view(record: ModelRecord) -> Result<view::Model, ConversionError> {
         by: record.by,
         created_at: record.created_at,
         options: record.options,
+    })
+}
+
+/// The lists are moved, because they are long. An unknown value is refused.
+pub fn residual_set(left: jointbench_model::ResidualSet) -> Result<view::ResidualSet, ConversionError> {
+    let jointbench_model::ResidualSet {
+        residual,
+        unit,
+        axes,
+        measured,
+        predicted,
+        error,
+        held_out,
+        segment,
+        repeat,
+        piece,
+    } = left;
+    let lists = axes.iter().map(|axis| &axis.values).chain([&measured, &predicted, &error]);
+    if lists.flatten().any(|value| !value.is_finite()) {
+        return Err(ConversionError("the residuals are not finite".to_owned()));
+    }
+    let axis = |Axis { name, unit, values }| view::ResidualAxis { kind: AxisKind::of(&name), name, unit, values };
+    let residual = match residual {
+        jointbench_model::ResidualKind::Raw => view::ResidualKind::Raw,
+        jointbench_model::ResidualKind::PlateauMean => view::ResidualKind::PlateauMean,
+    };
+    let axes = axes.into_iter().map(axis).collect();
+    let excluded = Vec::new();
+    Ok(view::ResidualSet {
+        residual,
+        unit,
+        axes,
+        measured,
+        predicted,
+        error,
+        held_out,
+        excluded,
+        segment,
+        repeat,
+        piece,
     })
 }
 

@@ -1,6 +1,7 @@
 //! Effects, model versions, fits and residuals.
 
 use super::effect::EffectDefinition;
+use jointbench_files::{Dimension, dimension_of};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -273,6 +274,74 @@ pub struct ResidualSet {
 pub struct ResidualAxis {
     /// Column of the run table, or `direction`, `run_order`.
     pub name: String,
+    pub kind: AxisKind,
     pub unit: String,
     pub values: Vec<f64>,
+}
+
+/// The quantity of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AxisKind {
+    Time,
+    /// A count: the order of runs, or a repeat.
+    Order,
+    /// The sign of the motion.
+    Direction,
+    Position,
+    Velocity,
+    Temperature,
+    Current,
+    /// Torque or force, except the predicted one.
+    Load,
+    /// The torque that the model predicts.
+    Response,
+    Other,
+}
+
+impl AxisKind {
+    /// The kind of a column of the run table, from its name and the unit in its name.
+    pub fn of(column: &str) -> Self {
+        match column {
+            "direction" => return Self::Direction,
+            "run_order" | "repeat" | "segment" => return Self::Order,
+            "motor_torque_nm" => return Self::Response,
+            _ => {}
+        }
+        match dimension_of(column) {
+            Some(Dimension::Time) => Self::Time,
+            Some(Dimension::Angle | Dimension::Length) => Self::Position,
+            Some(Dimension::AngularVelocity | Dimension::Velocity) => Self::Velocity,
+            Some(Dimension::Torque | Dimension::Force) => Self::Load,
+            Some(Dimension::Current) => Self::Current,
+            Some(Dimension::Temperature) => Self::Temperature,
+            Some(Dimension::Other) | None => Self::Other,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_has_the_kind_of_its_column() {
+        let kinds = [
+            ("time_s", AxisKind::Time),
+            ("run_order", AxisKind::Order),
+            ("direction", AxisKind::Direction),
+            ("link_position_rad", AxisKind::Position),
+            ("motor_velocity_rad_s", AxisKind::Velocity),
+            ("temperature_c", AxisKind::Temperature),
+            ("housing_temperature_c", AxisKind::Temperature),
+            ("brake_current_a", AxisKind::Current),
+            ("link_torque_nm", AxisKind::Load),
+            ("motor_torque_nm", AxisKind::Response),
+            ("oil_pressure_pa", AxisKind::Other),
+            ("acceleration_rad_s2", AxisKind::Other),
+        ];
+        for (column, kind) in kinds {
+            assert_eq!(AxisKind::of(column), kind, "{column}");
+        }
+    }
 }

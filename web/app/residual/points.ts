@@ -50,7 +50,7 @@ export function withDerivedAxes(set: ResidualSet): ResidualSet {
 	};
 	since(named('time_s'), 'time_since_reversal_s');
 	since(named('motor_position_rad'), 'way_since_reversal_rad');
-	if (named('motor_velocity_rad_s')) more.push({ name: 'motor_torque_nm', unit: set.unit, values: torque(set) });
+	if (named('motor_velocity_rad_s')) more.push({ name: 'motor_torque_nm', kind: 'response', unit: set.unit, values: torque(set) });
 	return { ...set, axes: [...set.axes, ...more.filter(({ name }) => !named(name))] };
 }
 

@@ -5,7 +5,7 @@ import { exclusionReasons, excludedStretches } from './exclusions';
 const set = (time: number[]): ResidualSet => ({
 	residual: 'plateau_mean',
 	unit: 'Nm',
-	axes: [{ name: 'time_s', unit: 's', values: time }],
+	axes: [{ name: 'time_s', kind: 'time', unit: 's', values: time }],
 	measured: time,
 	predicted: time,
 	error: time,

@@ -1,4 +1,4 @@
-import type { ResidualSet } from '../api/types';
+import type { AxisKind, ResidualSet } from '../api/types';
 import { type Bins, binOf, binsFor } from '../residual/bins';
 import { type Point, curve, explainedShare } from '../residual/curve';
 import { type DirectionFilter, directionOf, pointMask, usefulAxes } from '../residual/points';
@@ -20,7 +20,7 @@ export interface RankedAxis {
 }
 
 /** Uncontrolled quantities: means of the segments are not set-points of these axes. */
-const UNCONTROLLED_AXES = /^time|^run_order$|^temperature|position|^motor_torque/;
+const UNCONTROLLED = new Set<AxisKind>(['time', 'order', 'temperature', 'position', 'response']);
 
 /** The usual axes of a friction run. */
 const FRICTION_AXES = ['motor_velocity_rad_s', 'link_torque_nm', 'link_position_rad', 'motor_position_rad', 'time_s'];
@@ -41,7 +41,7 @@ export function rankAxes(set: ResidualSet, figure: readonly number[], side: Dire
 	const directionShare = direction ? explainedShare(direction, [-Infinity, 0, Infinity], figure, counted) : 0;
 	return usefulAxes(set, counted)
 		.map((axis) => {
-			const bins = { ...binsFor(axis.values, UNCONTROLLED_AXES.test(axis.name) ? [] : set.segment, counted), factor: shown(axis.unit).factor };
+			const bins = { ...binsFor(axis.values, UNCONTROLLED.has(axis.kind) ? [] : set.segment, counted), factor: shown(axis.unit).factor };
 			const { edges } = bins;
 			const curveOf = (which: Uint8Array) => curve(axis.values, edges, figure, which, noise, set.piece);
 			const share = explainedShare(axis.values, edges, figure, counted);

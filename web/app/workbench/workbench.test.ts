@@ -186,13 +186,13 @@ it('flags parameters in words', () => {
 });
 
 describe('the axes that explain the residual', () => {
-	const axis = (name: string, unit: string, values: number[]) => ({ name, unit, values });
+	const axis = (name: string, kind: string, unit: string, values: number[]) => ({ name, kind, unit, values });
 	const points = Array.from({ length: 800 }, (_, i) => i);
 	const way = points.map((i) => (i % 2 ? 1 : -1));
 	const pressure = points.map((i) => (i >> 1) % 5);
 	const left = (one: (i: number) => number) =>
 		({
-			axes: [axis('direction', '', way), axis('oil_pressure_pa', 'Pa', pressure)],
+			axes: [axis('direction', 'direction', '', way), axis('oil_pressure_pa', 'other', 'Pa', pressure)],
 			error: points.map((i) => one(i) + 0.01 * Math.sin(37 * i)),
 			excluded: points.map(() => false),
 			held_out: points.map(() => false),
@@ -204,6 +204,17 @@ describe('the axes that explain the residual', () => {
 
 	it('tells what shows only with each direction for itself', () => {
 		expect(shares(left((i) => (pressure[i] === 2 ? way[i]! : 0)))).toEqual([['oil_pressure_pa', 0, 80], ['direction', 20, 0]]);
+	});
+
+	it('uses set points only for quantities that a run controls', () => {
+		const set = left(() => 0);
+		const setPointsOf = (kind: string) => {
+			const axes = set.axes.map((one) => (one.name === 'direction' ? one : { ...one, kind })) as ResidualSet['axes'];
+			const found = rankAxes({ ...set, axes, segment: pressure }, set.error, 'both', false, 0);
+			return found.find((one) => one.axis.name === 'oil_pressure_pa')!.bins.setPoints;
+		};
+		expect(setPointsOf('load')).toHaveLength(5);
+		for (const kind of ['time', 'temperature', 'position', 'response']) expect(setPointsOf(kind)).toBeNull();
 	});
 
 	it('gives no axis what the direction alone decides', () => {
