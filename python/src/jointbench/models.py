@@ -298,6 +298,10 @@ class EffectParameter(BaseModel):
 Evidence = TypeAliasType("Evidence", Literal['strong', 'small', 'weak'])
 """Evidence that an effect is missing, and its significance."""
 
+EmptyChart = TypeAliasType("EmptyChart", Literal['no_run', 'no_quantity'])
+"""Why a chart has no points."""
+
+
 
 class Exclusion(BaseModel):
     """An interval of a measurement that is excluded from the fit."""
@@ -2161,7 +2165,10 @@ class ControlChart(BaseModel):
     control_limits: tuple[float, float] | None = None
     """Control limits, mean ± 3 σ."""
 
-    mean: float
+    empty: EmptyChart | None = None
+    mean: float | None = None
+    """`null` without points."""
+
     pending: Annotated[int, Field(ge=0)]
     """Runs whose results are not computed yet: repeat the request."""
 
@@ -2173,7 +2180,7 @@ class ControlChart(BaseModel):
     """Names of the quantities that these runs have."""
 
     quantity: str
-    """Name, symbol, title and unit of the quantity."""
+    """Name, symbol, title and unit of the quantity. Without points: the requested name, and no unit."""
 
     sigma: float | None = None
     """σ from the mean moving range of successive units; `null` for fewer than two."""

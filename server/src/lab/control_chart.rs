@@ -4,10 +4,10 @@
 //! units apart from the uncertainty of each value by the generalised Q statistic (Paule and Mandel 1982), its interval
 //! from the quantiles of the same statistic (Viechtbauer 2007).
 
-use super::{Answer, Lab, LabError};
+use super::{Answer, Lab};
 use crate::limits::{self, Requirement};
 use crate::store::UnitRunRecord;
-use crate::view::{Capability, ControlChart, ControlPoint, ControlRule, Quantity};
+use crate::view::{Capability, ControlChart, ControlPoint, ControlRule, EmptyChart, Quantity};
 use jointbench_procedure::RunState;
 use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
@@ -41,7 +41,9 @@ impl Lab {
     pub async fn control_chart(&self, search: &str, procedure: &str, quantity: Option<&str>) -> Answer<ControlChart> {
         let newest = newest_of_units(self.inner.store.unit_runs(search).await?, procedure);
         let (found, pending) = self.quantities_of_runs(newest, |run| run.run).await?;
-        let chosen = chosen(&found, quantity, search, procedure)?;
+        let Some(chosen) = chosen(&found, quantity) else {
+            return Ok(ControlChart { pending, ..empty(&found, procedure, quantity) });
+        };
         let limit = match found.iter().rev().find(|(run, _)| run.limits.is_some()) {
             Some((run, _)) => {
                 limits::of_run(&self.run(run.run).await?).into_iter().find(|limit| limit.name == chosen.name)
@@ -65,20 +67,43 @@ fn newest_of_units(runs: Vec<UnitRunRecord>, procedure: &str) -> Vec<UnitRunReco
     newest.split_off(newest.len().saturating_sub(MOST))
 }
 
-fn chosen(found: &[Found], name: Option<&str>, search: &str, procedure: &str) -> Answer<Quantity> {
-    let all = || found.iter().rev().flat_map(|(_, quantities)| quantities);
-    let first = all().find(|quantity| quantity.ci95.is_some()).or_else(|| all().next());
-    let named = name.map(|name| all().find(|quantity| quantity.name == name));
-    named.unwrap_or(first).cloned().ok_or_else(|| {
-        LabError::NotFound(match name {
-            Some(name) => format!(
-                "no complete run of {procedure} of these units, without reference units, has the quantity {name}"
-            ),
-            None => {
-                format!("no unit that matches {search:?}, without reference units, has a complete run of {procedure}")
-            }
-        })
-    })
+/// The named quantity, or the first one with an interval.
+fn chosen(found: &[Found], name: Option<&str>) -> Option<Quantity> {
+    let mut all = found.iter().rev().flat_map(|(_, quantities)| quantities);
+    let chosen = match name {
+        Some(name) => all.find(|quantity| quantity.name == name),
+        None => all.clone().find(|quantity| quantity.ci95.is_some()).or_else(|| all.next()),
+    };
+    chosen.cloned()
+}
+
+/// The names of all quantities.
+fn names(found: &[Found]) -> Vec<String> {
+    let mut names: Vec<String> =
+        found.iter().flat_map(|(_, all)| all.iter().map(|quantity| quantity.name.clone())).collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// A chart without points, and why it has none.
+fn empty(found: &[Found], procedure: &str, quantity: Option<&str>) -> ControlChart {
+    let quantity = quantity.unwrap_or_default().to_owned();
+    ControlChart {
+        procedure: procedure.to_owned(),
+        symbol: quantity.clone(),
+        title: quantity.clone(),
+        quantity,
+        unit: String::new(),
+        points: Vec::new(),
+        empty: Some(if found.is_empty() { EmptyChart::NoRun } else { EmptyChart::NoQuantity }),
+        mean: None,
+        sigma: None,
+        control_limits: None,
+        capability: None,
+        quantities: names(found),
+        pending: 0,
+    }
 }
 
 fn chart(found: &[Found], of: &Quantity, procedure: &str, limit: Option<&Requirement>) -> ControlChart {
@@ -110,10 +135,6 @@ fn chart(found: &[Found], of: &Quantity, procedure: &str, limit: Option<&Require
         .iter()
         .filter_map(|point| point.ci95.map(|[low, high]| (point.value, (high - low) / (2.0 * Z95))))
         .collect();
-    let mut quantities: Vec<String> =
-        found.iter().flat_map(|(_, all)| all.iter().map(|quantity| quantity.name.clone())).collect();
-    quantities.sort();
-    quantities.dedup();
     ControlChart {
         procedure: procedure.to_owned(),
         quantity: of.name.clone(),
@@ -121,11 +142,12 @@ fn chart(found: &[Found], of: &Quantity, procedure: &str, limit: Option<&Require
         title: of.title.clone(),
         unit: of.unit.clone(),
         points,
-        mean,
+        empty: None,
+        mean: Some(mean),
         sigma,
         control_limits: sigma.map(|sigma| [mean - 3.0 * sigma, mean + 3.0 * sigma]),
         capability: bounds.and_then(|[lower, upper]| capability(&measured, lower, upper)),
-        quantities,
+        quantities: names(found),
         pending: 0,
     }
 }

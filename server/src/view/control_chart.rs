@@ -54,18 +54,31 @@ pub struct Capability {
     pub cpk_ci95: Option<(f64, Option<f64>)>,
 }
 
+/// Why a chart has no points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EmptyChart {
+    /// No unit of the search, without reference units, has a result of this procedure.
+    NoRun,
+    /// These results have other quantities.
+    NoQuantity,
+}
+
 /// Individuals chart of a quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ControlChart {
     pub procedure: String,
-    /// Name, symbol, title and unit of the quantity.
+    /// Name, symbol, title and unit of the quantity. Without points: the requested name, and no unit.
     pub quantity: String,
     pub symbol: String,
     pub title: String,
     pub unit: String,
     /// In the order of their runs, at most 500.
     pub points: Vec<ControlPoint>,
-    pub mean: f64,
+    /// Why there are no points; `null` with points.
+    pub empty: Option<EmptyChart>,
+    /// `null` without points.
+    pub mean: Option<f64>,
     /// σ from the mean moving range of successive units; `null` for fewer than two.
     pub sigma: Option<f64>,
     /// Control limits, mean ± 3 σ.

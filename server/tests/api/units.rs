@@ -156,8 +156,11 @@ fn a_quantity_of_the_units_has_a_control_chart_and_a_capability() {
     assert!(lowest > 1.0 && chart["sigma"].as_f64().unwrap() < 0.01, "{chart}");
     assert!(chart["quantities"].as_array().unwrap().contains(&"c_v".into()), "{chart}");
 
-    let (status, problem) = daemon.get("/api/v1/units/chart?procedure=friction&quantity=tau_x");
-    assert!(status == 404 && problem["detail"].as_str().unwrap().contains("has the quantity tau_x"), "{problem}");
+    let (status, other) = daemon.get("/api/v1/units/chart?procedure=friction&quantity=tau_x");
+    assert_eq!((status, &other["empty"], &other["mean"]), (200, &json!("no_quantity"), &Value::Null), "{other}");
+    assert_eq!((&other["quantities"], &other["points"]), (&chart["quantities"], &json!([])), "a choice: {other}");
+    let (status, none) = daemon.get("/api/v1/units/chart?procedure=warm_up&quantity=tau_c");
+    assert_eq!((status, &none["empty"], &none["quantities"]), (200, &json!("no_run"), &json!([])), "{none}");
 }
 
 /// The same mock joint five times: the last run changes nothing. Another setting is named, and is not compared.

@@ -45,3 +45,10 @@ export function indexText(value: number | null | undefined, ci95: Capability['cp
 	if (low === null) return formatNumber(value, 3);
 	return `${formatNumber(value, 3)} [${formatNumber(low, 3)} … ${high === null ? 'no upper bound' : formatNumber(high, 3)}]`;
 }
+
+/** Why a chart has no points, and what to choose. */
+export function emptyText({ empty, quantity, pending }: ControlChart, procedure: string): string {
+	if (pending > 0) return 'The results of the units are being computed.';
+	if (empty === 'no_quantity') return `No complete run of “${procedure}” of these units has the quantity ${quantity}. Choose another quantity or procedure.`;
+	return `These units have no result of “${procedure}”, apart from reference units. Choose another procedure, or change the search.`;
+}
