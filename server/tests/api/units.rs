@@ -83,6 +83,10 @@ fn a_reference_unit_has_no_yield() {
     assert_eq!((status, &marked["reference"], &marked["runs"]), (200, &true.into(), &1.into()), "{marked}");
     assert_eq!(daemon.get("/api/v1/units").1["yields"], json!([]));
     assert_eq!(mark("A%2F1", false).1["reference"], false);
+    let json = [("content-type", "application/json")];
+    let (status, refused) = daemon.put_with("/api/v1/units/A%2F1/reference", b"[true]", &json);
+    assert_eq!(status, 400, "a list of the fields is no object: {refused}");
+    assert!(refused["detail"].as_str().unwrap().contains("expected a JSON object with named fields"), "{refused}");
     assert_eq!(daemon.get("/api/v1/units").1["yields"], list["yields"]);
     assert_eq!(mark("SN9", true).0, 404);
 }
