@@ -246,6 +246,9 @@ class DamagedRecord(BaseModel):
     what: str
 
 
+DecidedBy = TypeAliasType("DecidedBy", Literal['longer_run', 'too_many_repeats', 'no_setting', 'precondition', 'other_value', 'no_interval'])
+
+
 class DefinedParameter(BaseModel):
     """A linear parameter is solved for; a nonlinear parameter is searched in its range."""
 
@@ -518,6 +521,23 @@ class Limit(BaseModel):
     """The latest reading during a run."""
 
 
+class LimitDecision(BaseModel):
+    """
+    What would decide a limit. The width of an interval falls with the square root of the number of independent
+    repeats. This assumes that the whole interval is scatter between repeats, and that the value stays.
+    """
+
+    by: DecidedBy
+    procedure: str
+    """Procedure of the deciding run."""
+
+    settings: dict[str, Any]
+    """Settings of the deciding run that differ from those of this run; empty unless `by` is `longer_run`."""
+
+    times: float | None = None
+    """Number of independent repeats, as a multiple of those of this run."""
+
+
 LimitOutcome = TypeAliasType("LimitOutcome", Literal['pass', 'marginal', 'inconclusive', 'fail'])
 """Outcome of a limit; of several limits the worst, which is the last of these words."""
 
@@ -525,6 +545,7 @@ LimitOutcome = TypeAliasType("LimitOutcome", Literal['pass', 'marginal', 'inconc
 class LimitResult(BaseModel):
     """One limit and its outcome. Limits and guard band are in `unit`."""
 
+    decision: LimitDecision | None = None
     guard_band: float
     lower: float | None = None
     message: str

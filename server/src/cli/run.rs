@@ -7,7 +7,7 @@ use super::offline::json_out;
 use super::outcome::{Found, title};
 use super::waiting::{lost, notify_on_interrupt, wait_at_most};
 use super::{files, identify, queue_entry};
-use crate::limits::{self, Case, CaseOutcome, Measured, Outcome, Requirement};
+use crate::limits::{self, Case, CaseOutcome, Made, Measured, Outcome, Requirement};
 use crate::view::{Bench, Identification, LimitOutcome, NewRun, Run, RunState, Unit, word};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
@@ -24,9 +24,9 @@ pub fn run(arguments: &Arguments) -> Done {
     }
     let ended = new.and_then(|new| start(&client, arguments, new));
     let found = found(&client, &ended);
-    let required: Vec<(&Requirement, Outcome)> = match &found {
-        Some(found) => arguments.require.iter().map(|limit| (limit, check(limit, found))).collect(),
-        None => Vec::new(),
+    let required: Vec<(&Requirement, Outcome)> = match (&ended, &found) {
+        (Ok(run), Some(found)) => arguments.require.iter().map(|limit| (limit, check(limit, run, found))).collect(),
+        _ => Vec::new(),
     };
     if let Some(path) = &arguments.junit {
         let cases = cases(&title(arguments), &ended, found.as_ref(), &arguments.require, &required);
@@ -118,9 +118,11 @@ pub(super) fn write_junit(path: &Path, runs: &[(&Result<Run, Exit>, Option<&Foun
     files::write(path, limits::junit(suite.as_deref().unwrap_or("jointbench"), cases, &warnings).as_bytes())
 }
 
-fn check(limit: &Requirement, found: &Found) -> Outcome {
+fn check(limit: &Requirement, run: &Run, found: &Found) -> Outcome {
     match found {
-        Ok(found) => limit.check(&found.result),
+        Ok(found) => {
+            limit.check(Made { procedure: &run.summary.procedure, parameters: &run.parameters }, &found.result)
+        }
         Err(exit) => Err(exit.message.clone()),
     }
 }

@@ -257,7 +257,7 @@ fn values_by_name(quantities: &[Quantity]) -> Vec<(String, f64)> {
 fn limit_check(record: &RunRecord, result: &Shown) -> Answer<Option<LimitCheck>> {
     let Some(file) = LimitsFile::kept(&record.provenance) else { return Ok(None) };
     let unit = record.unit.clone().map(unit_view);
-    let check = file.check(&Measured::new(unit.as_ref(), &record.procedure), result);
+    let check = file.check(&Measured::new(unit.as_ref(), &record.procedure), &record.parameters, result);
     check.map(Some).map_err(|fault| LabError::Internal(format!("the limits of run {}: {fault}", record.id)))
 }
 

@@ -2,10 +2,12 @@
 //!
 //! The text of a limits file is kept with its run. The result is compared with it at each request.
 
+mod decision;
 mod file;
 mod junit;
 mod requirement;
 
+pub use decision::Made;
 use file::applicable;
 pub use file::{Measured, checked};
 pub use junit::{Case, CaseOutcome, cases_of, junit, limit_case, run_case, skipped_case};
@@ -40,9 +42,15 @@ impl LimitsFile {
     }
 
     /// The limits of the file that apply, compared with a result.
-    pub fn check(&self, measured: &Measured, result: &Shown) -> Result<LimitCheck, String> {
+    pub fn check(
+        &self,
+        measured: &Measured,
+        parameters: &Map<String, Value>,
+        result: &Shown,
+    ) -> Result<LimitCheck, String> {
+        let made = Made { procedure: measured.procedure, parameters };
         let limits: Vec<LimitResult> =
-            applicable(&self.text, measured)?.into_iter().map(|limit| limit.outcome(result)).collect();
+            applicable(&self.text, measured)?.into_iter().map(|limit| limit.outcome(made, result)).collect();
         let outcomes = limits.iter().map(|limit| limit.outcome);
         let outcome = outcomes.max().ok_or("the file has no limits")?;
         Ok(LimitCheck { sha256: self.sha256.clone(), outcome, limits })

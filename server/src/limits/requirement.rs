@@ -1,6 +1,7 @@
 //! Limits on the quantities of a result: `tau_c < 0.035 Nm` of a script, or a line of a limits file.
 
-use crate::view::{LimitOutcome, LimitResult, Quantity, Shown};
+use super::decision::{Made, sentence};
+use crate::view::{LimitDecision, LimitOutcome, LimitResult, Quantity, Shown};
 use jointbench_instrument::spelling::nearest;
 use jointbench_procedure::catalogue::Findable;
 use std::str::FromStr;
@@ -22,6 +23,13 @@ pub struct Requirement {
 /// Outcome of a requirement with its figures in a sentence, or why it cannot be checked: the result lacks the quantity or
 /// has it in another unit.
 pub type Outcome = Result<(LimitOutcome, String), String>;
+
+/// An outcome with its figures in a sentence, and what would decide.
+struct Judged {
+    outcome: LimitOutcome,
+    message: String,
+    decision: Option<LimitDecision>,
+}
 
 impl FromStr for Requirement {
     type Err = String;
@@ -80,71 +88,71 @@ impl Requirement {
     }
 
     /// Compares the result of a run with the limit.
-    pub fn outcome(self, result: &Shown) -> LimitResult {
-        let (outcome, message) = self.check(result).unwrap_or_else(|why| (LimitOutcome::Inconclusive, why));
+    pub fn outcome(self, made: Made, result: &Shown) -> LimitResult {
+        let unchecked = |message| Judged { outcome: LimitOutcome::Inconclusive, message, decision: None };
+        let Judged { outcome, message, decision } = self.judged(made, result).unwrap_or_else(unchecked);
         let Self { text, name, lower, upper, guard_band, unit, needs_interval: _ } = self;
-        LimitResult { quantity: name, lower, upper, guard_band, unit, text, outcome, message }
+        LimitResult { quantity: name, lower, upper, guard_band, unit, text, outcome, message, decision }
     }
 
-    pub fn check(&self, result: &Shown) -> Outcome {
+    pub fn check(&self, made: Made, result: &Shown) -> Outcome {
+        self.judged(made, result).map(|Judged { outcome, message, .. }| (outcome, message))
+    }
+
+    fn judged(&self, made: Made, result: &Shown) -> Result<Judged, String> {
         let quantities = &result.quantities;
         let Some(quantity) = quantities.iter().find(|quantity| quantity.name == self.name) else {
             let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name.as_str()).collect();
             let there = if names.is_empty() { "it contains no quantities".to_owned() } else { self.instead(&names) };
             return Err(format!("'{}': the result does not contain {}; {there}", self.text, self.name));
         };
-        match factor(&self.unit, &quantity.unit) {
-            Some(factor) => Ok(self.judge(quantity, factor)),
-            None => Err(self.in_unit(&quantity.unit)),
+        let factor = factor(&self.unit, &quantity.unit).ok_or_else(|| self.in_unit(&quantity.unit))?;
+        let (outcome, decision) = self.judge(quantity, factor, made, result);
+        let (value, interval) = crate::report::with_interval(quantity.value, quantity.ci95, &quantity.unit);
+        let mut message = match &interval {
+            Some(ends) => format!("{}: {} = {value} [{ends}]", self.text, self.name),
+            None => format!("{}: {} = {value}", self.text, self.name),
+        };
+        if let Some(decision) = &decision {
+            message += &format!(": {}", sentence(decision));
         }
+        Ok(Judged { outcome, message, decision })
     }
 
-    fn judge(&self, quantity: &Quantity, factor: f64) -> (LimitOutcome, String) {
+    fn judge(
+        &self,
+        quantity: &Quantity,
+        factor: f64,
+        made: Made,
+        result: &Shown,
+    ) -> (LimitOutcome, Option<LimitDecision>) {
         // Distance to the nearer limit, negative beyond it.
         let margin = |value: f64| {
             let below = self.lower.map(|lower| value - lower * factor);
             let above = self.upper.map(|upper| upper * factor - value);
             below.into_iter().chain(above).fold(f64::INFINITY, f64::min)
         };
-        let (value, interval) = crate::report::with_interval(quantity.value, quantity.ci95, &quantity.unit);
-        let message = match &interval {
-            Some(ends) => format!("{}: {} = {value} [{ends}]", self.text, self.name),
-            None => format!("{}: {} = {value}", self.text, self.name),
-        };
         let guard_band = self.guard_band * factor;
         let own = margin(quantity.value);
         if own < 0.0 {
-            return (LimitOutcome::Fail, message);
+            return (LimitOutcome::Fail, None);
         }
         if own < guard_band {
-            return (LimitOutcome::Marginal, format!("{message}: the value is in the guard band"));
+            return (LimitOutcome::Marginal, Some(made.other_value()));
         }
         let Some(ends) = quantity.ci95 else {
             return match self.needs_interval {
-                true => (
-                    LimitOutcome::Inconclusive,
-                    format!("{message}: without an interval it does not decide; measure more repeats"),
-                ),
-                false => (LimitOutcome::Pass, message),
+                true => (LimitOutcome::Inconclusive, Some(made.first_interval())),
+                false => (LimitOutcome::Pass, None),
             };
         };
         let least = ends.into_iter().map(margin).fold(f64::INFINITY, f64::min);
-        if least >= guard_band {
-            return (LimitOutcome::Pass, message);
+        match least >= guard_band {
+            true => (LimitOutcome::Pass, None),
+            false => (LimitOutcome::Marginal, Some(made.narrower_interval(result, own - guard_band, own - least))),
         }
-        // The width of an interval falls with the square root of the number of repeats.
-        let times = ((own - least) / (own - guard_band)).powi(2).ceil();
-        let decides = match times <= MOST_TIMES {
-            true => format!("{times:.0} times as many repeats would decide if the value stays"),
-            false => "the value is too near to the limit for any number of repeats".to_owned(),
-        };
-        let what = if guard_band > 0.0 { "guard band" } else { "limit" };
-        (LimitOutcome::Marginal, format!("{message}: the interval exceeds the {what}; {decides}"))
     }
 }
-
-/// More repeats are no advice.
-const MOST_TIMES: f64 = 100.0;
 
 /// Factor from the written unit to the unit of the quantity: the same unit, or with a prefix.
 fn factor(written: &str, own: &str) -> Option<f64> {
@@ -161,6 +169,8 @@ fn factor(written: &str, own: &str) -> Option<f64> {
 pub(crate) mod tests {
     use super::*;
     use crate::view::{Applies, Identification, Identified};
+    use serde_json::{Map, Value};
+    use std::sync::LazyLock;
 
     /// A friction result of 30.6 mNm ± 0.4 mNm.
     pub fn found() -> Identification {
@@ -190,9 +200,15 @@ pub(crate) mod tests {
         Identification { run: 1, procedure, software: String::new(), result, follow_up: None, applies, limits: None }
     }
 
+    /// With the default of two repeats.
+    fn made() -> Made<'static> {
+        static NONE: LazyLock<Map<String, Value>> = LazyLock::new(Map::new);
+        Made { procedure: "friction", parameters: &NONE }
+    }
+
     #[test]
     fn the_whole_interval_must_keep_the_limit() {
-        let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found().result);
+        let check = |text: &str| text.parse::<Requirement>().unwrap().check(made(), &found().result);
         assert!(matches!(check("tau_c < 0.035 Nm"), Ok((LimitOutcome::Pass, _))));
         assert!(matches!(check("tau_c<=35 mNm"), Ok((LimitOutcome::Pass, _))));
         assert!(matches!(check("tau_c > 0.02 Nm"), Ok((LimitOutcome::Pass, _))));
@@ -213,27 +229,27 @@ pub(crate) mod tests {
             unit: "mNm".to_owned(),
             needs_interval: true,
         };
-        assert!(matches!(limit(32.0, 0.5).check(&found().result), Ok((LimitOutcome::Pass, _))));
-        let Ok((LimitOutcome::Marginal, why)) = limit(30.8, 0.0).check(&found().result) else {
+        assert!(matches!(limit(32.0, 0.5).check(made(), &found().result), Ok((LimitOutcome::Pass, _))));
+        let Ok((LimitOutcome::Marginal, why)) = limit(30.8, 0.0).check(made(), &found().result) else {
             panic!("the interval ends at 31.0")
         };
         assert!(
-            why.ends_with("the interval exceeds the limit; 4 times as many repeats would decide if the value stays"),
+            why.ends_with("[30.20 … 31.00]: a run of friction with repeats=8 would decide if the value stays"),
             "{why}"
         );
-        let Ok((LimitOutcome::Marginal, why)) = limit(31.0, 0.5).check(&found().result) else {
+        let Ok((LimitOutcome::Marginal, why)) = limit(31.0, 0.5).check(made(), &found().result) else {
             panic!("30.6 is above 30.5")
         };
-        assert!(why.ends_with("the value is in the guard band"), "{why}");
-        assert!(matches!(limit(30.5, 0.0).check(&found().result), Ok((LimitOutcome::Fail, _))));
+        assert!(why.ends_with("the value itself is in the guard band"), "{why}");
+        assert!(matches!(limit(30.5, 0.0).check(made(), &found().result), Ok((LimitOutcome::Fail, _))));
         let mut bare = found();
         bare.result.quantities[0].ci95 = None;
-        assert!(matches!(limit(32.0, 0.0).check(&bare.result), Ok((LimitOutcome::Inconclusive, _))));
+        assert!(matches!(limit(32.0, 0.0).check(made(), &bare.result), Ok((LimitOutcome::Inconclusive, _))));
     }
 
     #[test]
     fn an_unknown_requirement_has_a_reason() {
-        let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found().result);
+        let check = |text: &str| text.parse::<Requirement>().unwrap().check(made(), &found().result);
         let why = "'tau_x < 1 Nm': the result does not contain tau_x; did you mean tau_c? available: tau_c";
         assert_eq!(check("tau_x < 1 Nm"), Err(why.to_owned()));
         assert_eq!(check("tau_c < 1 A"), Err("tau_c is in Nm: write the limit so".to_owned()));

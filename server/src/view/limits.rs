@@ -1,6 +1,7 @@
 //! Limits on the quantities of a result.
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
 /// Outcome of a limit; of several limits the worst, which is the last of these words.
@@ -41,4 +42,39 @@ pub struct LimitResult {
     pub outcome: LimitOutcome,
     /// The limit with the measured value, and what would decide.
     pub message: String,
+    /// What would decide a limit that is marginal or inconclusive.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decision: Option<LimitDecision>,
+}
+
+/// What would decide a limit. The width of an interval falls with the square root of the number of independent
+/// repeats. This assumes that the whole interval is scatter between repeats, and that the value stays.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct LimitDecision {
+    pub by: DecidedBy,
+    /// Procedure of the deciding run.
+    pub procedure: String,
+    /// Settings of the deciding run that differ from those of this run; empty unless `by` is `longer_run`.
+    #[schema(value_type = Object)]
+    pub settings: Map<String, Value>,
+    /// Number of independent repeats, as a multiple of those of this run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub times: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DecidedBy {
+    /// The same procedure with more repeats, or a longer duration (`settings`).
+    LongerRun,
+    /// `times` as many repeats, which is more than the procedure permits, or more than a hundred times as many.
+    TooManyRepeats,
+    /// The procedure has no setting for repeats or duration.
+    NoSetting,
+    /// Repeats do not help: the run found a precondition broken, so each repeat has the same bias. Correct it first.
+    Precondition,
+    /// Repeats do not help: the value itself is in the guard band.
+    OtherValue,
+    /// Repeats do not help: the procedure states no interval for this quantity.
+    NoInterval,
 }

@@ -86,3 +86,31 @@ fn limits_that_cannot_be_checked_are_refused_before_the_run() {
     }
     assert_eq!(daemon.get("/api/v1/runs").1["total"], 0);
 }
+
+#[test]
+fn an_open_limit_says_what_would_decide() {
+    let daemon = TestDaemon::start();
+    let wide = "[[limit]]\nquantity = \"tau_c\"\nupper = 1.0\nunit = \"Nm\"\nguard_band = 0.9999\n";
+    let (_, run) = start(&daemon, wide, "P");
+    let id = run["id"].as_i64().unwrap();
+    daemon.wait_for_end(id);
+    let (_, found) = daemon.get(&format!("/api/v1/runs/{id}/identification"));
+    let limit = &found["limits"]["limits"][0];
+    assert_eq!((&limit["outcome"], &limit["decision"]["by"]), (&json!("marginal"), &json!("other_value")), "{limit}");
+    assert_eq!((&limit["decision"]["procedure"], &limit["decision"]["settings"]), (&json!("friction"), &json!({})));
+    assert!(limit["message"].as_str().unwrap().contains("repeats do not help"), "{limit}");
+
+    // The guard band begins within the interval of the value.
+    let quantity = found["quantities"].as_array().unwrap().iter().find(|one| one["name"] == "tau_c").unwrap();
+    let (value, high) = (quantity["value"].as_f64().unwrap(), quantity["ci95"][1].as_f64().unwrap());
+    let upper = value + 1.5 * (high - value);
+    let near =
+        format!("[[limit]]\nquantity = \"tau_c\"\nupper = {upper}\nunit = \"Nm\"\nguard_band = {}\n", high - value);
+    let (_, run) = start(&daemon, &near, "P");
+    let id = run["id"].as_i64().unwrap();
+    daemon.wait_for_end(id);
+    let (_, found) = daemon.get(&format!("/api/v1/runs/{id}/identification"));
+    let limit = &found["limits"]["limits"][0];
+    assert_eq!(limit["outcome"], "marginal", "{limit}");
+    assert!(limit["decision"]["by"].is_string(), "{limit}");
+}
