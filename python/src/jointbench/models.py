@@ -1998,6 +1998,7 @@ class QueueEntry(BaseModel):
 
     proceed_if: ProceedIf
     reason: str | None = None
+    run_state: RunState | None = None
     request: NewRun
     run: int | None = None
     starts_in_s: float | None = None
@@ -2155,6 +2156,9 @@ class BenchQueue(BaseModel):
 
     bench: str
     entries: list[QueueEntry]
+    left: list[QueueEntry]
+    """The entries that left the queue last, at most 50, the newest first."""
+
     """The waiting entries, in the order in which they start."""
 
     paused: QueuePause | None = None

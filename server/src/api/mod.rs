@@ -159,6 +159,7 @@ fn measurements() -> OpenApiRouter<Lab> {
         .routes(routes!(queue::get, queue::remove))
         .routes(routes!(queue::prioritise))
         .routes(routes!(queue::renew_lease))
+        .routes(routes!(queue::restore))
         .routes(routes!(queue::pause))
         .routes(routes!(queue::resume))
         .routes(routes!(runs::pause))

@@ -10,7 +10,7 @@ use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 
-/// The queues of all benches with their waiting entries
+/// The queues of all benches with their waiting entries, and those that left last
 #[utoipa::path(get, path = "/queue", operation_id = "list_queues", tag = "queue",
     responses((status = 200, description = "One queue for each bench", body = Vec<BenchQueue>), Refusals))]
 pub async fn list(State(lab): State<Lab>) -> Answer<Vec<BenchQueue>> {
@@ -52,6 +52,18 @@ pub async fn remove(
     Path(id): Path<i64>,
 ) -> Answer<QueueEntry> {
     Ok(Json(lab.remove_from_queue(id, &caller.name).await?))
+}
+
+/// Undoes the removal of an entry: it waits again, in its former place
+#[utoipa::path(post, path = "/queue/{id}/restore", operation_id = "restore_queue_entry", tag = "queue",
+    params(("id" = i64, Path, description = "Entry")),
+    responses((status = 200, description = "The waiting entry", body = QueueEntry), Refusals))]
+pub async fn restore(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Path(id): Path<i64>,
+) -> Answer<QueueEntry> {
+    Ok(Json(lab.restore_to_queue(id, &caller.name).await?))
 }
 
 /// Renews the lease of a waiting entry

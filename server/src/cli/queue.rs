@@ -31,6 +31,7 @@ pub fn queue(arguments: &Queue) -> Done {
             entries.iter().try_for_each(|entry| show(&client, entry, false))
         }
         QueueCommand::Remove { entry } => changed(&client.delete(&format!("/queue/{entry}"))?, json),
+        QueueCommand::Restore { entry } => changed(&client.post(&format!("/queue/{entry}/restore"), &())?, json),
         QueueCommand::Priority { entry, priority } => {
             let priority = QueuePriority { priority: *priority };
             changed(&client.put(&format!("/queue/{entry}/priority"), &priority)?, json)
@@ -45,7 +46,7 @@ fn list(client: &Client, json: bool) -> Done {
     if json {
         return json_out(&queues);
     }
-    for BenchQueue { bench, paused, entries } in queues {
+    for BenchQueue { bench, paused, entries, left } in queues {
         let state: Bench = client.get(&format!("/bench/{bench}"))?;
         let on = state.run.map(|run| format!("run {run} in progress, ")).unwrap_or_default();
         let waiting = if entries.is_empty() { "no run waits".to_owned() } else { format!("{} waiting", entries.len()) };
@@ -55,6 +56,10 @@ fn list(client: &Client, json: bool) -> Done {
         }
         if !entries.is_empty() {
             print_rows(&HEAD, entries.iter().map(cells));
+        }
+        if !left.is_empty() {
+            println!("left the queue, the newest first:");
+            print_rows(&LEFT_HEAD, left.iter().take(MOST_LEFT).map(left_cells));
         }
     }
     Ok(())
@@ -76,12 +81,26 @@ fn cells(entry: &QueueEntry) -> [String; 7] {
     ]
 }
 
+/// Displayed entries that left a queue.
+const MOST_LEFT: usize = 5;
+const LEFT_HEAD: [&str; 4] = ["entry", "procedure", "unit", "outcome"];
+
+fn left_cells(entry: &QueueEntry) -> [String; 4] {
+    let [id, procedure, unit, ..] = cells(entry);
+    let outcome = match (entry.run, entry.run_state) {
+        (Some(run), Some(state)) => format!("run {run} is {}", word(state)),
+        _ => word(entry.state),
+    };
+    let reason = entry.reason.as_ref().map(|reason| format!(": {reason}")).unwrap_or_default();
+    [id, procedure, unit, outcome + &reason]
+}
+
 fn changed(entry: &QueueEntry, json: bool) -> Done {
     if json {
         return json_out(entry);
     }
     match entry.state {
-        QueueState::Waiting => println!("queue entry {} has priority {}", entry.id, entry.priority),
+        QueueState::Waiting => println!("queue entry {} waits with priority {}", entry.id, entry.priority),
         state => println!("queue entry {} is {}", entry.id, word(state)),
     }
     Ok(())

@@ -47,9 +47,11 @@ pub(super) fn run_of(client: &Client, entry: &QueueEntry, limit: Option<Duration
             drop(client.post::<Lease>(&format!("/queue/{id}/lease"), &()));
         }
         if let Some(limit) = limit.filter(|limit| began.elapsed() > *limit) {
-            drop(client.delete::<QueueEntry>(&format!("/queue/{id}")));
-            let waited = format!("queue entry {id} waited longer than --timeout {} s", limit.as_secs_f64());
-            return Err(Exit::failed(format!("{waited}: it is removed")));
+            let why = printed.as_ref().map_or("it waits", |(_, line)| line.as_str());
+            // An entry that has started in the meantime is not removed: its run has its own time.
+            if client.delete::<QueueEntry>(&format!("/queue/{id}")).is_ok() {
+                return Err(Exit::failed(timed_out(id, limit, why)));
+            }
         }
         let entry: QueueEntry = match client.get(&format!("/queue/{id}")) {
             Ok(entry) => entry,
@@ -81,6 +83,14 @@ pub(super) fn run_of(client: &Client, entry: &QueueEntry, limit: Option<Duration
     }
 }
 
+fn timed_out(id: i64, limit: Duration, why: &str) -> String {
+    format!(
+        "queue entry {id} is removed, because it waited longer than --timeout {} s ({why}): use a longer time, or queue \
+         it without --timeout",
+        limit.as_secs_f64()
+    )
+}
+
 /// Whether a line differs by more than its times.
 fn is_other(before: &str, line: &str) -> bool {
     let words = |text: &str| text.chars().filter(|c| !c.is_ascii_digit()).collect::<String>();
@@ -109,4 +119,18 @@ fn notify_on_interrupt(id: i64, lease_s: Option<f64>) {
         Some(s) => format!("queue entry {id} is removed within {s} s (--lease)"),
         None => format!("queue entry {id} still waits: remove it with `jointbench queue remove {id}`"),
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_timeout_states_what_the_run_waited_for() {
+        let text = timed_out(3, Duration::from_secs(5), "waits: 2 before it, starts in 40 s");
+        assert!(
+            text.contains("queue entry 3 is removed") && text.contains("--timeout 5 s (waits: 2 before it"),
+            "{text}"
+        );
+    }
 }

@@ -112,7 +112,8 @@ pub(super) fn wait_at_most(
 }
 
 fn timed_out(mut run: Run, limit: Duration) -> Run {
-    run.summary.reason = Some(format!("it took longer than --timeout {} s", limit.as_secs_f64()));
+    let limit_s = limit.as_secs_f64();
+    run.summary.reason = Some(format!("this command aborted it, because it took longer than --timeout {limit_s} s"));
     run
 }
 

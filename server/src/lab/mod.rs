@@ -25,6 +25,7 @@ mod notes;
 mod notifications;
 mod parameter_settings;
 mod queue;
+mod queue_task;
 mod report;
 mod resume;
 mod revisions;

@@ -4,7 +4,6 @@
 //! way, when the next run needs another unit, when the bench is not ready, and at the start of the daemon: nothing moves
 //! until a person or a script resumes it.
 
-use super::computation::with_retries;
 use super::leases::checked_lease;
 use super::names::{LONGEST_NAME, LONGEST_NOTE, checked, checked_text};
 use super::runs::check_plan;
@@ -13,13 +12,10 @@ use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
 use crate::store::{NewQueueEntry, QueueRecord};
 use crate::view::{
-    BenchQueue, LimitOutcome, LiveMessage, NewRun, NewTestPlan, ProceedIf, QueueEntry, QueuePause, QueueState, reread,
-    word,
+    BenchQueue, LiveMessage, NewRun, NewTestPlan, ProceedIf, QueueEntry, QueuePause, QueueState, reread, word,
 };
-use jointbench_procedure::RunState;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 use tokio::sync::Notify;
 use tokio::task::JoinSet;
 
@@ -27,15 +23,15 @@ use tokio::task::JoinSet;
 const MOST_WAITING: usize = 500;
 /// Limit of the runs of a plan.
 const MOST_RUNS: usize = 100;
-/// Waiting time after a fault of the store.
-const AGAIN: Duration = Duration::from_secs(1);
+/// Number of displayed entries that left a queue.
+const MOST_LEFT: u32 = 50;
 const RESTARTED: &str = "the daemon was restarted: inspect the bench";
 const NOT_STARTED: &str = "the daemon terminated while it started this run: queue it again";
 
 /// Wakes the tasks of the queues.
 #[derive(Default)]
 pub(super) struct Queues {
-    changed: HashMap<String, Arc<Notify>>,
+    pub(super) changed: HashMap<String, Arc<Notify>>,
     /// One request at a time, so that a repeated one finds its entry.
     adding: tokio::sync::Mutex<()>,
     tasks: Mutex<JoinSet<()>>,
@@ -127,16 +123,21 @@ impl Lab {
     }
 
     async fn append(&self, bench: &str, entries: Vec<NewQueueEntry>) -> Answer<Vec<i64>> {
-        let waiting = self.inner.store.waiting(bench).await?.len();
-        if waiting + entries.len() > MOST_WAITING {
-            return Err(LabError::Conflict(format!(
-                "the queue of bench {bench} holds {waiting} of at most {MOST_WAITING} runs: wait, or remove some"
-            )));
-        }
+        self.check_room(bench, entries.len()).await?;
         let ids = self.inner.store.enqueue(&entries).await?;
         tracing::info!(bench, entries = ?ids, by = entries[0].who, "runs wait in the queue");
         self.queue_changed(bench);
         Ok(ids)
+    }
+
+    async fn check_room(&self, bench: &str, more: usize) -> Answer<()> {
+        let waiting = self.inner.store.waiting(bench).await?.len();
+        if waiting + more > MOST_WAITING {
+            return Err(LabError::Conflict(format!(
+                "the queue of bench {bench} holds {waiting} of at most {MOST_WAITING} runs: wait, or remove some"
+            )));
+        }
+        Ok(())
     }
 
     /// Refuses now what would be refused at the start.
@@ -182,8 +183,10 @@ impl Lab {
             entries.push(queue_entry(record, pause.is_none().then_some(starts_in_s))?);
             starts_in_s += planned_s;
         }
+        let left = self.inner.store.left_queue(bench, MOST_LEFT).await?;
+        let left = left.into_iter().map(|record| queue_entry(record, None)).collect::<Answer<_>>()?;
         let paused = pause.map(|(reason, since)| QueuePause { reason, since });
-        Ok(BenchQueue { bench: bench.to_owned(), paused, entries })
+        Ok(BenchQueue { bench: bench.to_owned(), paused, entries, left })
     }
 
     /// An entry, also after it has left the queue.
@@ -218,6 +221,26 @@ impl Lab {
         self.queue_entry(id).await
     }
 
+    /// Undoes a removal: the entry waits again, in its former place.
+    pub async fn restore_to_queue(&self, id: i64, by: &str) -> Answer<QueueEntry> {
+        let entry = self.queue_entry(id).await?;
+        let bench = &entry.request.bench;
+        self.handle(bench)?;
+        let _adding = self.inner.queues.adding.lock().await;
+        self.check_room(bench, 1).await?;
+        let (removed, waiting) = (word(QueueState::Removed), word(QueueState::Waiting));
+        if !self.inner.store.set_queue_state(id, &removed, &waiting, None).await? {
+            let state = word(self.queue_entry(id).await?.state);
+            return Err(LabError::Over(format!("queue entry {id} is {state}: only a removed one can be restored")));
+        }
+        tracing::info!(entry = id, bench, by, "restored to the queue");
+        if let Some(lease) = checked_lease(entry.request.lease_s)? {
+            self.watch_entry(id, lease);
+        }
+        self.queue_changed(bench);
+        self.queue_entry(id).await
+    }
+
     /// No further entry starts; the active run continues.
     pub async fn pause_queue(&self, bench: &str, by: &str) -> Answer<BenchQueue> {
         self.handle(bench)?;
@@ -233,135 +256,16 @@ impl Lab {
         self.queue(bench).await
     }
 
-    async fn hold_queue(&self, bench: &str, reason: &str) -> Answer<()> {
+    pub(super) async fn hold_queue(&self, bench: &str, reason: &str) -> Answer<()> {
         tracing::info!(bench, reason, "queue paused");
         self.inner.store.pause_queue(bench, reason).await?;
         self.queue_changed(bench);
         Ok(())
     }
 
-    fn queue_changed(&self, bench: &str) {
+    pub(super) fn queue_changed(&self, bench: &str) {
         self.inner.queues.notify(bench);
         self.hub().publish(LiveMessage::Queue { bench: bench.to_owned() });
-    }
-
-    /// The task of one queue. Observes every run of the bench, also those that did not wait.
-    async fn serve_queue(self, bench: BenchHandle) {
-        let Some(changed) = self.inner.queues.changed.get(bench.name()).cloned() else { return };
-        let mut last = None;
-        loop {
-            last = bench.status().runs.last_key_value().map(|(run, _)| *run).or(last);
-            bench.until_free().await;
-            let done = match last {
-                Some(run) => self.after_run(&bench, run).await,
-                None => Ok(()),
-            };
-            let next = match done {
-                Ok(()) => {
-                    last = None;
-                    self.start_next(&bench).await
-                }
-                Err(fault) => Err(fault),
-            };
-            match next {
-                Ok(Some(run)) => last = Some(run),
-                Ok(None) => tokio::select! {
-                    () = changed.notified() => {}
-                    () = bench.until_busy() => {}
-                },
-                Err(fault) => {
-                    tracing::error!(bench = bench.name(), %fault, "the queue waits");
-                    tokio::time::sleep(AGAIN).await;
-                }
-            }
-        }
-    }
-
-    /// Decides after a run whether its plan and the queue proceed.
-    async fn after_run(&self, bench: &BenchHandle, run: i64) -> Answer<()> {
-        let record = self.inner.store.run(run).await?;
-        if let Some(entry) = self.inner.store.queue_entry_of_run(run).await?
-            && let Some(plan) = entry.plan
-            && let Some(reason) = self.ends_plan(run, record.state, reread(&entry.new.proceed_if)?).await?
-        {
-            self.inner.store.remove_rest_of_plan(plan, &reason).await?;
-            self.queue_changed(bench.name());
-        }
-        let proceeds = self.inner.leases.remove_expired(run) || record.state == RunState::Completed;
-        let Some(next) = self.inner.store.waiting(bench.name()).await?.into_iter().next() else { return Ok(()) };
-        let next: NewRun = reread(&next.new.request)?;
-        let (mounted, needed) = (record.unit.map(|unit| unit.serial), next.unit.map(|unit| unit.serial));
-        if !proceeds {
-            self.hold_queue(bench.name(), &format!("run {run} is {}: inspect the bench", record.state)).await?;
-        } else if let (Some(mounted), Some(needed)) = (mounted, needed)
-            && mounted != needed
-        {
-            self.hold_queue(bench.name(), &format!("the next run is of unit {needed}: mount it in place of {mounted}"))
-                .await?;
-        }
-        Ok(())
-    }
-
-    /// Why a plan does not proceed after this run.
-    async fn ends_plan(&self, run: i64, state: RunState, proceed_if: ProceedIf) -> Answer<Option<String>> {
-        if state != RunState::Completed {
-            return Ok(Some(format!("run {run} of the test plan is {state}")));
-        }
-        if proceed_if == ProceedIf::Completed {
-            return Ok(None);
-        }
-        let found = match with_retries(|| self.identification(run)).await {
-            Ok(found) => found,
-            Err(fault) => return Ok(Some(format!("run {run} of the test plan has no result: {fault}"))),
-        };
-        let verdict = found.result.verdict;
-        if !verdict.is_identified() {
-            return Ok(Some(format!("run {run} of the test plan is {}", word(verdict))));
-        }
-        let worst = found.limits.map(|check| check.outcome).filter(|worst| *worst != LimitOutcome::Pass);
-        Ok(worst
-            .filter(|_| proceed_if == ProceedIf::Pass)
-            .map(|worst| format!("the limits of run {run} of the test plan are not met: {}", word(worst))))
-    }
-
-    /// Starts the first waiting entry, if the queue is not paused and no autopilot uses the bench.
-    async fn start_next(&self, bench: &BenchHandle) -> Answer<Option<i64>> {
-        let name = bench.name();
-        if self.inner.store.queue_pause(name).await?.is_some() || self.active_autopilot(name).is_some() {
-            return Ok(None);
-        }
-        let Some(entry) = self.inner.store.waiting(name).await?.into_iter().next() else { return Ok(None) };
-        let (id, plan) = (entry.id, entry.plan);
-        let (waiting, started) = (word(QueueState::Waiting), word(QueueState::Started));
-        // A daemon that ends between here and the start of the run does not start it again.
-        if !self.inner.store.set_queue_state(id, &waiting, &started, None).await? {
-            return Ok(None);
-        }
-        let request: NewRun = reread(&entry.new.request)?;
-        let run = match self.start_run(&request, &entry.new.who).await {
-            Ok(run) => run.summary.id,
-            Err(fault @ (LabError::Conflict(_) | LabError::Busy(_) | LabError::Bench(_))) => {
-                self.inner.store.set_queue_state(id, &started, &waiting, None).await?;
-                // Another run has started in the meantime: the queue waits for its end.
-                if !bench.is_busy() {
-                    self.hold_queue(name, &fault.to_string()).await?;
-                }
-                return Ok(None);
-            }
-            Err(fault) => {
-                let failed = word(QueueState::Failed);
-                self.inner.store.set_queue_state(id, &started, &failed, Some(&fault.to_string())).await?;
-                if let Some(plan) = plan {
-                    let reason = format!("queue entry {id} of the test plan could not start");
-                    self.inner.store.remove_rest_of_plan(plan, &reason).await?;
-                }
-                self.queue_changed(name);
-                return Ok(None);
-            }
-        };
-        self.inner.store.set_queue_run(id, run).await?;
-        self.queue_changed(name);
-        Ok(Some(run))
     }
 }
 
@@ -390,6 +294,7 @@ fn queue_entry(record: QueueRecord, starts_in_s: Option<f64>) -> Answer<QueueEnt
         planned_s: record.new.planned_s,
         starts_in_s,
         run: record.run,
+        run_state: record.run_state.map(|state| reread(&state)).transpose()?,
         reason: record.reason,
         created_at: record.created_at,
         ended_at: record.ended_at,

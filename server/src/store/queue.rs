@@ -5,6 +5,16 @@ use super::{NewQueueEntry, QueueRecord, Store, StoreError};
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
+/// Entries with the states of their runs.
+macro_rules! select {
+    ($rest:literal) => {
+        concat!(
+            "SELECT queue.*, (SELECT runs.state FROM runs WHERE runs.id = queue.run) AS run_state FROM queue ",
+            $rest
+        )
+    };
+}
+
 impl Store {
     /// Appends entries in order, all or none. Several form one plan.
     pub async fn enqueue(&self, entries: &[NewQueueEntry]) -> Result<Vec<i64>, StoreError> {
@@ -39,28 +49,39 @@ impl Store {
     }
 
     pub async fn queue_entry(&self, id: i64) -> Result<QueueRecord, StoreError> {
-        let row = sqlx::query("SELECT * FROM queue WHERE id = ?").bind(id).fetch_optional(&self.readers).await?;
+        let row = sqlx::query(select!("WHERE id = ?")).bind(id).fetch_optional(&self.readers).await?;
         record(&row.ok_or(StoreError::NoQueueEntry(id))?)
     }
 
     /// The entry of a repeated request.
     pub async fn queue_entry_with_key(&self, key: &str) -> Result<Option<QueueRecord>, StoreError> {
-        let row = sqlx::query("SELECT * FROM queue WHERE key = ?").bind(key).fetch_optional(&self.readers).await?;
+        let row = sqlx::query(select!("WHERE key = ?")).bind(key).fetch_optional(&self.readers).await?;
         row.as_ref().map(record).transpose()
     }
 
     /// The entry that started a run.
     pub async fn queue_entry_of_run(&self, run: i64) -> Result<Option<QueueRecord>, StoreError> {
-        let row = sqlx::query("SELECT * FROM queue WHERE run = ?").bind(run).fetch_optional(&self.readers).await?;
+        let row = sqlx::query(select!("WHERE run = ?")).bind(run).fetch_optional(&self.readers).await?;
         row.as_ref().map(record).transpose()
     }
 
     /// The waiting entries of a bench, in the order in which they start: first the rest of a test plan that has begun.
     pub async fn waiting(&self, bench: &str) -> Result<Vec<QueueRecord>, StoreError> {
-        let query = "SELECT * FROM queue WHERE bench = ? AND state = 'waiting' ORDER BY \
+        let query = select!(
+            "WHERE bench = ? AND state = 'waiting' ORDER BY \
             EXISTS (SELECT 1 FROM queue AS done WHERE done.plan = queue.plan AND done.state = 'started') DESC, \
-            priority DESC, COALESCE(plan, id), id";
+            priority DESC, COALESCE(plan, id), id"
+        );
         let rows = sqlx::query(query).bind(bench).fetch_all(&self.readers).await?;
+        rows.iter().map(record).collect()
+    }
+
+    /// The entries that left the queue of a bench last, the newest first.
+    pub async fn left_queue(&self, bench: &str, most: u32) -> Result<Vec<QueueRecord>, StoreError> {
+        let query = select!(
+            "WHERE bench = ? AND state <> 'waiting' ORDER BY COALESCE(ended_at, created_at) DESC, id DESC LIMIT ?"
+        );
+        let rows = sqlx::query(query).bind(bench).bind(most).fetch_all(&self.readers).await?;
         rows.iter().map(record).collect()
     }
 
@@ -172,6 +193,7 @@ fn record(row: &SqliteRow) -> Result<QueueRecord, StoreError> {
         },
         state: row.try_get("state")?,
         run: row.try_get("run")?,
+        run_state: row.try_get("run_state")?,
         reason: row.try_get("reason")?,
         created_at: row.try_get("created_at")?,
         ended_at: row.try_get("ended_at")?,

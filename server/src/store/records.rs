@@ -266,6 +266,7 @@ pub struct QueueRecord {
     pub new: NewQueueEntry,
     pub state: String,
     pub run: Option<i64>,
+    pub run_state: Option<String>,
     pub reason: Option<String>,
     pub created_at: String,
     pub ended_at: Option<String>,

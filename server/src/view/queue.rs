@@ -1,6 +1,6 @@
 //! Runs that wait for their bench.
 
-use super::NewRun;
+use super::{NewRun, RunState};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -46,6 +46,9 @@ pub struct QueueEntry {
     /// Expected time until the start, by the clock; only for a waiting entry of a queue that is not paused.
     pub starts_in_s: Option<f64>,
     pub run: Option<i64>,
+    /// State of the run.
+    #[serde(default)]
+    pub run_state: Option<RunState>,
     pub reason: Option<String>,
     #[schema(format = DateTime)]
     pub created_at: String,
@@ -69,6 +72,10 @@ pub struct BenchQueue {
     pub paused: Option<QueuePause>,
     /// The waiting entries, in the order in which they start.
     pub entries: Vec<QueueEntry>,
+    /// The entries that left the queue last, at most 50, the newest first.
+    #[serde(default)]
+    #[schema(required)]
+    pub left: Vec<QueueEntry>,
 }
 
 /// A test plan: runs of one unit, in order. The next run starts if the result of the run before allows it; otherwise the rest of

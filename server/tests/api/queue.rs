@@ -212,3 +212,37 @@ fn a_run_whose_client_is_gone_ends_and_the_queue_proceeds() {
     let run = run_of(&daemon, next);
     assert_eq!(daemon.post(&format!("/api/v1/runs/{run}/lease"), "").0, 409, "a run without a lease");
 }
+
+#[test]
+fn entries_that_left_the_queue_stay_visible_and_a_removal_is_undone() {
+    let mut daemon = TestDaemon::start();
+    switch(&daemon, "pause");
+    let first = queued(&daemon, json!({}));
+    let second = queued(&daemon, json!({"unit": {"serial": "SN2"}}));
+    let third = queued(&daemon, json!({}));
+    let queue = |daemon: &TestDaemon| daemon.get("/api/v1/queue").1[0].clone();
+    let ids = |list: &Value| list.as_array().unwrap().iter().map(|one| one["id"].as_i64().unwrap()).collect::<Vec<_>>();
+    assert_eq!(daemon.delete(&format!("/api/v1/queue/{second}")).0, 200);
+    let left = queue(&daemon)["left"].clone();
+    assert_eq!(
+        (ids(&left), &left[0]["state"], &left[0]["reason"]),
+        (vec![second], &json!("removed"), &json!("requested by local"))
+    );
+
+    let restore = |daemon: &TestDaemon, entry: i64| daemon.post(&format!("/api/v1/queue/{entry}/restore"), "");
+    let (status, restored) = restore(&daemon, second);
+    assert_eq!((status, &restored["state"], &restored["reason"]), (200, &json!("waiting"), &Value::Null), "{restored}");
+    assert_eq!(ids(&queue(&daemon)["entries"]), [first, second, third], "in its former place");
+    let (status, refused) = restore(&daemon, second);
+    assert!(status == 409 && refused["detail"].as_str().unwrap().contains("is waiting"), "{refused}");
+    assert_eq!(restore(&daemon, 77).0, 404);
+
+    daemon.delete(&format!("/api/v1/queue/{third}"));
+    switch(&daemon, "resume");
+    daemon.wait_for_end(run_of(&daemon, first));
+    daemon.wait_for_end(run_of(&daemon, second));
+    daemon.restart(None);
+    let left = queue(&daemon)["left"].clone();
+    assert_eq!(ids(&left), [second, first, third], "the newest first, also after a restart: {left}");
+    assert_eq!((&left[0]["run_state"], &left[2]["run_state"]), (&json!("completed"), &Value::Null), "{left}");
+}

@@ -43,6 +43,7 @@ export const api = {
 	/** The run starts when its bench is free. */
 	enqueue: (run: NewRun) => callApi('post', '/api/v1/runs', { body: { ...run, queue: true } }) as Promise<QueueEntry>,
 	queues: (signal?: Signal) => callApi('get', '/api/v1/queue', {}, signal),
+	restoreToQueue: (id: number) => callApi('post', '/api/v1/queue/{id}/restore', { path: { id } }),
 	removeFromQueue: (id: number) => callApi('delete', '/api/v1/queue/{id}', { path: { id } }),
 	/** The largest priority starts first. */
 	prioritise: (id: number, priority: number) => callApi('put', '/api/v1/queue/{id}/priority', { path: { id }, body: { priority } }),

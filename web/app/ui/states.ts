@@ -19,6 +19,7 @@ const STATES: Record<string, StatusLabel> = {
 	aborted: { label: 'ABORTED', icon: '■', tone: 'bad' },
 	failed: { label: 'FAILED', icon: '✕', tone: 'bad' },
 	interrupted: { label: 'INTERRUPTED', icon: '⚡', tone: 'bad' },
+	removed: { label: 'REMOVED', icon: '−', tone: 'calm' },
 	fault: { label: 'FAULT', icon: '✕', tone: 'bad' },
 	offline: { label: 'OFFLINE', icon: '⊘', tone: 'bad' },
 	blocked: { label: 'BLOCKED', icon: '⊘', tone: 'bad' },

@@ -41,7 +41,7 @@ pub struct Run {
     #[arg(long, value_name = "REPORT.XML")]
     pub junit: Option<PathBuf>,
     /// Maximum time in the queue, and maximum duration of the run [s], by the clock; waits for the end. A run that takes longer is aborted, the bench
-    /// is secured, and the exit code is 1
+    /// is secured, and the exit code is 1 in both cases; the message states which time was exceeded
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub timeout: Option<Duration>,
     /// Wait in the queue of the bench until it is free
@@ -96,8 +96,8 @@ between is `marginal`; a value without an interval is `inconclusive`. A run that
   unit = \"Nm\"
   guard_band = 0.0005
 
-Exit codes, when waiting for the end: 0 identified and all limits met, 1 the run or its identification failed or a limit was \
-exceeded, 2 bad arguments (also --continue of a complete run, and --require of a quantity that the result does not contain), \
+Exit codes, when waiting for the end: 0 identified and all limits met, 1 the run or its identification failed, a limit was \
+exceeded, or --timeout ended the wait in the queue or the run, 2 bad arguments (also --continue of a complete run, and --require of a quantity that the result does not contain), \
 3 the identification is inconclusive, or a limit is marginal or inconclusive.";
 
 pub(super) const QUEUE: &str = "\
@@ -133,7 +133,7 @@ pub struct Queue {
 
 #[derive(Debug, Subcommand)]
 pub enum QueueCommand {
-    /// List the waiting runs with their expected start (the default)
+    /// List the waiting runs with their expected start, and the last five that left the queue (the default); all with --json
     List,
     /// Queue the runs of a test plan for one unit
     Add {
@@ -157,6 +157,11 @@ pub enum QueueCommand {
     },
     /// Remove a waiting run
     Remove {
+        /// Number of the entry
+        entry: i64,
+    },
+    /// Undo the removal of a run: it waits again, in its former place
+    Restore {
         /// Number of the entry
         entry: i64,
     },
