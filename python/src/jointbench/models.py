@@ -1020,6 +1020,9 @@ class QueuePriority(BaseModel):
 QueueState = TypeAliasType("QueueState", Literal['waiting', 'started', 'failed', 'removed'])
 
 
+RefusalReason = TypeAliasType("RefusalReason", Literal['missing_instrument', 'parameter', 'contradiction', 'limit'])
+
+
 class Region(BaseModel):
     axis: str
     ci95: tuple[float, float]
@@ -1965,17 +1968,12 @@ class Preview(BaseModel):
     """In wall-clock time; absent for a mock bench without pace."""
 
 
-class Procedure(BaseModel):
-    id: str
-    kind: str
-    """The kind of the run table."""
+class ProcedureRefusal(BaseModel):
+    """Why a bench cannot run a procedure."""
 
-    parameters: list[ProcedureParameter]
-    refused: str | None = None
-    """Why the requested bench cannot run it with its defaults; absent if it can, or without a bench."""
-
-    summary: str
-    title: str
+    reason: RefusalReason
+    text: str
+    """Cause and remedy."""
 
 
 class QueueEntry(BaseModel):
@@ -2360,6 +2358,17 @@ class Model(BaseModel):
 
     validation_rms: float
     """Validation error (cross-validated RMS)."""
+
+
+class Procedure(BaseModel):
+    id: str
+    kind: str
+    """The kind of the run table."""
+
+    parameters: list[ProcedureParameter]
+    refused: ProcedureRefusal | None = None
+    summary: str
+    title: str
 
 
 class Run(RunSummary):

@@ -6,7 +6,7 @@ use super::{Answer, Lab, LabError};
 use crate::bench::{BenchHandle, bench_view};
 use crate::job::Job;
 use crate::store::{RunFilter, RunRecord};
-use crate::view::{self, Bench, BenchState, reread, safety_entry};
+use crate::view::{self, Bench, BenchState, ProcedureRefusal, RefusalReason, reread, safety_entry};
 use jointbench_instrument::zero::TORQUE_ZERO;
 use jointbench_procedure::catalogue::{brake_model, compared_brake};
 use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
@@ -271,18 +271,34 @@ fn readiness(bench: &BenchHandle) -> Vec<view::Check> {
 }
 
 /// Why a procedure cannot run with its defaults or the applied values, without checks that need earlier runs.
-fn refusal(procedure: &dyn Procedure, given: &Map<String, Value>, facts: &BenchFacts) -> Option<String> {
+fn refusal(procedure: &dyn Procedure, given: &Map<String, Value>, facts: &BenchFacts) -> Option<ProcedureRefusal> {
     let defaults = Values::parse(procedure.schema(), given).ok()?;
     if procedure.brake_model(&defaults).is_some() {
-        return (!facts.has_brake).then(|| format!("bench {} has no brake", facts.name));
+        let text = || format!("bench {} has no brake", facts.name);
+        return (!facts.has_brake).then(|| ProcedureRefusal { reason: RefusalReason::MissingInstrument, text: text() });
     }
-    match procedure.plan(given, facts) {
-        Ok(plan) => plan.preview(facts).checks.into_iter().find(|check| !check.ok).map(|check| check.refusal()),
-        Err(fault) => Some(fault.to_string()),
-    }
+    let (reason, text) = match procedure.plan(given, facts) {
+        Ok(plan) => {
+            let check = plan.preview(facts).checks.into_iter().find(|check| !check.ok)?;
+            (RefusalReason::Limit, check.refusal())
+        }
+        Err(fault) => {
+            let reason = match &fault {
+                PlanFault::MissingInstrument { .. } => RefusalReason::MissingInstrument,
+                PlanFault::Parameter(_) => RefusalReason::Parameter,
+                PlanFault::Contradiction { .. } => RefusalReason::Contradiction,
+            };
+            (reason, fault.to_string())
+        }
+    };
+    Some(ProcedureRefusal { reason, text })
 }
 
-fn procedure_view(procedure: &dyn Procedure, given: &Map<String, Value>, refused: Option<String>) -> view::Procedure {
+fn procedure_view(
+    procedure: &dyn Procedure,
+    given: &Map<String, Value>,
+    refused: Option<ProcedureRefusal>,
+) -> view::Procedure {
     view::Procedure {
         id: procedure.id().to_owned(),
         title: procedure.title().to_owned(),

@@ -14,7 +14,28 @@ pub struct Procedure {
     pub parameters: Vec<ProcedureParameter>,
     /// Why the requested bench cannot run it with its defaults; absent if it can, or without a bench.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub refused: Option<String>,
+    pub refused: Option<ProcedureRefusal>,
+}
+
+/// Why a bench cannot run a procedure.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ProcedureRefusal {
+    pub reason: RefusalReason,
+    /// Cause and remedy.
+    pub text: String,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RefusalReason {
+    /// The bench lacks an instrument.
+    MissingInstrument,
+    /// A default is out of its range.
+    Parameter,
+    /// The defaults and facts of the bench exclude each other.
+    Contradiction,
+    /// The dry run exceeds a limit of the bench.
+    Limit,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -332,3 +332,15 @@ fn a_bench_that_may_be_unsafe_waits_for_a_person() {
     assert_eq!((status, &answer["blocked"]), (200, &Value::Null), "{answer}");
     assert_eq!(daemon.post("/api/v1/runs", SHORT_RUN).0, 201);
 }
+
+#[test]
+fn a_procedure_that_the_bench_cannot_run_has_a_reason() {
+    let daemon = TestDaemon::start();
+    let (_, procedures) = daemon.get(&format!("/api/v1/procedures?bench={BENCH}"));
+    let refused =
+        |id: &str| procedures.as_array().unwrap().iter().find(|one| one["id"] == id).unwrap()["refused"].clone();
+    assert_eq!(refused("friction"), Value::Null);
+    let encoder = refused("encoder_linearity");
+    assert_eq!(encoder["reason"], "missing_instrument", "{encoder}");
+    assert!(encoder["text"].as_str().unwrap().contains(BENCH), "{encoder}");
+}

@@ -9,7 +9,7 @@ it('offers first what the bench can make', () => {
 			['puma_friction', 'friction'],
 			['brake_hysteresis', 'brake'],
 			['encoder_delay', 'encoder'],
-		].map(([id, kind]) => ({ id, kind, refused: possible.includes(id!) ? undefined : 'no such instrument' }) as Procedure);
+		].map(([id, kind]) => ({ id, kind, refused: possible.includes(id!) ? undefined : { reason: 'missing_instrument', text: 'no such instrument' } }) as Procedure);
 		return procedureGroups(all).map((one) => [one.title, one.procedures.map(({ id }) => id).join()]);
 	};
 	expect(offered('friction', 'brake_hysteresis')).toEqual([
