@@ -3,12 +3,14 @@
 mod advice;
 mod excluded;
 mod maps;
+mod parameter_cells;
 
 use jointbench_model::{
     Comparison, Diagnosis, Discovery, Evaluation, Evidence, Fit, NoiseFloor, Parameter, ParameterPair, ParameterState,
     Region, ResidualKind, Suggestion, words,
 };
 pub use maps::print as maps;
+use parameter_cells::{Cells, cells};
 use std::path::Path;
 
 const BAR_WIDTH: f64 = 40.0;
@@ -84,11 +86,10 @@ pub fn comparison(file: &Path, comparison: &Comparison) {
     println!();
     let wide = |of: fn(&ParameterPair) -> &str| comparison.parameters.iter().map(|p| of(p).chars().count()).max();
     let (effect, name) = (wide(|p| &p.effect).unwrap_or(0), wide(|p| &p.name).unwrap_or(0));
-    let unit = wide(|p| &p.unit).unwrap_or(0);
     let side = |p: &Option<Parameter>| match p {
         Some(p) => {
-            let (value, interval) = with_interval(p.value, p.ci95);
-            format!("{value} [{interval}]")
+            let Cells { value, unit, interval } = cells(p.value, p.ci95, &p.unit);
+            format!("{value} {unit} [{interval}]")
         }
         None => "–".to_owned(),
     };
@@ -98,7 +99,7 @@ pub fn comparison(file: &Path, comparison: &Comparison) {
             Some(true) => "  differ",
             _ => "",
         };
-        println!("{:effect$}  {:name$}  {:unit$}  {first:>34}  {second:>34}{differ}", p.effect, p.name, shown(&p.unit));
+        println!("{:effect$}  {:name$}  {first:>38}  {second:>38}{differ}", p.effect, p.name);
     }
     println!();
     let (first, second) = (&comparison.first, &comparison.second);
@@ -166,16 +167,15 @@ pub fn discovery(discovery: &Discovery) {
 pub fn parameters(parameters: &[Parameter]) {
     let wide = |of: fn(&Parameter) -> &str| parameters.iter().map(|p| of(p).chars().count()).max().unwrap_or(0);
     let (effect, name) = (wide(|p| &p.effect), wide(|p| &p.name));
-    let unit = wide(|p| &p.unit);
+    let rows: Vec<Cells> = parameters.iter().map(|p| cells(p.value, p.ci95, &p.unit)).collect();
+    let unit = rows.iter().map(|row| row.unit.chars().count()).max().unwrap_or(0);
     println!("{:effect$}  {:name$}  {:>11}  {:unit$}  95 % interval", "effect", "parameter", "value", "unit");
-    for parameter in parameters {
-        let (value, interval) = with_interval(parameter.value, parameter.ci95);
+    for (parameter, Cells { value, unit: prefixed, interval }) in parameters.iter().zip(rows) {
         let interval = if parameter.state == ParameterState::Fixed { "fixed".to_owned() } else { interval };
         println!(
-            "{:effect$}  {:name$}  {value:>11}  {:unit$}  {interval}{}",
+            "{:effect$}  {:name$}  {value:>11}  {prefixed:unit$}  {interval}{}",
             parameter.effect,
             parameter.name,
-            shown(&parameter.unit),
             state(parameter)
         );
     }
@@ -242,9 +242,9 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         println!("  {}. {}: {gain}, {}", i + 1, suggestion.effect, chance(suggestion));
         println!("     {}", suggestion.why);
         for parameter in &suggestion.parameters {
-            let (value, interval) = with_interval(parameter.value, parameter.ci95);
+            let Cells { value, unit, interval } = cells(parameter.value, parameter.ci95, &parameter.unit);
             let state = state(parameter);
-            println!("     {} = {value} {}  [{interval}]{state}", parameter.name, shown(&parameter.unit));
+            println!("     {} = {value} {unit}  [{interval}]{state}", parameter.name);
         }
     }
 }
@@ -258,29 +258,6 @@ fn chance(suggestion: &Suggestion) -> String {
         p => format!("p {sign} {p:.3}"),
     };
     format!("{p_value}{}{weak}", bic.unwrap_or_default())
-}
-
-/// A value and its interval, with enough digits to distinguish the limits. A selected integer, and a parameter without
-/// influence on the run, have no interval.
-fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, String) {
-    match (low == high, low == 0.0) {
-        (true, true) => ("–".to_owned(), "–".to_owned()),
-        (true, false) => (figure(value), "discrete".to_owned()),
-        (false, _) => {
-            let digits = (3..9).find(|digits| rounded(low, *digits) != rounded(high, *digits));
-            let (value, low, high) = match digits {
-                Some(digits) if digits > 3 => (rounded(value, digits), rounded(low, digits), rounded(high, digits)),
-                Some(digits) => (figure(value), rounded(low, digits), rounded(high, digits)),
-                None => (figure(value), figure(low), figure(high)),
-            };
-            (value, format!("{low} … {high}"))
-        }
-    }
-}
-
-/// Dimensionless numbers have no unit.
-fn shown(unit: &str) -> &str {
-    if unit == "1" { "" } else { unit }
 }
 
 fn floor(floor: &NoiseFloor, unit: &str) {
@@ -342,11 +319,7 @@ fn of(residual: ResidualKind) -> &'static str {
 
 /// Four significant digits, without an exponent if that is short.
 pub fn figure(value: f64) -> String {
-    rounded(value, 3)
-}
-
-/// Rounds to `digits` digits after the first.
-fn rounded(value: f64, digits: i32) -> String {
+    const DIGITS: i32 = 3;
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -361,24 +334,14 @@ fn rounded(value: f64, digits: i32) -> String {
     }
     let exponent = value.abs().log10().floor() as i32;
     match exponent {
-        -4..=5 => format!("{value:.*}", (digits - exponent).max(0) as usize),
-        _ => format!("{value:.*e}", digits as usize),
+        -4..=5 => format!("{value:.*}", (DIGITS - exponent).max(0) as usize),
+        _ => words::scientific(value, DIGITS as usize),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{figure, with_interval};
-
-    #[test]
-    fn the_ends_of_an_interval_are_distinguishable() {
-        let interval = |low: f64, high: f64| with_interval(0.5 * (low + high), [low, high]).1;
-        assert_eq!(interval(0.0306, 0.0312), "0.03060 … 0.03120");
-        assert_eq!(interval(1.000012, 1.000031), "1.00001 … 1.00003");
-        assert_eq!(interval(1.2e-7, 1.2000004e-7), "1.2000000e-7 … 1.2000004e-7");
-        assert_eq!((interval(7.0, 7.0), interval(0.0, 0.0)), ("discrete".into(), "–".into()));
-        assert_eq!(with_interval(0.820308, [0.820307, 0.820309]).0, "0.820308", "inside its interval");
-    }
+    use super::figure;
 
     #[test]
     fn figures_have_four_digits() {
@@ -388,8 +351,8 @@ mod tests {
             (-203.5034, "-203.5"),
             (95108.9, "95109"),
             (1.512e-4, "0.0001512"),
-            (8.2e-6, "8.200e-6"),
-            (1e9, "1.000e9"),
+            (8.2e-6, "8.200·10⁻⁶"),
+            (1e9, "1.000·10⁹"),
             (f64::INFINITY, "∞"),
         ] {
             assert_eq!(figure(value), text);

@@ -17,7 +17,7 @@ mod style;
 use crate::view::{Diagnosis, Figure, Identification, Model, Run, word};
 pub use figure::svg;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-pub use number::with_interval;
+pub use number::{in_one_unit, with_interval};
 use pairs::plain;
 use serde::{Deserialize, Serialize};
 use sign_off::SignOff;

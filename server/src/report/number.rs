@@ -9,6 +9,12 @@ fn takes_prefix(unit: &str) -> bool {
 
 /// `32.14 mNm` and `31.90 … 32.38`: one unit, and two digits of the half-width.
 pub fn with_interval(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String, Option<String>) {
+    let (shown, unit, ends) = in_one_unit(value, ci95, unit);
+    (format!("{shown} {unit}").trim_end().to_owned(), ends)
+}
+
+/// The same with the unit apart, for a table.
+pub fn in_one_unit(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String, String, Option<String>) {
     let unit = if unit == "1" { "" } else { unit };
     let (factor, prefix) = if takes_prefix(unit) { words::prefix(value.abs(), unit) } else { (1.0, "") };
     let spread = ci95.map_or(value.abs() / 50.0, |[low, high]| (high - low) / 2.0) * factor;
@@ -16,8 +22,8 @@ pub fn with_interval(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String,
         let (sign, size) = if value < 0.0 { ("−", -value) } else { ("", value) };
         format!("{sign}{}", digits(size * factor, spread))
     };
-    let shown = format!("{} {prefix}{unit}", text(value)).trim_end().to_owned();
-    (shown, ci95.map(|[low, high]| format!("{} … {}", text(low), text(high))))
+    let ends = ci95.map(|[low, high]| format!("{} … {}", text(low), text(high)));
+    (text(value), format!("{prefix}{unit}"), ends)
 }
 
 /// Rounds to two digits of `spread`.
