@@ -6,6 +6,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 mod arrow_check;
+mod arrow_out;
 mod bounds;
 mod column;
 mod columnar;
@@ -36,6 +37,7 @@ mod time;
 mod understand;
 mod unit;
 
+pub use arrow_out::ArrowWriter;
 pub use bounds::Bounds;
 pub use csv_out::{CsvWriter, write_csv};
 pub use curve::read_curve;

@@ -41,11 +41,8 @@ impl<W: Write + Send> ParquetWriter<W> {
     }
 
     pub fn annotated(out: W, meta: &Meta, channels: &[Channel], more: Annotations) -> io::Result<Self> {
-        let numbers = channels.iter().map(|c| Field::new(&c.name, DataType::Float64, false));
-        let texts = more.labels.iter().map(|(name, _)| Field::new(*name, DataType::Utf8, true));
-        let fields: Vec<Field> = numbers.chain(texts).collect();
-        let facts = HashMap::from([(EMBEDDED.to_owned(), meta_json(meta, channels))]);
-        let schema = Arc::new(Schema::new_with_metadata(fields, facts));
+        let names: Vec<&str> = more.labels.iter().map(|(name, _)| *name).collect();
+        let schema = schema(meta, channels, &names);
         let level = ZstdLevel::try_new(3).map_err(io::Error::other)?;
         let footer = more.footer.into_iter().map(|(key, value)| KeyValue::new(key.to_owned(), value)).collect();
         let properties = WriterProperties::builder().set_compression(Compression::ZSTD(level));
@@ -55,17 +52,30 @@ impl<W: Write + Send> ParquetWriter<W> {
     }
 
     pub fn write(&mut self, trace: &Trace) -> io::Result<()> {
-        let array = |c: &Vec<f64>| Arc::new(Float64Array::from_iter_values(c.iter().copied())) as ArrayRef;
-        let label = |value: &Option<String>| {
-            Arc::new(std::iter::repeat_n(value.as_deref(), trace.len()).collect::<StringArray>()) as ArrayRef
-        };
-        let columns: Vec<ArrayRef> = trace.columns().iter().map(array).chain(self.labels.iter().map(label)).collect();
-        let batch = RecordBatch::try_new(self.schema.clone(), columns).map_err(io::Error::other)?;
-        self.writer.write(&batch).map_err(io::Error::other)
+        self.writer.write(&batch(&self.schema, trace, &self.labels)?).map_err(io::Error::other)
     }
 
     pub fn finish(self) -> io::Result<()> {
         self.writer.close().map_err(io::Error::other)?;
         Ok(())
     }
+}
+
+/// A column of doubles for each channel, then the columns of text; the facts are its metadata.
+pub(crate) fn schema(meta: &Meta, channels: &[Channel], labels: &[&str]) -> Arc<Schema> {
+    let numbers = channels.iter().map(|c| Field::new(&c.name, DataType::Float64, false));
+    let texts = labels.iter().map(|name| Field::new(*name, DataType::Utf8, true));
+    let fields: Vec<Field> = numbers.chain(texts).collect();
+    let facts = HashMap::from([(EMBEDDED.to_owned(), meta_json(meta, channels))]);
+    Arc::new(Schema::new_with_metadata(fields, facts))
+}
+
+/// A block of rows, with the same text in each row of a column of text.
+pub(crate) fn batch(schema: &Arc<Schema>, trace: &Trace, labels: &[Option<String>]) -> io::Result<RecordBatch> {
+    let array = |c: &Vec<f64>| Arc::new(Float64Array::from_iter_values(c.iter().copied())) as ArrayRef;
+    let label = |value: &Option<String>| {
+        Arc::new(std::iter::repeat_n(value.as_deref(), trace.len()).collect::<StringArray>()) as ArrayRef
+    };
+    let columns: Vec<ArrayRef> = trace.columns().iter().map(array).chain(labels.iter().map(label)).collect();
+    RecordBatch::try_new(schema.clone(), columns).map_err(io::Error::other)
 }

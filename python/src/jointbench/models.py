@@ -298,12 +298,12 @@ class EffectParameter(BaseModel):
     unit: str
 
 
-Evidence = TypeAliasType("Evidence", Literal['strong', 'small', 'weak'])
-"""Evidence that an effect is missing, and its significance."""
-
 EmptyChart = TypeAliasType("EmptyChart", Literal['no_run', 'no_quantity'])
 """Why a chart has no points."""
 
+
+Evidence = TypeAliasType("Evidence", Literal['strong', 'small', 'weak'])
+"""Evidence that an effect is missing, and its significance."""
 
 
 class Exclusion(BaseModel):
@@ -630,6 +630,9 @@ class LogEntry(BaseModel):
     model: int | None = None
     """The created version."""
 
+    note: int | None = None
+    """The note."""
+
     procedure: str | None = None
     """Of the run."""
 
@@ -659,9 +662,6 @@ Byte = TypeAliasType("Byte", Annotated[int, Field(ge=0)])
 
 
 class MemoryVariable(BaseModel):
-    note: int | None = None
-    """The note."""
-
     """One variable of the memory."""
 
     address: Annotated[int, Field(ge=0)]
@@ -1045,6 +1045,7 @@ RejectionReason = TypeAliasType("RejectionReason", Literal['confounded', 'not_si
 
 
 class ResidualAxis(BaseModel):
+    kind: AxisKind
     name: str
     """Column of the run table, or `direction`, `run_order`."""
 
@@ -1073,7 +1074,6 @@ class ResidualSet(BaseModel):
 
     held_out: list[bool]
     """Points outside the fit (ramps, reversals): shown, not evaluated."""
-    kind: AxisKind
 
     measured: list[float]
     piece: list[PieceItem]
@@ -1996,9 +1996,9 @@ class QueueEntry(BaseModel):
 
     proceed_if: ProceedIf
     reason: str | None = None
-    run_state: RunState | None = None
     request: NewRun
     run: int | None = None
+    run_state: RunState | None = None
     starts_in_s: float | None = None
     """Expected time until the start, by the clock; only for a waiting entry of a queue that is not paused."""
 
@@ -2154,10 +2154,10 @@ class BenchQueue(BaseModel):
 
     bench: str
     entries: list[QueueEntry]
+    """The waiting entries, in the order in which they start."""
+
     left: list[QueueEntry]
     """The entries that left the queue last, at most 50, the newest first."""
-
-    """The waiting entries, in the order in which they start."""
 
     paused: QueuePause | None = None
 

@@ -114,19 +114,20 @@ class Run:
 
     def to_polars(self) -> pl.DataFrame:
         """The samples, a column for each channel with its unit in the name. Needs `jointbench[polars]`."""
-        return samples.to_polars(self._parquet())
+        return samples.to_polars(self._stream())
 
     def to_pandas(self) -> pd.DataFrame:
         """The samples as `to_polars`. Needs `jointbench[pandas]`."""
-        return samples.to_pandas(self._parquet())
+        return samples.to_pandas(self._stream())
 
     def to_arrow(self) -> pa.Table:
         """The samples as `to_polars`. Needs `jointbench[arrow]`."""
-        return samples.to_arrow(self._parquet())
+        return samples.to_arrow(self._stream())
 
     def to_numpy(self) -> dict[str, np.ndarray[Any, Any]]:
         """The samples as one array for each channel. Needs `jointbench[arrow]`."""
-        return samples.to_numpy(self._parquet())
+        return samples.to_numpy(self._stream())
 
-    def _parquet(self) -> bytes:
-        return self._connection.request("GET", f"/runs/{self.id}/export", params={"format": "parquet"}).content
+    def _stream(self) -> bytes:
+        headers = {"accept": "application/vnd.apache.arrow.stream"}
+        return self._connection.request("GET", f"/runs/{self.id}/samples", headers=headers).content

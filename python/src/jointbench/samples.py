@@ -1,4 +1,4 @@
-"""Samples from the Parquet export, for the library of the user. Each library is an optional extra."""
+"""Samples as an Arrow stream, for the library of the user. Each library is an optional extra."""
 
 from __future__ import annotations
 
@@ -21,21 +21,27 @@ def need(module: str, extra: str) -> Any:
         raise ImportError(f"{module} is not installed: pip install 'jointbench[{extra}]'") from fault
 
 
-def to_polars(parquet: bytes) -> pl.DataFrame:
-    frame: pl.DataFrame = need("polars", "polars").read_parquet(BytesIO(parquet))
+def to_polars(stream: bytes) -> pl.DataFrame:
+    frame: pl.DataFrame = need("polars", "polars").read_ipc_stream(BytesIO(stream))
     return frame
 
 
-def to_pandas(parquet: bytes) -> pd.DataFrame:
-    need("pyarrow", "pandas")
-    return need("pandas", "pandas").read_parquet(BytesIO(parquet), engine="pyarrow")
+def to_pandas(stream: bytes) -> pd.DataFrame:
+    need("pandas", "pandas")
+    frame: pd.DataFrame = _table(stream, "pandas").to_pandas()
+    return frame
 
 
-def to_arrow(parquet: bytes) -> pa.Table:
-    return need("pyarrow.parquet", "arrow").read_table(BytesIO(parquet))
+def to_arrow(stream: bytes) -> pa.Table:
+    return _table(stream, "arrow")
 
 
-def to_numpy(parquet: bytes) -> dict[str, np.ndarray[Any, Any]]:
+def to_numpy(stream: bytes) -> dict[str, np.ndarray[Any, Any]]:
     need("numpy", "arrow")
-    table = to_arrow(parquet)
+    table = to_arrow(stream)
     return {name: column.to_numpy() for name, column in zip(table.column_names, table.columns, strict=True)}
+
+
+def _table(stream: bytes, extra: str) -> pa.Table:
+    table: pa.Table = need("pyarrow.ipc", extra).open_stream(BytesIO(stream)).read_all()
+    return table

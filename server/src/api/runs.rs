@@ -2,12 +2,13 @@
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::Problem;
-use super::refusals::Refusals;
-use crate::lab::{Alignment, Caller, Lab, LabError, Order, RunFilter};
+use super::refusals::{File, Refusals};
+use super::transfer::streamed;
+use crate::lab::{ARROW_STREAM, Alignment, Caller, Encoding, ExportRequest, Lab, LabError, Order, RunFilter};
 use crate::view::{ChannelStatistics, Figure, Lease, NewRun, Preview, QueueEntry, Run, RunEvent, RunList, Samples};
 use axum::Extension;
 use axum::extract::State;
-use axum::http::{HeaderMap, StatusCode};
+use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use jointbench_procedure::Control;
 use serde::Deserialize;
@@ -163,13 +164,39 @@ pub struct SampleQuery {
     pub px: Option<u32>,
 }
 
-/// Samples of a window, at most one minimum and maximum for each pixel
+/// Samples of a window, at most one minimum and maximum for each pixel. With `Accept: application/vnd.apache.arrow.stream`
+/// all rows of the window, as an Arrow stream with one column of doubles for each channel
 #[utoipa::path(get, path = "/runs/{id}/samples", operation_id = "get_samples", tag = "samples",
     params(("id" = i64, Path, description = "Run"), SampleQuery),
-    responses((status = 200, description = "The window", body = Samples), Refusals))]
-pub async fn samples(State(lab): State<Lab>, Path(id): Path<i64>, Query(query): Query<SampleQuery>) -> Answer<Samples> {
-    let channels = named(query.channels);
-    Ok(Json(lab.samples(id, channels.as_deref(), query.from_s, query.to_s, query.px.unwrap_or(2000)).await?))
+    responses(
+        (status = 200, description = "The window", content(
+            (Samples = "application/json"), (File = "application/vnd.apache.arrow.stream"))),
+        Refusals))]
+pub async fn samples(
+    State(lab): State<Lab>,
+    Path(id): Path<i64>,
+    Query(query): Query<SampleQuery>,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let SampleQuery { channels, from_s, to_s, px } = query;
+    let channels = named(channels);
+    if accepts_arrow(&headers) {
+        if px.is_some() {
+            return Err(Problem::malformed("px is for JSON: an Arrow stream has all rows of the window"));
+        }
+        let (encoding, spreadsheet_safe) = (Encoding::ArrowStream, false);
+        let request = ExportRequest { run: id, encoding, channels, from_s, to_s, spreadsheet_safe };
+        return streamed(&lab, request).await;
+    }
+    Ok(Json(lab.samples(id, channels.as_deref(), from_s, to_s, px.unwrap_or(2000)).await?).into_response())
+}
+
+/// Whether a client names the Arrow stream. `*/*` gets JSON.
+fn accepts_arrow(headers: &HeaderMap) -> bool {
+    let accepted = headers.get_all(header::ACCEPT).iter().filter_map(|value| value.to_str().ok());
+    accepted
+        .flat_map(|value| value.split(','))
+        .any(|kind| kind.split(';').next().is_some_and(|kind| kind.trim() == ARROW_STREAM))
 }
 
 #[derive(Debug, Clone, Default, Deserialize, IntoParams)]

@@ -4,7 +4,7 @@ use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::Problem;
 use super::refusals::{File, Refusals};
 use crate::job::Streamed;
-use crate::lab::{Caller, ExportRequest, FileFormat, ImportRequest, Lab, LabError};
+use crate::lab::{Caller, Encoding, ExportRequest, FileFormat, ImportRequest, Lab, LabError};
 use crate::store::StoreError;
 use crate::view::{ImportPreview, Run};
 use axum::Extension;
@@ -50,11 +50,16 @@ pub async fn export(
     Query(query): Query<ExportQuery>,
 ) -> Result<Response, Problem> {
     let ExportQuery { format, from_s, to_s, spreadsheet_safe } = query;
-    let request = ExportRequest { run: id, format, from_s, to_s, spreadsheet_safe };
-    let pieces = Pieces(lab.export(request).await?);
+    let request =
+        ExportRequest { run: id, encoding: Encoding::File(format), channels: None, from_s, to_s, spreadsheet_safe };
     let name = format!("attachment; filename=\"run-{id}.{}\"", query.format.extension());
-    let headers = [(header::CONTENT_TYPE, query.format.media_type().to_owned()), (header::CONTENT_DISPOSITION, name)];
-    Ok((headers, Body::new(pieces)).into_response())
+    Ok(([(header::CONTENT_DISPOSITION, name)], streamed(&lab, request).await?).into_response())
+}
+
+/// A file, as it is written.
+pub(super) async fn streamed(lab: &Lab, request: ExportRequest) -> Result<Response, Problem> {
+    let headers = [(header::CONTENT_TYPE, request.encoding.media_type())];
+    Ok((headers, Body::new(Pieces(lab.export(request).await?))).into_response())
 }
 
 /// Metadata of the run as `meta.json`, required for the import of an exported CSV

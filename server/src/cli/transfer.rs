@@ -7,7 +7,9 @@ use super::files::{self, table, write};
 use super::serve::runtime;
 use crate::api::Health;
 use crate::job::Job;
-use crate::lab::{ATTENTION, COPY_OF, ExportRequest, FileFormat, ImportRequest, LOCAL, Lab, LabError, UNDERSTOOD};
+use crate::lab::{
+    ATTENTION, COPY_OF, Encoding, ExportRequest, FileFormat, ImportRequest, LOCAL, Lab, LabError, UNDERSTOOD,
+};
 use crate::view::Run;
 use jointbench_files::meta_path_of;
 use std::path::{Path, PathBuf};
@@ -46,7 +48,9 @@ pub fn export(arguments: &Export) -> Done {
     }
     let (bytes, meta) = match open(&runtime, &arguments.store, false)? {
         Target::Folder(lab) => runtime.block_on(async {
-            let request = ExportRequest { run, format, from_s: None, to_s: None, spreadsheet_safe: safe };
+            let encoding = Encoding::File(format);
+            let request =
+                ExportRequest { run, encoding, channels: None, from_s: None, to_s: None, spreadsheet_safe: safe };
             Ok::<_, LabError>((lab.answer(Job::Export(request)).await?, lab.export_meta(run).await?))
         })?,
         Target::Daemon(client) => {

@@ -16,7 +16,8 @@ mod process;
 mod reply;
 
 pub use parameters::{
-    Alignment, ArchiveRequest, ArchivedFile, ExportRequest, FileFormat, ImportRequest, Offer, PointLimit,
+    ARROW_STREAM, Alignment, ArchiveRequest, ArchivedFile, Encoding, ExportRequest, FileFormat, ImportRequest, Offer,
+    PointLimit,
 };
 pub use process::{Jobs, Streamed};
 pub(crate) use reply::{Head, Refusal};

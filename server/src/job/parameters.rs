@@ -9,6 +9,9 @@ use serde_json::{Map, Value};
 use std::path::PathBuf;
 use utoipa::ToSchema;
 
+/// Media type of the Arrow IPC streaming format.
+pub const ARROW_STREAM: &str = "application/vnd.apache.arrow.stream";
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum FileFormat {
@@ -36,11 +39,30 @@ impl FileFormat {
     }
 }
 
-/// Export of a run, or of a section of it, to a file.
+/// How the rows of a run are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Encoding {
+    File(FileFormat),
+    /// The Arrow IPC streaming format, for programs that read while it is written.
+    ArrowStream,
+}
+
+impl Encoding {
+    pub fn media_type(self) -> &'static str {
+        match self {
+            Encoding::File(format) => format.media_type(),
+            Encoding::ArrowStream => ARROW_STREAM,
+        }
+    }
+}
+
+/// Export of a run, or of a section of it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ExportRequest {
     pub run: i64,
-    pub format: FileFormat,
+    pub encoding: Encoding,
+    /// All channels if `None`.
+    pub channels: Option<Vec<String>>,
     /// On the run's clock; default: the first row.
     pub from_s: Option<f64>,
     pub to_s: Option<f64>,

@@ -5,9 +5,9 @@ use super::statistics::ROWS_AT_ONCE;
 use super::transfer::SIMULATED;
 use super::units::TestedUnit;
 use super::{Answer, Lab, LabError};
-use crate::job::{ExportRequest, FileFormat, Job, Streamed};
+use crate::job::{Encoding, ExportRequest, FileFormat, Job, Streamed};
 use crate::store::RunRecord;
-use jointbench_files::{CsvWriter, MatWriter, ParquetWriter, meta_json};
+use jointbench_files::{ArrowWriter, CsvWriter, MatWriter, ParquetWriter, meta_json};
 use jointbench_instrument::{Channel, Meta};
 use std::io::{self, Write};
 use std::ops::Range;
@@ -31,27 +31,39 @@ impl Lab {
     }
 
     pub(crate) async fn export_into(&self, request: ExportRequest, out: impl Write + Send + 'static) -> Answer<()> {
-        let ExportRequest { run, format, from_s, to_s, spreadsheet_safe } = request;
-        let (meta, record) = self.export_facts(run).await?;
+        let ExportRequest { run, encoding, channels: names, from_s, to_s, spreadsheet_safe } = request;
+        let (meta, _) = self.export_facts(run).await?;
         let rows = self.inner.store.rows_between(run, from_s, to_s).await?;
-        let channels = record.channels;
-        match format {
-            FileFormat::Csv => {
+        let names = names.as_deref();
+        // The first row shows whether there are samples, before a client gets the begin of a file.
+        let first = rows.start..rows.end.min(rows.start + 1);
+        let channels = self.inner.store.trace(run, names, first).await?.channels().to_vec();
+        match encoding {
+            Encoding::File(FileFormat::Csv) => {
                 let channels = if spreadsheet_safe { defused_channels(channels) } else { channels };
                 let mut csv = CsvWriter::new(out, &channels);
                 for stretch in stretches(&rows) {
-                    csv.write(&self.inner.store.trace(run, None, stretch).await?).map_err(failed)?;
+                    csv.write(&self.inner.store.trace(run, names, stretch).await?).map_err(failed)?;
                 }
                 csv.finish().map_err(failed)
             }
-            FileFormat::Parquet => {
+            Encoding::File(FileFormat::Parquet) => {
                 let mut parquet = ParquetWriter::new(out, &meta, &channels).map_err(failed)?;
                 for stretch in stretches(&rows) {
-                    parquet.write(&self.inner.store.trace(run, None, stretch).await?).map_err(failed)?;
+                    parquet.write(&self.inner.store.trace(run, names, stretch).await?).map_err(failed)?;
                 }
                 parquet.finish().map_err(failed)
             }
-            FileFormat::Mat => self.export_columns(run, rows, &channels, MatWriter::new(out), &meta).await,
+            Encoding::ArrowStream => {
+                let mut arrow = ArrowWriter::new(out, &meta, &channels).map_err(failed)?;
+                for stretch in stretches(&rows) {
+                    arrow.write(&self.inner.store.trace(run, names, stretch).await?).map_err(failed)?;
+                }
+                arrow.finish().map_err(failed)
+            }
+            Encoding::File(FileFormat::Mat) => {
+                self.export_columns(run, rows, &channels, MatWriter::new(out), &meta).await
+            }
         }
     }
 

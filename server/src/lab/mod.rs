@@ -42,7 +42,7 @@ mod units;
 mod user_effects;
 
 pub use crate::error::LabError;
-pub use crate::job::{Alignment, ExportRequest, FileFormat, ImportRequest, Offer, PointLimit};
+pub use crate::job::{ARROW_STREAM, Alignment, Encoding, ExportRequest, FileFormat, ImportRequest, Offer, PointLimit};
 pub use crate::store::{Order, RunFilter};
 pub use experiment::next_run;
 pub use log::OF_TOKENS;

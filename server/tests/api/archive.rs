@@ -273,6 +273,8 @@ fn dropped_samples_are_named_and_give_the_same_result_after_an_import() {
         assert_eq!((status, &problem["type"]), (410, &json!("urn:jointbench:gone")), "{path}: {problem}");
         assert!(detail.contains(file.to_str().unwrap()) && detail.contains("jointbench import"), "{detail}");
     }
+    let arrow = [("accept", "application/vnd.apache.arrow.stream")];
+    assert_eq!(daemon.get_with(&of_run("samples"), &arrow).0, 410, "no stream begins");
     assert_eq!(daemon.get(&of_run("identification")).1, result, "the result is kept");
     assert!(table(&daemon, id, "samples")["dropped_at"].is_string());
     assert_eq!(daemon.delete(&of_run("samples")).0, 200, "a second time");

@@ -1,6 +1,7 @@
 //! Tests of the daemon on a real loopback port, as its clients use it.
 
 mod archive;
+mod arrow_stream;
 mod auth;
 mod autopilots;
 mod calibrations;
