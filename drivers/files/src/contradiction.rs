@@ -69,6 +69,8 @@ pub fn idle_velocity(columns: &[Column], kind: Kind) -> Option<(usize, Note)> {
 /// Wraps of an angle differ by at most this fraction and exceed `LEAP_OF_RANGE` of its range.
 const SAME_LEAP: f64 = 0.05;
 const LEAP_OF_RANGE: f64 = 0.8;
+/// Least number of changes of an angle for each wrap.
+const MOVES_EACH_LEAP: usize = 4;
 
 fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
     let values = run.column(name)?;
@@ -82,6 +84,11 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
         .filter(|(step, _)| step.abs() > LEAP_OF_RANGE * range)
         .map(|(_, leap)| leap)
         .collect();
+    // Between wraps an angle moves: a held encoder that changes by one count only leaps.
+    let moves = values.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    if moves < MOVES_EACH_LEAP * leaps.len() {
+        return None;
+    }
     let mean = leaps.iter().sum::<f64>() / leaps.len() as f64;
     let is_one_size = leaps.iter().all(|leap| (leap / mean - 1.0).abs() < SAME_LEAP);
     // Most encoders wrap after a turn, even if their samples do not reach its ends.

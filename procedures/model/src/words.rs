@@ -94,7 +94,13 @@ fn is_prefixed(unit: &str) -> bool {
 
 /// A share in percent, with one digit below 10 %: `6.1 %`, `18 %`.
 pub fn percent(share: f64) -> String {
-    if share.abs() < 0.0995 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0} %", 100.0 * share) }
+    match share {
+        // Rounded, nearly nothing and nearly all would look like nothing and all.
+        _ if share > 0.0 && share < 0.0005 => "less than 0.1 %".to_owned(),
+        _ if (0.9995..1.0).contains(&share) => "over 99.9 %".to_owned(),
+        _ if share.abs() < 0.0995 || (0.995..1.0).contains(&share) => format!("{:.1} %", 100.0 * share),
+        _ => format!("{:.0} %", 100.0 * share),
+    }
 }
 
 /// `a`, `a and b`, `a, b and c`.

@@ -97,7 +97,10 @@ fn a_formula_that_is_not_needed_stays_silent() {
     loud.fit.relative_error *= 1e3;
     let hidden = loud.bounded();
     let why = hidden.not_visible.iter().find(|one| one.effect == "rub").map(|one| one.why.as_str()).unwrap_or_default();
-    assert!(hidden.silent.is_empty() && why.contains("% of the measured signal, more than 5.0 %"), "{why}");
+    assert!(
+        hidden.silent.is_empty() && why.contains("% of the measured signal, and less than 5.0 % is required"),
+        "{why}"
+    );
     for one in [bounded, hidden] {
         assert_eq!(one.silent.len() + one.not_visible.len(), known, "no effect is omitted");
     }
@@ -111,7 +114,7 @@ fn a_formula_that_the_library_has_is_reported_as_its_copy() {
     let found = diagnose(&run, &spec(&run, &[], is_replicate), &Options::default()).unwrap();
     let first = &found.suggestions[0];
     assert_eq!((first.effect.as_str(), first.confounded_with.contains(&"twin".into())), ("load_linear", true));
-    let reported = found.not_visible.iter().find(|n| n.effect == "twin").unwrap();
+    let reported = found.left_out.iter().find(|n| n.effect == "twin").unwrap();
     assert!(
         reported.why.starts_with("load_linear is in the model, and this run cannot distinguish them"),
         "{}",

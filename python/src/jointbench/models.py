@@ -1335,7 +1335,7 @@ class TrialError(BaseModel):
     unit: str
 
 
-UndecidedReason = TypeAliasType("UndecidedReason", Literal['contradictory_columns', 'too_few_blocks', 'no_noise_floor', 'impossible_parameter'])
+UndecidedReason = TypeAliasType("UndecidedReason", Literal['contradictory_columns', 'too_few_blocks', 'no_noise_floor', 'above_noise_floor', 'impossible_parameter'])
 """Why no verdict is possible."""
 
 

@@ -305,7 +305,7 @@ fn prepared(fit: &Fit) -> String {
         text += &format!(", decimated by {}", prepared.decimation);
     }
     if let Some(chunk_s) = prepared.chunk_s {
-        text += &format!(", steady-state means over {chunk_s:.3} s");
+        text += &format!(", means over {chunk_s:.3} s");
     }
     text + &format!("; {} points in {} independent blocks", prepared.rows, prepared.blocks)
 }

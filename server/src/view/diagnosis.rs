@@ -115,6 +115,8 @@ pub enum UndecidedReason {
     TooFewBlocks,
     /// The repeatability of the run is not known.
     NoNoiseFloor,
+    /// The validation error is far above the noise floor, and no test shows its origin.
+    AboveNoiseFloor,
     /// A parameter contradicts physics in every model.
     ImpossibleParameter,
 }

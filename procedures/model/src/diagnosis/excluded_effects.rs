@@ -9,6 +9,7 @@ use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::{hysteresis_stage, ramp_stage};
 use crate::stats::summary::rms;
+use crate::words::list;
 
 #[derive(Default)]
 pub struct ExcludedEffects {
@@ -40,11 +41,9 @@ impl ExcludedEffects {
             let refused = || refused.find(|one| one.effect == id).map(|one| (one.reason, one.words()));
             let rejected = tried.or_else(refused).or_else(|| given(effect, end));
             let detection_limit = detection_limits.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
+            let rejected = tied.map(|why| (RejectionReason::Confounded, why)).or(rejected);
             match (rejected, detection_limit) {
-                (Some((reason, why)), _) => {
-                    let reason = if tied.is_some() { RejectionReason::Confounded } else { reason };
-                    others.left_out.push(LeftOut { effect: id.into(), reason, why: tied.unwrap_or(why) });
-                }
+                (Some((reason, why)), _) => others.left_out.push(LeftOut { effect: id.into(), reason, why }),
                 // No noise is larger than the signal: only effects of the model can hide so much.
                 (None, Some(limit)) if limit.detectable_rms <= signal => others.silent.push(Silent {
                     effect: id.into(),
@@ -53,11 +52,7 @@ impl ExcludedEffects {
                     sought: sought(effect, end),
                 }),
                 (None, limit) => {
-                    let (reason, why) = match (tied, limit) {
-                        (Some(tied), _) => (InvisibleReason::Confounded, tied),
-                        (None, Some(_)) => alike(effect),
-                        (None, None) => invisible(effect, end),
-                    };
+                    let (reason, why) = if limit.is_some() { alike(effect, end) } else { invisible(effect, end) };
                     others.invisible.push(Invisible { effect: id.into(), reason, why });
                 }
             }
@@ -104,9 +99,12 @@ fn excitation(effect: &dyn Effect) -> &'static str {
     }
 }
 
-fn alike(effect: &dyn Effect) -> (InvisibleReason, String) {
+fn alike(effect: &dyn Effect, end: &TwoStageModel) -> (InvisibleReason, String) {
+    let added: Vec<&String> = end.effects.iter().filter(|id| !end.spec.contains(id)).collect();
+    let with = if added.is_empty() { String::new() } else { format!(" with {}", list(&added)) };
+    let with = with + if end.main.problem.form_error.is_some() { " or of its nuisance terms" } else { "" };
     let why = format!(
-        "in this data it has the shape of effects of the model; to distinguish them, measure {}",
+        "in this data it has the shape of effects of the model{with}; to distinguish them, measure {}",
         excitation(effect)
     );
     (InvisibleReason::Confounded, why)
@@ -129,5 +127,5 @@ fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> (InvisibleReason, Stri
         }
         _ => &prepared.main.view,
     };
-    effect.hidden(view).map_or_else(|| alike(effect), not_excited)
+    effect.hidden(view).map_or_else(|| alike(effect, end), not_excited)
 }

@@ -172,6 +172,14 @@ impl<'p> Findings<'p> {
 }
 
 impl Findings<'_> {
+    /// Reduction of the squared validation error at the last addition of an effect, relative to the model before.
+    pub fn reduction_when_added(&self, id: &str) -> f64 {
+        let is_meant = |step: &SelectionStep| step.added.as_ref().is_some_and(|scored| scored.term.id() == id);
+        let Some(at) = self.advances.iter().rposition(is_meant) else { return 0.0 };
+        let before = at.checked_sub(1).map_or(&self.start, |at| &self.advances[at].after);
+        1.0 - (validation_rms(&self.advances[at].after.main) / validation_rms(&before.main)).powi(2)
+    }
+
     /// Relative reduction of the validation error by an effect of the last model.
     pub fn lost_without(&self, id: &str) -> f64 {
         let parts = parts_without(self.end(), id);

@@ -11,7 +11,7 @@ use crate::fit::{report, written};
 use crate::inference::confounding;
 use crate::linear::basis::dot;
 use crate::preprocess::{Prepared, prepare};
-use crate::regression::cross_validation::validation_losses;
+use crate::regression::cross_validation::{validation_losses, validation_rms};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Diagnosis, Discovery, Evidence, Experiment, Step, Suggestion, Verdict};
 use crate::report::fit::Parameter;
@@ -23,7 +23,7 @@ use crate::selection;
 use crate::selection::advance::SelectionStep;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::MOST_EFFECTS;
-use crate::words::{figure, list, percent};
+use crate::words::{Scale, figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
 use jointbench_instrument::RunTable;
 
@@ -97,7 +97,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         summary: plain(&summary),
         summary_parts: parts(&summary),
         data_problems: narrative::data_problems(&found),
-        shows_over: shows_over(&found, structure.as_ref()),
+        shows_over: shows_over(&found),
         structure_remains: found.end_verdict() == Verdict::UnexplainedStructure,
         regions,
         structure,
@@ -158,7 +158,7 @@ pub fn discover(
         undecided: undecided.map(|why| plain(&why.text)),
         summary: plain(&narrative::end(&found, &fit, structure.as_ref(), options, is_cut))
             + &narrative::nowhere(verdict, &found.maps, &regions, &fit),
-        shows_over: shows_over(&found, structure.as_ref()),
+        shows_over: shows_over(&found),
         model: found.end().effects.clone(),
         regions,
         structure,
@@ -209,7 +209,7 @@ fn suggestions(
         let info = scored.term.effect.info();
         let confounded_with = found.ties_of(id);
         let tie = tie(found, id, &confounded_with, spec, options)?;
-        let evidence = evidence_sentence(found, scored, reduction, importance, apart);
+        let evidence = evidence_sentence(found, scored, importance, apart);
         let written = found.end().main.terms.iter().find(|term| term.id() == id).and_then(written);
         let instead = confounding::instead(scored.term.effect, found.start.prepared);
         let also: String = written.into_iter().chain(instead).map(|text| format!(" {text}.")).collect();
@@ -237,25 +237,33 @@ fn suggestions(
 }
 
 /// What speaks for an added effect, in a sentence.
-fn evidence_sentence(
-    found: &Findings,
-    scored: &ScoredCandidate,
-    reduction: f64,
-    importance: f64,
-    apart: bool,
-) -> String {
+fn evidence_sentence(found: &Findings, scored: &ScoredCandidate, importance: f64, apart: bool) -> String {
     if apart {
         format!("Around reversals it reduces the squared error by {}.", percent(scored.share))
     } else if let Some(retained) = found.retained.iter().find(|u| u.effect == scored.term.id()) {
         format!("Removing it hardly changes the error, but without it {}.", narrative::elsewhere(retained, false))
-    } else if found.decided.is_some() && reduction <= 0.0 {
-        format!("Away from reversals and rest it reduces the squared error by {}.", percent(importance))
     } else if found.decided.is_some() {
-        format!("It reduces the squared validation error by {}.", percent(importance))
+        let over_all = found.reduction_when_added(scored.term.id());
+        let weighted = percent(importance);
+        match over_all > 0.0 {
+            true => format!(
+                "When added, it reduces the squared validation error by {} ({weighted} with less weight on reversals and rest).",
+                percent(over_all)
+            ),
+            false => {
+                format!(
+                    "With less weight on reversals and rest, it reduces the squared validation error by {weighted}."
+                )
+            }
+        }
     } else {
         let times = 1.0 / (1.0 - importance).max(f64::MIN_POSITIVE);
-        let times = if times > 1000.0 { "over 1000".to_owned() } else { format!("{times:.1}") };
-        format!("Removing it from the final model increases the squared error {times}-fold.")
+        let by = match times {
+            ..1.1 => format!("by {}", percent(times - 1.0)),
+            ..=1000.0 => format!("{times:.1}-fold"),
+            _ => "over 1000-fold".to_owned(),
+        };
+        format!("Removing it from the final model increases the squared error of the fit {by}.")
     }
 }
 
@@ -274,17 +282,23 @@ fn tie(
     let base = ModelSpec::with_own(spec.kind, others, spec.own.clone())?;
     let prepared = found.start.prepared;
     let without = TwoStageModel::new(prepared, &base, options)?;
-    let correlation = |rival: &String| {
-        let (own, other) = (base.with(id)?, base.with(rival)?);
-        let own = TwoStageModel::new(prepared, &own, options)?;
+    let own = base.with(id)?;
+    let own = TwoStageModel::new(prepared, &own, options)?;
+    let scale = Scale::of(validation_rms(&own.main), &prepared.unit());
+    let instead = |rival: &String| {
+        let other = base.with(rival)?;
         let other = TwoStageModel::new(prepared, &other, options)?;
-        Ok(format!("{:.2}", evidence::correlation(&without.main, &own.main, &other.main)))
+        let correlation = evidence::correlation(&without.main, &own.main, &other.main);
+        Ok(format!(
+            "{} with {rival} (correlation of the contributions {correlation:.2})",
+            scale.figure(validation_rms(&other.main))
+        ))
     };
-    let alike = confounded_with.iter().map(correlation).collect::<Result<Vec<String>, ModelError>>()?;
+    let instead = confounded_with.iter().map(instead).collect::<Result<Vec<String>, ModelError>>()?;
     Ok(format!(
-        " Confounded with {}: each reduces the error equally well (correlation of the contributions {}).",
-        list(confounded_with),
-        list(&alike)
+        " Confounded: in its place, the validation error is {} instead of {}.",
+        list(&instead),
+        scale.figure(validation_rms(&own.main))
     ))
 }
 
@@ -312,9 +326,13 @@ fn structure(found: &Findings, verdict: Verdict) -> Option<PairMap> {
     (verdict == Verdict::UnexplainedStructure).then(|| found.maps.structure(&found.start.prepared.main))?
 }
 
-/// The columns that the summary names for unexplained structure.
-fn shows_over(found: &Findings, structure: Option<&PairMap>) -> Vec<String> {
-    structure.and_then(|shown| narrative::shown_over(found, Some(shown))).unwrap_or_default().0
+/// The columns that the summary names for structure that remains with all suggestions.
+fn shows_over(found: &Findings) -> Vec<String> {
+    if found.end_verdict() != Verdict::UnexplainedStructure {
+        return Vec::new();
+    }
+    let shown = found.maps.structure(&found.start.prepared.main);
+    narrative::shown_over(found, shown.as_ref()).unwrap_or_default().0
 }
 
 /// The recommended next run.

@@ -75,8 +75,8 @@ fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion])
     if first.validation_rms >= fit.validation_rms {
         // The decision gives samples near reversals less weight.
         return format!(
-            "Away from reversals and rest, adding {effect} reduces the squared error by {}; over all samples the validation \
-             error is {with} with it and {error} without it; {floor}.",
+            "With less weight on reversals and rest, adding {effect} reduces the squared validation error by {}; over all \
+             samples the validation error is {with} with it and {error} without it; {floor}.",
             percent(found.ranking().first().map_or(0.0, |(_, share)| *share))
         );
     }
@@ -84,7 +84,9 @@ fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion])
         1 => String::new(),
         _ => format!(", and adding all of them to {}", unit.figure(complete.validation_rms)),
     };
-    format!("Adding {effect} reduces the validation error from {error} to {with}{all}; {floor}.")
+    let alone = first.effects_rms.map(|alone| format!(" ({} without the nuisance terms)", unit.figure(alone)));
+    let alone = alone.unwrap_or_default();
+    format!("Adding {effect} reduces the validation error from {error} to {with}{alone}{all}; {floor}.")
 }
 
 /// An effect with those that it is confounded with.
@@ -103,7 +105,8 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
     let unit = Scale::of(fit.validation_rms, &fit.unit);
     let (error, floor) = (unit.figure(fit.validation_rms), floor(found, fit, &unit));
     let verdict = found.end_verdict();
-    let text = match (verdict, undecided(found, &[fit], verdict, options)) {
+    let undecided = undecided(found, &[fit], verdict, options);
+    let text = match (verdict, &undecided) {
         (Verdict::UnexplainedStructure, _) => format!(
             "Unexplained structure remains: {}; {floor}. {}",
             structure(found, fit, shown),
@@ -129,8 +132,8 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
              decided: {why}."
         ),
     };
-    // For an otherwise adequate model, the sentence itself contains this.
-    let sized: &[&Fit] = if verdict == Verdict::UnexplainedStructure { &[fit] } else { &[] };
+    let is_said = undecided.is_some_and(|why| why.reason == UndecidedReason::ImpossibleParameter);
+    let sized: &[&Fit] = if is_said { &[] } else { &[fit] };
     attention(found, sized) + &text + &scatter(found, verdict, &fit.unit) + &open(found) + &rejected(found, &fit.unit)
 }
 
@@ -287,9 +290,6 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
     match verdict {
         Verdict::Adequate => String::new(),
         _ if !regions.is_empty() => String::new(),
-        Verdict::UnexplainedStructure => {
-            format!(" The residual is spread: no part of an axis is significant{}.", maps.nowhere(&fit.unit))
-        }
         _ => format!(" No part of an axis is significant{}.", maps.nowhere(&fit.unit)),
     }
 }
@@ -314,14 +314,28 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
             (UndecidedReason::TooFewBlocks, format!("{blocks} independent blocks are too few for a significance test"))
         }
         Verdict::Adequate if found.floor.rms.is_none() => (UndecidedReason::NoNoiseFloor, found.floor.source.clone()),
-        Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => (
-            UndecidedReason::NoNoiseFloor,
-            "a few moments hold nearly all of the variance between its repeats, so its noise floor is not known".into(),
-        ),
+        Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => above_floor(found),
         Verdict::Adequate | Verdict::MissingEffect => (UndecidedReason::ImpossibleParameter, impossible(fits)?),
         Verdict::UnexplainedStructure => return None,
     };
     Some(Undecided { reason, text })
+}
+
+/// An error above the noise floor that no test of structure explains.
+fn above_floor(found: &Findings) -> (UndecidedReason, String) {
+    match (found.floor.rms, found.floor.ci95) {
+        (Some(floor), Some(_)) => (
+            UndecidedReason::AboveNoiseFloor,
+            format!(
+                "the error is {:.1} times the noise floor, and no test shows its origin",
+                found.end_validation_rms / floor
+            ),
+        ),
+        _ => (
+            UndecidedReason::NoNoiseFloor,
+            "a few moments hold nearly all of the variance between its repeats, so its noise floor is not known".into(),
+        ),
+    }
 }
 
 /// A parameter that is physically impossible in all fits. With an additional curve in the model, the remaining linear
@@ -345,13 +359,14 @@ fn unexplained(found: &Findings) -> &'static str {
         return "No effect was tested.";
     }
     let is_refused = found.decided.as_ref().is_some_and(|decided| !decided.refused.is_empty());
-    match undetermined(found).next().is_some() || is_refused {
+    let reduces = |w: &Withdrawn| w.validation_rms < LISTED_LOSS * found.end_validation_rms;
+    match found.withdrawn.iter().any(reduces) || is_refused {
         true => "No effect of the library explains it with certainty.",
         false => "No effect of the library explains it.",
     }
 }
 
-/// Rejected effects that would reduce the error, but whose size the run does not determine.
+/// Rejected effects that would reduce the error, but that the run determines poorly.
 fn undetermined<'f, 'p>(found: &'f Findings<'p>) -> impl Iterator<Item = &'f Withdrawn<'p>> {
     let bound = LISTED_LOSS * found.end_validation_rms;
     found.withdrawn.iter().filter(move |w| w.why == RemovalReason::Unidentified && w.validation_rms < bound)
@@ -368,11 +383,11 @@ fn rejected(found: &Findings, unit: &str) -> String {
     let named: Vec<&str> = open.iter().map(|w| w.effect).rev().collect();
     let with = open.iter().map(|w| w.validation_rms).fold(f64::INFINITY, f64::min);
     let open = (!open.is_empty()).then(|| {
-        let (object, size) = if open.len() > 1 { ("the best of them", "their sizes") } else { ("it", "its size") };
+        let (object, size) = if open.len() > 1 { ("the best of them", "them") } else { ("it", "it") };
         let scale = Scale::of(found.end_validation_rms, unit);
         format!(
-            " Rejected: {}. With {object} the validation error would be {} instead of {}, but this run does not determine \
-             {size}.",
+            " Rejected: {}. With {object} the validation error would be {} instead of {}, but this run determines \
+             {size} poorly.",
             list(&all_marked(&named)),
             scale.figure(with),
             scale.figure(found.end_validation_rms)

@@ -153,9 +153,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     for (effect, alternatives) in &open.ties {
         let (experiment, vain) = offer.distinguish(effect, alternatives, open)?;
         if let Some(mut next) = experiment {
-            next.why.extend(
-                vain.map(|vain| format!("; no run within the limits of this bench is expected to distinguish {vain}")),
-            );
+            next.why.extend(vain.map(|vain| format!("; no run within these limits is expected to distinguish {vain}")));
             return Ok(next.into());
         }
         in_vain.extend(vain);
@@ -163,12 +161,12 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let next = offer.without_ties(open)?;
     let in_vain = (!in_vain.is_empty()).then(|| {
         let ties = list(&in_vain);
-        format!("run within the limits of this bench is expected to distinguish {ties}: use another speed, load or temperature")
+        format!("no run within these limits is expected to distinguish {ties}: use another speed, load or temperature")
     });
     Ok(match (next, in_vain) {
-        (Some(next), Some(vain)) => Experiment { why: format!("no {vain}; but {}", next.why), ..next }.into(),
+        (Some(next), Some(vain)) => Experiment { why: format!("{}; {vain}", next.why), ..next }.into(),
         (Some(next), None) => next.into(),
-        (None, vain) => Next { experiment: None, in_vain: vain.map(|vain| format!("No {vain}.")) },
+        (None, vain) => Next { experiment: None, in_vain: vain.map(|vain| format!("N{}.", &vain[1..])) },
     })
 }
 

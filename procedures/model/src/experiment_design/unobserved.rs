@@ -84,10 +84,10 @@ fn experiment(bid: ScoredRun, effects: &[&str], is_friction: bool) -> Experiment
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "it would make {} detectable, which the data so far could not show: {worth} would be at least {:.1} standard \
+            "it would make {} detectable at a size at which the data so far does not show it: {worth} would be {} standard \
              deviations{}",
             list(effects),
-            bid.z.min(100.0),
+            if bid.z > 100.0 { "more than 100".to_owned() } else { format!("at least {:.1}", bid.z) },
             bid.choice.provided(),
         ),
         expected_z: Some(bid.z),

@@ -65,7 +65,9 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
             let (mut state, mut note) = parameter_state::judge(&slot, ci95, half == 0.0 && value == 0.0);
             if is_at_bound {
                 state = ParameterState::AtBound;
-                note = Some("at its physical bound: the unconstrained estimate lies beyond it by chance".into());
+                note = Some(
+                    "at its physical bound: the unconstrained estimate lies beyond it, but not significantly".into(),
+                );
             }
             parameters.push(Parameter {
                 effect: info.id.into(),

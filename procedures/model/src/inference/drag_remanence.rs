@@ -5,6 +5,7 @@ use crate::effects::brake::{drag, hysteresis};
 use crate::regression::linear_model::LinearModel;
 use crate::report::fit::Parameter;
 use crate::signal::{Signal, Signals};
+use crate::stats::summary::mean;
 use crate::thresholds::NO_CURRENT;
 use crate::view::View;
 use crate::words::figure;
@@ -15,12 +16,15 @@ pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
     let Some(hysteresis) = terms.terms.iter().position(|t| t.id() == hysteresis::ID) else { return };
     let Some(drag) = parameters.iter_mut().find(|p| p.effect == drag::ID) else { return };
     let fresh = fresh(terms);
+    // Demagnetised, it holds no more than after a current.
+    let most = without_current(terms).unwrap_or(f64::INFINITY);
     let empty = fresh.unwrap_or_else(|| {
         let term = &terms.terms[hysteresis];
         let whole = term.effect.columns(term.form.name, &term.shape, &demagnetised());
         let coefficients = &terms.linear().coefficients[hysteresis];
         drag.value + whole.iter().zip(coefficients).map(|(column, coefficient)| column[0] * coefficient).sum::<f64>()
     });
+    let empty = empty.min(most);
     let empty = empty.max(0.0);
     if (drag.ci95[0]..=drag.ci95[1]).contains(&empty) {
         return;
@@ -37,6 +41,15 @@ pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
     });
 }
 
+/// Mean torque of all rows without current.
+fn without_current(terms: &LinearModel) -> Option<f64> {
+    let view = &terms.problem.view;
+    let none = NO_CURRENT * view.peak(Signal::Current);
+    let rows = view.get(Signal::Current).iter().zip(&terms.problem.target).filter(|(current, _)| current.abs() < none);
+    let held: Vec<f64> = rows.map(|(_, torque)| *torque).collect();
+    (!held.is_empty()).then(|| mean(&held))
+}
+
 /// Torque before the first current of a recording that starts demagnetised.
 fn fresh(terms: &LinearModel) -> Option<f64> {
     let view = &terms.problem.view;
@@ -48,7 +61,7 @@ fn fresh(terms: &LinearModel) -> Option<f64> {
         (first..current.len()).take_while(|row| current[*row].abs() < none)
     });
     let held: Vec<f64> = rows.map(|row| terms.problem.target[row]).collect();
-    (!held.is_empty()).then(|| held.iter().sum::<f64>() / held.len() as f64)
+    (!held.is_empty()).then(|| mean(&held))
 }
 
 /// A single sample without current and without loading history.

@@ -60,14 +60,14 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
                 (true, false) => format!("at least {}", say(least)),
                 _ => format!("at most {}", say(most)),
             };
-            let cure = "another effect is missing, or a column has the wrong sign or unit";
+            let cure = "another effect is missing, another term of the model takes its part, or a column has the wrong sign or unit";
             return (ParameterState::Impossible, Some(format!("is outside its physical range ({possible}): {cure}")));
         }
         return (ParameterState::Ok, None);
     };
     let (min, max) = (shape.min, shape.max);
     if shape.is_edge(slot.value) {
-        let words = format!("at bound: this data covers {} to {}", say(min), say(max));
+        let words = format!("at the end of the searched range, {} to {}", say(min), say(max));
         return (ParameterState::AtBound, Some(words));
     }
     if dead {

@@ -56,8 +56,8 @@ struct Trial<'l, 'p> {
 /// base model. `forms` is the number of tested forms.
 ///
 /// A candidate shows outside reversals and rests if it reaches the practical share on the rows that are not `near` one,
-/// with the model fitted to these rows alone. A steady-state effect has to; a form that differs from the model only at
-/// reversals does not.
+/// with the model fitted to these rows alone. A steady-state effect has to, unless it is a wave over an angle; a form that
+/// differs from the model only at reversals does not.
 pub fn evidence<'l, 'p>(
     ridge: &BlockedRidge,
     candidates: &[&'l Regressor<'p>],
@@ -88,14 +88,17 @@ fn attempt<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Optio
     if !is_possible(&added.coefficients()) {
         return Tried::Rejected;
     }
-    let is_steady = form.effect.traits().regime == Regime::SteadyState;
+    // Form error is a function of the time since a reversal, not of an angle: a wave has to exceed it, but need not show
+    // elsewhere.
+    let traits = form.effect.traits();
+    let has_to = traits.regime == Regime::SteadyState && traits.wave.is_none();
     let shows_outside = match outside.map(|outside| (outside.left(), outside.added(&form.columns, LEAST_TOLERANCE))) {
-        None => is_steady,
-        Some((_, None)) if is_steady => return Tried::Hidden(form),
+        None => traits.regime == Regime::SteadyState,
+        Some((_, None)) if has_to => return Tried::Hidden(form),
         Some((_, None)) => false,
         Some((left, Some((coefficients, taken)))) => is_possible(&coefficients) && taken > DECISION_SHARE * left,
     };
-    if is_steady && !shows_outside {
+    if has_to && !shows_outside {
         return Tried::Rejected;
     }
     let chance = chance(added.wald(), added.size, ridge.blocks.len());

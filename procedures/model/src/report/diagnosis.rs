@@ -19,6 +19,8 @@ pub enum UndecidedReason {
     TooFewBlocks,
     /// The noise floor is not known.
     NoNoiseFloor,
+    /// The validation error is far above the noise floor, and no test shows its origin.
+    AboveNoiseFloor,
     /// A parameter is physically impossible in every model.
     ImpossibleParameter,
 }

@@ -27,7 +27,7 @@ pub enum RejectionReason {
     FormError,
     /// The model has the largest number of added effects.
     ModelFull,
-    /// Its size is known, and with it the error is not smaller.
+    /// With it, the error is not smaller.
     NoReduction,
     /// It was added and removed again.
     #[serde(untagged)]
@@ -119,7 +119,9 @@ impl RemovalReason {
             RemovalReason::Insignificant => "it adds nothing to the other effects",
             RemovalReason::Swapped => "another effect predicts better in its place",
             RemovalReason::RandomWalk => "a zero that drifts over time explains as much",
-            RemovalReason::Unidentified => "this run does not determine its size",
+            RemovalReason::Unidentified => {
+                "this run determines its size or shape poorly, and the error hardly increases without it"
+            }
             RemovalReason::PartialExplanation => "it explains only part of the structure over its axis",
             RemovalReason::Spurious => "it explains nothing beyond the remaining structure",
         }

@@ -43,7 +43,7 @@ fn bounded(fit: &Fit, silent: Vec<Silent>, mut not_visible: Vec<Invisible>) -> (
     not_visible.extend(hidden.into_iter().map(|one| {
         let share = one.minimum_detectable_rms / signal_rms;
         let why = format!(
-            "its detection limit is {} of the measured signal, more than {}; measure more repeats, or a wider range",
+            "its detection limit is {} of the measured signal, and less than {} is required; measure more repeats, or a wider range",
             percent(share),
             percent(WORTH_SEEING)
         );

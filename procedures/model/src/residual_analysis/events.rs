@@ -19,8 +19,8 @@ const LENGTHS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 const STRETCHES: usize = 16;
 /// Rows on each side of a reversal that are excluded.
 const REVERSAL_ROWS: usize = 2;
-/// Largest number of events; more of them are no isolated events.
-const MOST: usize = 40;
+/// Largest number of tested sections.
+const MOST: usize = 400;
 /// Median absolute value of a normal variable, in standard deviations.
 const MEDIAN: f64 = 0.6745;
 
@@ -85,7 +85,7 @@ impl<'p> Events<'p> {
                 found.push(Event { rows, mean });
             }
         }
-        found
+        joined(found)
     }
 
     /// Whether the section begins within its own length after the start of a recording.
@@ -133,8 +133,31 @@ impl<'p> Events<'p> {
     /// Start and end time of an event [s].
     pub fn span_s(problem: &Problem, event: &Event) -> [f64; 2] {
         let time = problem.view.get(Signal::Time);
-        [time[event.rows.start], time[event.rows.end - 1]]
+        [time[event.rows.start], time[event.rows.end.min(time.len() - 1)]]
     }
+}
+
+/// Neighbouring sections of one sign as one event, if the gap between them is no longer than the shorter one. The
+/// largest mean is first.
+fn joined(mut sections: Vec<Event>) -> Vec<Event> {
+    sections.sort_by_key(|section| section.rows.start);
+    let mut events: Vec<Event> = Vec::new();
+    for next in sections {
+        let follows = |last: &&mut Event| {
+            let shorter = last.rows.len().min(next.rows.len());
+            last.mean * next.mean > 0.0 && next.rows.start - last.rows.end <= shorter
+        };
+        match events.last_mut().filter(follows) {
+            Some(last) => {
+                let (n, more) = (last.rows.len() as f64, next.rows.len() as f64);
+                last.mean = (n * last.mean + more * next.mean) / (n + more);
+                last.rows.end = next.rows.end;
+            }
+            None => events.push(next),
+        }
+    }
+    events.sort_by(|a, b| b.mean.abs().total_cmp(&a.mean.abs()));
+    events
 }
 
 #[cfg(test)]

@@ -110,22 +110,22 @@ fn unknown(prepared: &Prepared) -> String {
             (prepared.column_name(different_motion.signal), prepared.column_unit(different_motion.signal));
         let say = |value: f64| figure(prepared.column_scale(different_motion.signal) * value, &unit);
         return format!(
-            "no noise floor: the repeats are different motions; their {} differs by {} RMS at the same moment, and varies \
-             by {} in the whole run",
+            "no noise floor, because the repeats are different motions; their {} differs by {} RMS at the same moment \
+             (standard deviation in the whole run: {})",
             spoken(column),
             say(different_motion.apart),
             say(different_motion.spread)
         );
     }
     if !problem.different_history.is_empty() {
-        return "no noise floor: the brake passed no state twice on the same branch; repeat its loops in the same order"
+        return "no noise floor, because the brake passed no state twice on the same branch; repeat its loops in the same order"
             .into();
     }
     let source = match problem.repeat.iter().any(|r| *r != problem.repeat[0]) {
         true => {
-            "no noise floor: the repeats share no condition and phase; use the same steps in every repeat, in any order"
+            "no noise floor, because the repeats share no condition and phase; use the same steps in every repeat, in any order"
         }
-        false => "no noise floor: the run has no repeats of the same profile",
+        false => "no noise floor, because the run has no repeats of the same profile",
     };
     source.to_owned()
 }

@@ -87,7 +87,7 @@ mod tests {
         let options = Options::default();
         let spec = ModelSpec::parse(Kind::Friction, "coulomb, viscous, inertia").unwrap();
         let found = |late: usize| {
-            let prepared = prepare(&staircase(late, 0.0), &options).unwrap();
+            let prepared = prepare(&staircase(0.03, late, 0.0), &options).unwrap();
             let model = TwoStageModel::new(&prepared, &spec, &options).unwrap();
             delay(&model, &options).map(|(scored, _)| scored.term.id().to_owned())
         };

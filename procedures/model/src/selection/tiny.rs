@@ -199,7 +199,7 @@ impl Tiny {
 
 /// A run in steps of 2 to 16 rad/s in both directions at 250 Hz, with Coulomb, viscous and inertia torque. The torque is
 /// late by some rows, and the direction of friction follows the motion over a displacement [rad].
-pub fn staircase(late: usize, displacement: f64) -> RunTable {
+pub fn staircase(coulomb_nm: f64, late: usize, displacement: f64) -> RunTable {
     const STEP_S: f64 = 0.004;
     let speed_of = |leg: usize| 2.0 * (leg / 2 % 8 + 1) as f64 * if leg.is_multiple_of(2) { 1.0 } else { -1.0 };
     let (mut motion, mut torques) = (Vec::new(), Vec::new());
@@ -215,7 +215,7 @@ pub fn staircase(late: usize, displacement: f64) -> RunTable {
             direction = if displacement > 0.0 { direction } else { velocity.signum() };
             motion.push(position);
             let noise = 1e-3 * scatter(motion.len());
-            torques.push(0.03 * direction + 0.001 * velocity + 2e-4 * acceleration + noise);
+            torques.push(coulomb_nm * direction + 0.001 * velocity + 2e-4 * acceleration + noise);
         }
     }
     let mut trace = Trace::new(["time_s", "motor_position_rad", "motor_current_a"].map(Channel::new).to_vec());

@@ -30,7 +30,7 @@ pub fn user_formula(columns: &[String], fit: &Fit) {
 pub fn next_run(experiment: Option<&Experiment>) {
     let Some(experiment) = experiment else { return };
     println!();
-    println!("recommended next run, within the range of this run: {}", experiment.why);
+    println!("recommended next run: {}", experiment.why);
     if let Some(duration_s) = experiment.expected_duration_s {
         println!("  at most {duration_s:.0} s of bench time:");
     }

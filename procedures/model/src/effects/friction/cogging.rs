@@ -35,9 +35,8 @@ impl Effect for Cogging {
     /// a wave over them.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let mut forms = match view.constants.followed_hz {
-            Some(_) => crate::effects::harmonic_form(view, Signal::Position, 1..=40),
             None if view.turned(Signal::Position) < COGGING_TURN => Vec::new(),
-            None => crate::effects::repeated_harmonic_form(view, Signal::Position, 1..=120),
+            _ => crate::effects::repeated_harmonic_form(view, Signal::Position, 1..=120),
         };
         forms.iter_mut().for_each(|f| f.name = crate::effects::SEVERAL_HARMONICS);
         forms

@@ -31,8 +31,10 @@ pub fn failed(run: &RunTable) -> Vec<String> {
         let long: Vec<&Range<usize>> = same.iter().filter(|range| range.len() >= SATURATED_SAMPLES as usize).collect();
         let long_resting: usize = long.iter().map(|range| range.len() - 1).sum();
         let rest = (values.len() - 1 - long_resting).max(1) as f64;
-        let is_fine =
-            (resting - long_resting) as f64 <= (1.0 - FINE_READINGS) * rest && 2 * long_resting < values.len();
+        // One long stretch is a fault; a coarse column has many.
+        let longest = long.iter().map(|range| range.len() - 1).max().unwrap_or(0);
+        let is_fine = (resting - long_resting) as f64 <= (1.0 - FINE_READINGS) * rest
+            && 2 * (long_resting - longest) < values.len() - 1 - longest;
         is_fine.then(|| clipped(run, name, values, &long).or_else(|| stuck(run, name, values, &long, angle)))?
     });
     found.collect()
@@ -72,7 +74,7 @@ fn stuck(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>], ang
     (range.len() >= STUCK_SAMPLES as usize && to_s - from_s >= STUCK_S).then(|| {
         let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
         format!(
-            "{name} stays at {} from {from_s:.3} s to {to_s:.3} s, while the joint moves: its sensor was not read",
+            "{name} stays at {} from {from_s:.3} s to {to_s:.3} s, while the joint moves: the drive was off, or the sensor was not read",
             figure(values[range.start], &unit)
         )
     })
@@ -101,6 +103,9 @@ pub fn spikes(run: &RunTable) -> Option<String> {
             off > least && before * after > 0.0 && (w[2] - w[0]).abs() < SPIKE_NEIGHBOURS * off
         };
         let mut found: Vec<usize> = (1..).zip(values.windows(3)).filter(|(_, w)| is_alone(w)).map(|(i, _)| i).collect();
+        // An oscillation from sample to sample has no single sample.
+        let all = found.clone();
+        found.retain(|i| all.binary_search(&(i + 1)).is_err() && all.binary_search(&(i - 1)).is_err());
         if !found.is_empty() {
             let fastest = (steps..angle.len()).map(|i| way(i - steps, i).abs()).fold(0.0, f64::max);
             found.retain(|i| !is_pushed(*i, fastest));

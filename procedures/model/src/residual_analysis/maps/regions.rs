@@ -206,7 +206,7 @@ impl Stretch<'_> {
             return format!("at {one} of about {}", say(x.bins[self.first].centre));
         }
         match (self.first == 0, self.last == end) {
-            (true, true) => format!("at every {quantity}"),
+            (true, true) => format!("on average over the {quantity}"),
             (true, false) => format!("at {one} below {}", say(to)),
             (false, true) => format!("at {one} above {}", say(from)),
             (false, false) => format!("at {one} between {} and {}", say(from), say(to)),

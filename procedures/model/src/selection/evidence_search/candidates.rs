@@ -44,7 +44,8 @@ pub fn candidates<'l, 'p>(
     if is_delayed(now, solution) {
         judge_without(FormErrorKind::Jerk, &of(&|c| c.id() == DELAY));
     }
-    judge_without(FormErrorKind::Bristle, &of(&|c| c.effect.traits().regime == Regime::Hysteresis));
+    // In motion at nearly one frequency, operators of a large displacement represent the acceleration.
+    judge_without(FormErrorKind::Bristle, &of(&|c| c.effect.traits().regime != Regime::SteadyState && c.id() != DELAY));
     // On one sine the snap is the acceleration with the opposite sign, and the jerk is the velocity.
     for kind in unpenalised_form_error(now, solution) {
         judge_without(kind, &hidden);

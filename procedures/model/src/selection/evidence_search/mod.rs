@@ -13,6 +13,7 @@ pub(crate) mod rules;
 
 use crate::preprocess::Prepared;
 use crate::regression::candidates::CandidateSet;
+use crate::regression::cross_validation::validation_rms;
 use crate::regression::evidence::Evidence;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::solution::Solution;
@@ -26,7 +27,7 @@ use crate::selection::evidence_search::candidates::{candidates, in_turn, is_tied
 use crate::selection::evidence_search::insignificant::insignificant;
 use crate::selection::evidence_search::power_balance::power_balance;
 use crate::selection::evidence_search::refused::{EvidenceResult, Refused};
-use crate::selection::evidence_search::rules::Figures;
+use crate::selection::evidence_search::rules::{Figures, Refit};
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
 use crate::thresholds::{LEFT_SHARE, MOST_NAMED};
@@ -78,6 +79,7 @@ pub fn search<'p>(
         }
         refused = search.grow(most.min(MOST_NAMED as usize))?;
     }
+    search.replace()?;
     while let Some(id) = insignificant(search.path.end(), spec) {
         search.remove(id, RemovalReason::Insignificant)?;
     }
@@ -102,7 +104,7 @@ impl<'p> Search<'_, 'p> {
             for e in in_turn(&passing) {
                 let effects = now.effects.iter().cloned().chain([e.id().to_owned()]).collect();
                 let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
-                if rules::model_rejection(now, &solution, &after).is_none() {
+                if rules::model_rejection(&Refit { now, solution: &solution, id: e.id(), after: &after }).is_none() {
                     named = Some((e, after));
                     break;
                 }
@@ -118,14 +120,7 @@ impl<'p> Search<'_, 'p> {
                     ties.push(tied.best.id());
                 }
             }
-            let scored = ScoredCandidate {
-                term: best.best.term(now.main.problem),
-                share: best.gain,
-                validation_losses: best.losses.iter().sum(),
-                p_value: best.p_value,
-                reason: AdditionReason::ErrorReduction,
-                losses: best.losses.clone(),
-            };
+            let scored = scored(best, now, AdditionReason::ErrorReduction);
             self.path.push(SelectionStep { added: Some(scored), removed: None, ties, after });
         }
     }
@@ -139,6 +134,36 @@ impl<'p> Search<'_, 'p> {
             (Some(best), Some(losses)) => is_tie(&best, &losses),
             _ => true,
         })
+    }
+
+    /// Replaces several added effects by one that ties with each of them, if the model with that one passes the rules and
+    /// its validation error is not larger: of two models the simpler one.
+    fn replace(&mut self) -> Result<(), ModelError> {
+        let Some((set, rival)) = shared_tie(&self.path) else { return Ok(()) };
+        let end = self.path.end();
+        let others: Vec<String> = end.effects.iter().filter(|e| !set.contains(&e.as_str())).cloned().collect();
+        let base = TwoStageModel::decided(self.prepared, self.spec, others.clone())?;
+        let with = others.into_iter().chain([rival.to_owned()]).collect();
+        let after = TwoStageModel::decided(self.prepared, self.spec, with)?;
+        let Some(solution) = Solution::of(&base.main) else { return Ok(()) };
+        let library = self.libraries.of(&base.main, self.prepared, self.spec);
+        let forms = library.candidates.iter().filter(|c| !self.spec.contains(c.id())).count();
+        let all = candidates(&base, &solution, library, forms);
+        let refit = Refit { now: &base, solution: &solution, id: rival, after: &after };
+        let passes = |e: &&Evidence| {
+            let figures = Figures::of(e, self.options.alpha, false);
+            e.id() == rival && rules::rejection(&figures).is_none() && rules::model_rejection(&refit).is_none()
+        };
+        let Some(found) = all.iter().find(passes) else { return Ok(()) };
+        if validation_rms(&after.main) > validation_rms(&end.main) {
+            return Ok(());
+        }
+        let scored = scored(found, &base, AdditionReason::Exchange);
+        for id in set {
+            self.remove(id, RemovalReason::Swapped)?;
+        }
+        self.path.push(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after });
+        Ok(())
     }
 
     fn remove(&mut self, id: &'p str, why: RemovalReason) -> Result<(), ModelError> {
@@ -196,4 +221,29 @@ impl<'p> Search<'_, 'p> {
             decided: Some(EvidenceResult { left, refused }),
         })
     }
+}
+
+/// The candidate of a search step.
+fn scored<'p>(found: &Evidence<'_, 'p>, now: &TwoStageModel<'p>, reason: AdditionReason) -> ScoredCandidate<'p> {
+    ScoredCandidate {
+        term: found.best.term(now.main.problem),
+        share: found.gain,
+        validation_losses: found.losses.iter().sum(),
+        p_value: found.p_value,
+        reason,
+        losses: found.losses.clone(),
+    }
+}
+
+/// Several added effects, and the first effect that ties with each of them.
+fn shared_tie<'p>(path: &Path<'_, 'p>) -> Option<(Vec<&'p str>, &'p str)> {
+    let named: Vec<(&'p str, &[&'p str])> =
+        path.advances.iter().filter_map(|step| Some((step.added.as_ref()?.term.id(), &step.ties[..]))).collect();
+    let is_in = |id: &str| path.end().effects.iter().any(|e| e == id);
+    let rivals = named.iter().flat_map(|(_, ties)| ties.iter().copied()).filter(|rival| !is_in(rival));
+    let of = |rival: &'p str| {
+        let set: Vec<&str> = named.iter().filter(|(_, ties)| ties.contains(&rival)).map(|(id, _)| *id).collect();
+        (set.len() > 1).then_some((set, rival))
+    };
+    rivals.into_iter().find_map(of)
 }

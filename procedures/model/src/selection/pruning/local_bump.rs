@@ -7,33 +7,32 @@ use crate::regression::linear_model::Term;
 use crate::selection::floating_search::FloatingSearch;
 use crate::selection::pruning::partial_explanation::least_whole;
 use crate::thresholds::PERIODS_SEEN;
+use crate::view::View;
 
 /// A wave with less than two periods in the covered part of a turn, if a free function of the angle would explain more.
 pub fn bump<'p>(search: &FloatingSearch<'_, 'p>) -> Option<&'p str> {
     let view = &search.now.problem.view;
-    let is_open = |term: &&Term<'p>| {
-        let turns = term.effect.traits().wave.map(|angle| view.turns(angle));
-        turns.zip(term.shape.first()).is_some_and(|(turns, order)| turns < 1.0 && order * turns < PERIODS_SEEN)
-    };
-    let open = search.added().find(is_open)?;
+    let open = search.added().find(|term| is_open(term, view))?;
     let axis = search.prepared.column_name(open.effect.traits().wave?);
-    least_whole(search, search.added().filter(is_open), axis)
+    least_whole(search, search.added().filter(|term| is_open(term, view)), axis)
+}
+
+/// Whether the data covers only a part of a turn, and less than two periods of the wave.
+fn is_open(term: &Term, view: &View) -> bool {
+    let turns = term.effect.traits().wave.map(|angle| view.turns(angle));
+    turns.zip(term.shape.first()).is_some_and(|(turns, order)| turns < 1.0 && order * turns < PERIODS_SEEN)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::is_open;
     use crate::selection::tiny::Tiny;
     use jointbench_instrument::Kind;
 
     #[test]
-    fn a_wave_over_part_of_a_turn_does_not_stand_for_a_bump() {
-        let removed = |over_angle: fn(f64) -> f64| {
-            let tiny = Tiny::over(0.4, Kind::Friction, &["coulomb"], |row| {
-                5.0 * row.direction + over_angle(row.angle) + 0.02 * row.scatter
-            });
-            tiny.removed(&["cogging"], super::bump)
-        };
-        assert_eq!(removed(|angle| f64::from(u8::from((0.6..1.6).contains(&angle)))).as_deref(), Some("cogging"));
-        assert_eq!(removed(|angle| (4.0 * angle).cos()), None);
+    fn a_wave_is_judged_if_less_than_two_periods_are_covered() {
+        let tiny = Tiny::over(0.4, Kind::Encoder, &["offset"], |row| row.scatter);
+        let is_judged = |order: f64| is_open(&tiny.term("harmonic_n", vec![order]), &tiny.prepared.main.view);
+        assert!(is_judged(3.0) && is_judged(4.0) && !is_judged(6.0));
     }
 }

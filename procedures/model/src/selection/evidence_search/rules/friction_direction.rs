@@ -4,10 +4,10 @@
 //! A delayed torque also bends around reversals, but friction directions do not follow it.
 
 use crate::regression::solution::Solution;
-use crate::regression::two_stage_model::TwoStageModel;
+use crate::selection::evidence_search::rules::Refit;
 use crate::thresholds::FLOOR_RATIO;
 
-pub(super) fn passes(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> bool {
+pub(super) fn passes(Refit { now, solution, after, .. }: &Refit) -> bool {
     let Some(form_error) = after.main.problem.form_error.as_deref() else { return true };
     std::ptr::eq(now.main.problem, after.main.problem)
         || Solution::weighted(&after.main, form_error, solution.weight.clone(), None).ridge.loss()

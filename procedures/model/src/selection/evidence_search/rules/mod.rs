@@ -3,8 +3,10 @@
 pub(crate) mod error_reduction;
 pub(crate) mod friction_direction;
 pub(crate) mod model_size;
+pub(crate) mod nonzero_size;
 pub(crate) mod significance;
 pub(crate) mod standard_error;
+pub(crate) mod whole_error;
 
 use crate::regression::evidence::Evidence;
 use crate::regression::solution::Solution;
@@ -35,12 +37,22 @@ impl Figures {
     }
 }
 
+/// A model before and after a candidate.
+pub(crate) struct Refit<'r, 'p> {
+    pub now: &'r TwoStageModel<'p>,
+    /// The solution before.
+    pub solution: &'r Solution,
+    /// Id of the candidate.
+    pub id: &'r str,
+    pub after: &'r TwoStageModel<'p>,
+}
+
 /// What a rule judges.
 enum Test {
     /// The figures of the candidate.
     Figures(fn(&Figures) -> bool),
-    /// The model before and after the candidate, and the solution before.
-    Model(fn(&TwoStageModel, &Solution, &TwoStageModel) -> bool),
+    /// The model before and after the candidate.
+    Model(fn(&Refit) -> bool),
 }
 
 /// A rule that a candidate has to pass, with the reason for the candidates that it rejects.
@@ -50,12 +62,14 @@ struct Rule {
 }
 
 /// All rules by name, in the order in which they run.
-const RULES: [(&str, Rule); 5] = [
+const RULES: [(&str, Rule); 7] = [
     ("significance", Rule { reason: RejectionReason::NotSignificant, test: Test::Figures(significance::passes) }),
     ("standard error", Rule { reason: RejectionReason::FewBlocks, test: Test::Figures(standard_error::passes) }),
     ("error reduction", Rule { reason: RejectionReason::FormError, test: Test::Figures(error_reduction::passes) }),
     ("model size", Rule { reason: RejectionReason::ModelFull, test: Test::Figures(model_size::passes) }),
     ("friction direction", Rule { reason: RejectionReason::FormError, test: Test::Model(friction_direction::passes) }),
+    ("nonzero size", Rule { reason: RejectionReason::FormError, test: Test::Model(nonzero_size::passes) }),
+    ("whole error", Rule { reason: RejectionReason::NoReduction, test: Test::Model(whole_error::passes) }),
 ];
 
 /// Why the figures of a candidate reject it. `None` for a candidate whose model has to be judged.
@@ -65,12 +79,8 @@ pub(crate) fn rejection(figures: &Figures) -> Option<RejectionReason> {
 }
 
 /// Why the model with the candidate rejects it.
-pub(crate) fn model_rejection(
-    now: &TwoStageModel,
-    solution: &Solution,
-    after: &TwoStageModel,
-) -> Option<RejectionReason> {
-    let rejects = |rule: &Rule| matches!(rule.test, Test::Model(passes) if !passes(now, solution, after));
+pub(crate) fn model_rejection(refit: &Refit) -> Option<RejectionReason> {
+    let rejects = |rule: &Rule| matches!(rule.test, Test::Model(passes) if !passes(refit));
     RULES.iter().map(|(_, rule)| rule).find(|rule| rejects(rule)).map(|rule| rule.reason)
 }
 

@@ -1,0 +1,43 @@
+//! The model with the candidate gives it a size.
+//!
+//! A coefficient that cannot be negative is held at zero if its estimate is negative by chance. If all coefficients of
+//! the candidate are, the error falls because of its nuisance terms only: another form, or form error.
+
+use crate::regression::linear_model::LinearModel;
+use crate::regression::solution::Solution;
+use crate::selection::evidence_search::rules::Refit;
+use std::ops::Range;
+
+pub(super) fn passes(refit: &Refit) -> bool {
+    has_size(refit.id, &refit.after.main)
+}
+
+fn has_size(id: &str, model: &LinearModel) -> bool {
+    let Some(solution) = Solution::of(model) else { return true };
+    let mut first = 0;
+    for term in &model.terms {
+        let own = first..first + term.columns.len();
+        first = own.end;
+        if term.id() == id {
+            return !is_held(own, &solution.bound);
+        }
+    }
+    true
+}
+
+/// Whether all coefficients at these places are held at zero.
+fn is_held(mut own: Range<usize>, bound: &[(usize, f64)]) -> bool {
+    own.all(|at| bound.iter().any(|(held, _)| *held == at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_held;
+
+    #[test]
+    fn an_effect_has_a_size_if_one_of_its_coefficients_is_free() {
+        let bound = [(1, 0.1), (2, 0.2)];
+        assert!(is_held(1..3, &bound) && is_held(2..3, &bound));
+        assert!(!is_held(0..2, &bound) && !is_held(0..1, &bound));
+    }
+}
