@@ -64,7 +64,7 @@ fn a_job_fails_by_the_limits_of_its_part() {
     let limits = folder.path().join("ci/limits.toml");
     let given = std::fs::read_to_string(&limits).expect("the limits");
     // The value is near 0.029 Nm: beyond the first limit, and inside the second one by less than its guard band.
-    let in_band = "the value is in the guard band";
+    let in_band = "the value itself is in the guard band";
     for (upper, code, why) in [("upper = 0.02", 1, "tau_c = "), ("upper = 0.035\nguard_band = 0.01", 3, in_band)] {
         std::fs::write(&limits, given.replace("upper = 0.035", upper)).expect("written");
         let ended = job(folder.path(), &command_of("ci/gitlab.yml"), &daemon.base).output().expect("sh runs");
