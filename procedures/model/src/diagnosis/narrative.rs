@@ -323,19 +323,14 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
 
 /// An error above the noise floor that no test of structure explains.
 fn above_floor(found: &Findings) -> (UndecidedReason, String) {
-    match (found.floor.rms, found.floor.ci95) {
-        (Some(floor), Some(_)) => (
-            UndecidedReason::AboveNoiseFloor,
-            format!(
-                "the error is {:.1} times the noise floor, and no test shows its origin",
-                found.end_validation_rms / floor
-            ),
-        ),
-        _ => (
-            UndecidedReason::NoNoiseFloor,
-            "a few moments hold nearly all of the variance between its repeats, so its noise floor is not known".into(),
-        ),
-    }
+    const UNKNOWN: &str =
+        "a few moments hold nearly all of the variance between its repeats, so its noise floor is not known";
+    let (Some(floor), Some(_)) = (found.floor.rms, found.floor.ci95) else {
+        return (UndecidedReason::NoNoiseFloor, UNKNOWN.into());
+    };
+    let times = found.end_validation_rms / floor;
+    let why = format!("the error is {times:.1} times the noise floor, and no test shows its origin");
+    (UndecidedReason::AboveNoiseFloor, why)
 }
 
 /// A parameter that is physically impossible in all fits. With an additional curve in the model, the remaining linear

@@ -15,6 +15,7 @@ pub(crate) mod offset_terms;
 pub(crate) mod omitted_variable_bias;
 pub(crate) mod pruning;
 pub(crate) mod ramp_stage;
+pub(crate) mod refused;
 pub(crate) mod removal;
 pub(crate) mod staged_search;
 #[cfg(test)]

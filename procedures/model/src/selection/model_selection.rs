@@ -6,7 +6,7 @@ use crate::report::diagnosis::Imitated;
 use crate::residual_analysis::maps::Maps;
 use crate::selection::advance::SelectionStep;
 use crate::selection::detection_limit::DetectionLimit;
-use crate::selection::evidence_search::refused::EvidenceResult;
+use crate::selection::refused::EvidenceResult;
 use crate::selection::removal::Withdrawn;
 
 /// The steps from the given model to the last one, with all findings.

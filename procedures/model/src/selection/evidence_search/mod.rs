@@ -8,7 +8,6 @@ mod candidates;
 mod detection_limits;
 mod insignificant;
 mod power_balance;
-pub(crate) mod refused;
 pub(crate) mod rules;
 
 use crate::preprocess::Prepared;
@@ -18,7 +17,7 @@ use crate::regression::evidence::Evidence;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::solution::Solution;
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::reasons::{AdditionReason, RemovalReason};
+use crate::report::reasons::{AdditionReason, RejectionReason, RemovalReason};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::{self, Unexplained};
 use crate::selection::advance::{Path, SelectionStep};
@@ -26,10 +25,11 @@ use crate::selection::equivalence::is_tie;
 use crate::selection::evidence_search::candidates::{candidates, in_turn, is_tied};
 use crate::selection::evidence_search::insignificant::insignificant;
 use crate::selection::evidence_search::power_balance::power_balance;
-use crate::selection::evidence_search::refused::{EvidenceResult, Refused};
+use crate::selection::evidence_search::rules::error_reduction::least_share;
 use crate::selection::evidence_search::rules::{Figures, Refit};
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
+use crate::selection::refused::{EvidenceResult, Refused};
 use crate::thresholds::{LEFT_SHARE, MOST_NAMED};
 use crate::{ModelError, ModelSpec, Options};
 use std::cell::OnceCell;
@@ -111,7 +111,7 @@ impl<'p> Search<'_, 'p> {
             }
             let Some((best, after)) = named else {
                 let large = all.iter().filter(|e| e.gain > LEFT_SHARE);
-                return Ok(large.map(|e| Refused::of(e.best.id(), figures(e))).collect());
+                return Ok(large.map(|e| refused(e, &figures(e))).collect());
             };
             let id = best.best.id();
             let mut ties = Vec::new();
@@ -220,6 +220,17 @@ impl<'p> Search<'_, 'p> {
             open: None,
             decided: Some(EvidenceResult { left, refused }),
         })
+    }
+}
+
+/// A candidate whose figures pass was rejected with its model, in which form error explains as much.
+fn refused<'p>(found: &Evidence<'_, 'p>, figures: &Figures) -> Refused<'p> {
+    Refused {
+        effect: found.best.id(),
+        gain: found.gain,
+        p_value: found.p_value,
+        least: least_share(found.form_error_imitates),
+        reason: rules::rejection(figures).unwrap_or(RejectionReason::FormError),
     }
 }
 
