@@ -119,7 +119,10 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     println!("{}", diagnosis.summary);
     regions(&diagnosis.regions, &diagnosis.fit.unit);
     if advice::is_any(diagnosis.undecided.as_ref(), diagnosis.verdict) {
-        advice::user_formula(&diagnosis.shows_over, &diagnosis.fit);
+        // A missing effect of the library is tried first.
+        if diagnosis.suggestions.is_empty() {
+            advice::user_formula(&diagnosis.shows_over, &diagnosis.fit);
+        }
         suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
         advice::next_run(diagnosis.experiment.as_ref());
     }
