@@ -145,9 +145,10 @@ impl<'e> Form<'e> {
 }
 
 /// The part of the data that an effect is judged on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Regime {
     /// Constant speed and load.
+    #[default]
     SteadyState,
     /// Changing speed; steady-state means contain no such effects.
     Transient,
@@ -157,7 +158,7 @@ pub enum Regime {
 
 /// What the selection and the diagnosis have to know about an effect. Default: an effect at steady state without
 /// peculiarities.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Traits {
     /// The part of the data that shows the effect.
     pub regime: Regime,
@@ -189,29 +190,9 @@ pub struct Traits {
     pub is_set: bool,
 }
 
-impl Default for Traits {
-    fn default() -> Self {
-        Self {
-            regime: Regime::SteadyState,
-            wave: None,
-            exponent_parameter: None,
-            corrects: None,
-            over_time: None,
-            unseen: None,
-            is_exact: false,
-            is_nuisance: false,
-            is_offset: false,
-            needs_motion: false,
-            is_user_defined: false,
-            is_set: false,
-        }
-    }
-}
-
 /// One physical cause as a sum of coefficients times columns. The columns may depend on nonlinear parameters.
 ///
-/// [`Effect::info`], [`Effect::forms`] and [`Effect::columns`] are required. [`Effect::traits`] differs where an effect is
-/// more than a column at steady state; the other methods have defaults too.
+/// [`Effect::info`], [`Effect::forms`] and [`Effect::columns`] are required; the other methods have defaults.
 ///
 /// ```
 /// use jointbench_instrument::Kind;

@@ -161,12 +161,12 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let next = offer.without_ties(open)?;
     let in_vain = (!in_vain.is_empty()).then(|| {
         let ties = list(&in_vain);
-        format!("no run within these limits is expected to distinguish {ties}: use another speed, load or temperature")
+        format!("run within these limits is expected to distinguish {ties}: use another speed, load or temperature")
     });
     Ok(match (next, in_vain) {
-        (Some(next), Some(vain)) => Experiment { why: format!("{}; {vain}", next.why), ..next }.into(),
+        (Some(next), Some(vain)) => Experiment { why: format!("{}; no {vain}", next.why), ..next }.into(),
         (Some(next), None) => next.into(),
-        (None, vain) => Next { experiment: None, in_vain: vain.map(|vain| format!("N{}.", &vain[1..])) },
+        (None, vain) => Next { experiment: None, in_vain: vain.map(|vain| format!("No {vain}.")) },
     })
 }
 

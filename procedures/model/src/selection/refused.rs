@@ -27,6 +27,7 @@ impl Refused<'_> {
         let but = match self.reason {
             RejectionReason::NotSignificant => format!("which is not significant (p = {:.2})", self.p_value),
             RejectionReason::FewBlocks => "but only in a few blocks".into(),
+            RejectionReason::NoReduction => "but the error over all samples increases".into(),
             RejectionReason::ModelFull => "but the largest number of added effects is reached".into(),
             _ if self.gain <= self.least => {
                 let required = percent(self.least);

@@ -57,7 +57,7 @@ fn smallest(
 ) -> Option<f64> {
     let added = visible(ridge, form)?;
     let scatter = added.scatter(&added.coefficients());
-    // An effect of transients competes with the form error of all models.
+    // Form error imitates effects of transients.
     let share = least_share(form.effect.traits().regime != Regime::SteadyState);
     let least = share / (1.0 - share) * ridge.loss();
     let delay = || {

@@ -33,6 +33,8 @@ use crate::selection::refused::{EvidenceResult, Refused};
 use crate::thresholds::{LEFT_SHARE, MOST_NAMED};
 use crate::{ModelError, ModelSpec, Options};
 use std::cell::OnceCell;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Candidate sets of a run: for a friction direction that switches at once, and for one with presliding.
 struct Libraries<'p> {
@@ -78,8 +80,8 @@ pub fn search<'p>(
             search.path.push(step);
         }
         refused = search.grow(most.min(MOST_NAMED as usize))?;
+        search.replace()?;
     }
-    search.replace()?;
     while let Some(id) = insignificant(search.path.end(), spec) {
         search.remove(id, RemovalReason::Insignificant)?;
     }
@@ -88,30 +90,39 @@ pub fn search<'p>(
 }
 
 impl<'p> Search<'_, 'p> {
+    /// Evidence for the candidates of a model, with its solution. `None` for a run that is not judged sample by sample.
+    fn evidence(&self, now: &TwoStageModel<'p>) -> Option<(Arc<Solution>, Vec<Evidence<'_, 'p>>)> {
+        let library = self.libraries.of(&now.main, self.prepared, self.spec);
+        let forms = library.candidates.iter().filter(|c| !self.spec.contains(c.id())).count();
+        let solution = Solution::of(&now.main)?;
+        let all = candidates(now, &solution, library, forms);
+        Some((solution, all))
+    }
+
     /// Adds the effect with the largest error reduction as long as one passes. Returns the rejected effects with a
     /// large error reduction.
     fn grow(&mut self, most: usize) -> Result<Vec<Refused<'p>>, ModelError> {
         loop {
             let now = self.path.end();
-            let library = self.libraries.of(&now.main, self.prepared, self.spec);
-            let Some(solution) = Solution::of(&now.main) else { return Ok(Vec::new()) };
-            let forms = library.candidates.iter().filter(|c| !self.spec.contains(c.id())).count();
-            let all = candidates(now, &solution, library, forms);
+            let Some((solution, all)) = self.evidence(now) else { return Ok(Vec::new()) };
             let added = self.path.advances.iter().filter(|a| a.added.is_some()).count();
             let figures = |e: &Evidence| Figures::of(e, self.options.alpha, added >= most);
             let passing: Vec<&Evidence> = all.iter().filter(|e| rules::rejection(&figures(e)).is_none()).collect();
-            let mut named = None;
+            let (mut named, mut rejected) = (None, BTreeMap::new());
             for e in in_turn(&passing) {
                 let effects = now.effects.iter().cloned().chain([e.id().to_owned()]).collect();
                 let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
-                if rules::model_rejection(&Refit { now, solution: &solution, id: e.id(), after: &after }).is_none() {
-                    named = Some((e, after));
-                    break;
-                }
+                match rules::model_rejection(&Refit { now, solution: &solution, id: e.id(), after: &after }) {
+                    Some(reason) => rejected.insert(e.id(), reason),
+                    None => {
+                        named = Some((e, after));
+                        break;
+                    }
+                };
             }
             let Some((best, after)) = named else {
-                let large = all.iter().filter(|e| e.gain > LEFT_SHARE);
-                return Ok(large.map(|e| refused(e, &figures(e))).collect());
+                let reason = |e: &Evidence| rules::rejection(&figures(e)).or_else(|| rejected.get(e.id()).copied());
+                return Ok(large_refused(&all, reason));
             };
             let id = best.best.id();
             let mut ties = Vec::new();
@@ -145,10 +156,7 @@ impl<'p> Search<'_, 'p> {
         let base = TwoStageModel::decided(self.prepared, self.spec, others.clone())?;
         let with = others.into_iter().chain([rival.to_owned()]).collect();
         let after = TwoStageModel::decided(self.prepared, self.spec, with)?;
-        let Some(solution) = Solution::of(&base.main) else { return Ok(()) };
-        let library = self.libraries.of(&base.main, self.prepared, self.spec);
-        let forms = library.candidates.iter().filter(|c| !self.spec.contains(c.id())).count();
-        let all = candidates(&base, &solution, library, forms);
+        let Some((solution, all)) = self.evidence(&base) else { return Ok(()) };
         let refit = Refit { now: &base, solution: &solution, id: rival, after: &after };
         let passes = |e: &&Evidence| {
             let figures = Figures::of(e, self.options.alpha, false);
@@ -223,15 +231,22 @@ impl<'p> Search<'_, 'p> {
     }
 }
 
-/// A candidate whose figures pass was rejected with its model, in which form error explains as much.
-fn refused<'p>(found: &Evidence<'_, 'p>, figures: &Figures) -> Refused<'p> {
-    Refused {
-        effect: found.best.id(),
-        gain: found.gain,
-        p_value: found.p_value,
-        least: least_share(found.form_error_imitates),
-        reason: rules::rejection(figures).unwrap_or(RejectionReason::FormError),
+/// The rejected candidates with a large error reduction, each effect once.
+fn large_refused<'p>(
+    all: &[Evidence<'_, 'p>],
+    reason: impl Fn(&Evidence) -> Option<RejectionReason>,
+) -> Vec<Refused<'p>> {
+    let mut large: Vec<Refused> = Vec::new();
+    for found in all.iter().filter(|e| e.gain > LEFT_SHARE) {
+        let effect = found.best.id();
+        if let Some(reason) = reason(found)
+            && !large.iter().any(|other| other.effect == effect)
+        {
+            let least = least_share(found.form_error_imitates);
+            large.push(Refused { effect, gain: found.gain, p_value: found.p_value, least, reason });
+        }
     }
+    large
 }
 
 /// The candidate of a search step.
