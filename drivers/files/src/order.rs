@@ -150,8 +150,8 @@ pub fn noticed(values: &[f64], starts: &[usize]) -> Vec<Note> {
     let uneven = steps().filter(|(_, step)| (step / usual - 1.0).abs() > JITTER).count();
     if uneven - gaps > values.len() / 20 {
         let message = format!(
-            "the time is uneven: {} come more or less than {} after the one before",
-            plural(uneven - gaps, "row"),
+            "the time is uneven: {} differ clearly from the usual {}",
+            plural(uneven - gaps, "step"),
             seconds(usual)
         );
         notes.push(Note::new(message));

@@ -114,7 +114,7 @@ pub enum ShapeSearch {
 
 impl Shape<'_> {
     /// The value after a step, in its logarithm or as a share of its range.
-    pub fn moved(&self, value: f64, step: f64) -> f64 {
+    pub fn stepped(&self, value: f64, step: f64) -> f64 {
         match self.search {
             ShapeSearch::Signed => value + step * (self.max - self.min),
             ShapeSearch::Smooth | ShapeSearch::Whole | ShapeSearch::Jump => value * step.exp(),
@@ -293,7 +293,7 @@ pub trait Effect: Sync {
             ));
         }
         if self.forms(view).is_empty() {
-            Some(format!("it would not show: {}", self.traits().unseen.unwrap_or(info.looks)))
+            Some(format!("this data cannot show it: {}", self.traits().unseen.unwrap_or(info.looks)))
         } else {
             None
         }

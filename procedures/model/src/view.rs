@@ -5,7 +5,7 @@
 
 use crate::signal::{Signal, Signals};
 use crate::stats::summary::range;
-use crate::thresholds::{LOAD_OF_DRIVE, LOADED_ROWS};
+use crate::thresholds::{LOAD_OF_DRIVE, LOADED_ROWS, SAME_TURNS};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -115,9 +115,13 @@ impl View {
         direction.first().is_some_and(|first| *first != 0.0 && direction.iter().all(|d| d == first))
     }
 
-    /// Whether the link carries a load: a load that is small relative to the motor torque is sensor noise.
+    /// Whether the link carries a measured load.
     pub fn bears_load(&self) -> bool {
-        let load = self.get(Signal::Load);
+        self.is_load(self.get(Signal::Load))
+    }
+
+    /// Whether a torque at the link is a load: one that is small relative to the motor torque is noise.
+    pub fn is_load(&self, load: &[f64]) -> bool {
         let square: f64 = self.find(Signal::Drive).unwrap_or_default().iter().map(|v| v * v).sum();
         let least = LOAD_OF_DRIVE * (square / load.len().max(1) as f64).sqrt();
         load.iter().filter(|load| load.abs() > least).count() as f64 > LOADED_ROWS * load.len() as f64
@@ -139,7 +143,7 @@ impl View {
 
     /// Whether motor and link turn alike, without a gear between their angles.
     pub fn is_direct(&self) -> bool {
-        (self.turns(Signal::Position) / self.turns(Signal::Link) - 1.0).abs() < 0.01
+        (self.turns(Signal::Position) / self.turns(Signal::Link) - 1.0).abs() < SAME_TURNS
     }
 
     /// One column from one signal.

@@ -131,7 +131,7 @@ pub fn spoken_axis(axis: &str, kind: Kind) -> String {
 }
 
 /// A direction in words: of the motion, or of the current of a brake.
-pub fn way(kind: Kind, positive: bool) -> &'static str {
+pub fn direction_text(kind: Kind, positive: bool) -> &'static str {
     match (kind, positive) {
         (Kind::Brake, true) => "while the current rises",
         (Kind::Brake, false) => "while the current falls",

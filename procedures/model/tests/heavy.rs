@@ -1,10 +1,12 @@
-//! An arm whose weight the torque sensor does not measure: the gear teeth transmit it in addition to the load.
+//! An arm whose weight no torque sensor measures: the gear teeth transmit it, in addition to the load if there is one.
 
 mod common;
 
 use common::bench::{Moment, Staircase};
-use jointbench_instrument::RunTable;
+use common::tables::{meta, scatter};
+use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_model::{Discovery, ModelSpec, Options, Verdict, diagnose, discover};
+use std::f64::consts::TAU;
 
 /// Gravity torque on the motor side of an arm that hangs down at the link angle `down` [rad].
 fn weight(moment: Moment, down: f64) -> f64 {
@@ -73,4 +75,43 @@ fn a_weight_that_the_sensor_feels_is_load() {
     assert_eq!(added(&found), ["load_linear"], "{}", found.summary);
     assert!(found.fit.parameters.iter().all(|p| p.name != "g_c"), "{:?}", found.fit.parameters);
     assert!(!found.fit.notes.iter().any(|note| note.starts_with("load_linear")), "{:?}", found.fit.notes);
+}
+
+/// A pendulum without a torque sensor, whose friction grows by `mu` with the gravity torque: three repeats of a swing.
+fn pendulum(mu: f64) -> RunTable {
+    const STEP_S: f64 = 0.005;
+    const PERIOD: usize = 4000;
+    let names = ["time_s", "motor_position_rad", "motor_current_a", "repeat"];
+    let mut trace = Trace::new(names.map(Channel::new).into());
+    let swings = [(1.1, 3.0, 0.4), (0.5, 7.0, 1.9), (0.2, 16.0, 4.0)];
+    for i in 0..3 * PERIOD {
+        let at = |times: f64, phase: f64| TAU * times * i as f64 / PERIOD as f64 + phase;
+        let rate = |times: f64| TAU * times / (PERIOD as f64 * STEP_S);
+        let sum = |of: &dyn Fn(f64, f64, f64) -> f64| {
+            swings.iter().map(|(size, n, phase)| of(*size, *n, *phase)).sum::<f64>()
+        };
+        let angle = sum(&|size, n, phase| size * at(n, phase).sin());
+        let speed = sum(&|size, n, phase| size * rate(n) * at(n, phase).cos());
+        let acceleration = sum(&|size, n, phase| -size * rate(n) * rate(n) * at(n, phase).sin());
+        let weight = 1.5 * (angle - 0.1).sin();
+        let friction = (0.1 + mu * weight.abs()) * speed.signum() + 0.05 * speed;
+        let torque = 0.02 * acceleration + friction + weight + 0.1 * scatter(i, 3);
+        trace.push_row(&[i as f64 * STEP_S, angle, torque / 1.6, (i / PERIOD) as f64]);
+    }
+    let baseline = ["inertia", "gravity", "coulomb", "viscous"].map(String::from).into();
+    let meta = Meta { torque_constant_nm_per_a: Some(1.6), gear_ratio: Some(1.0), baseline, ..meta(Kind::Friction) };
+    RunTable::new(meta, trace).unwrap()
+}
+
+#[test]
+fn without_a_torque_sensor_the_weight_is_the_load() {
+    for (mu, expected) in [(0.08, &["load_linear"][..]), (0.0, &[])] {
+        let run = pendulum(mu);
+        let found = end(&run);
+        assert_eq!(&found.model[4..], expected, "{}", found.summary);
+        if mu > 0.0 {
+            let fitted = value(&found, "load_linear", "mu");
+            assert!((fitted / mu - 1.0).abs() < 0.1, "{fitted}");
+        }
+    }
 }

@@ -168,3 +168,21 @@ fn what_lacks_its_signals_is_not_visible_and_no_error() {
         }
     }
 }
+
+/// A shorter section of a wave is a curve over the angle.
+#[test]
+fn a_wave_needs_a_whole_turn_or_two_periods() {
+    let orders = |turns: f64, kind: Kind, id: &str| -> Vec<f64> {
+        let angle: Vec<f64> = (0..1000).map(|i| f64::from(i) * turns * std::f64::consts::TAU / 1000.0).collect();
+        let mut signals = Signals::new(angle.len());
+        signals.set(Signal::Position, angle.clone());
+        signals.set(Signal::Link, angle);
+        let view = View::new(signals.clone(), signals, Vec::new(), vec![0], 0.01);
+        let forms = effects::find(kind, id).unwrap().forms(&view);
+        forms.iter().flat_map(|form| &form.grid).map(|shape| shape.first().copied().unwrap_or(0.0)).collect()
+    };
+    assert!(orders(0.51, Kind::Encoder, "harmonic_1").is_empty());
+    assert_eq!(orders(0.9, Kind::Encoder, "harmonic_1"), [0.0]);
+    assert_eq!(orders(0.51, Kind::Encoder, "harmonic_n").first(), Some(&4.0));
+    assert_eq!(orders(3.0, Kind::Encoder, "harmonic_n").first(), Some(&3.0));
+}

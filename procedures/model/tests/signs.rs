@@ -52,7 +52,7 @@ fn nothing_is_named_of_columns_that_cannot_be_right() {
     let turned = named(-1.0);
     assert_eq!(turned.suggestions.len(), 0, "{}", turned.summary);
     assert!(turned.summary.contains("no effect is suggested until then"), "{}", turned.summary);
-    assert_eq!(turned.undecided.as_deref(), Some("its columns contradict each other"));
+    assert_eq!(turned.undecided.as_deref(), Some("the recording has the data problem above"));
 }
 
 /// A joint that a sine moves in both directions; `recorded`: the current in the file from the current in the motor.

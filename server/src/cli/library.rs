@@ -4,7 +4,7 @@ use super::exit::{Done, Exit};
 use jointbench_devices::sim::HIDDEN_EFFECTS;
 use jointbench_instrument::Kind;
 use jointbench_instrument::spelling::instead;
-use jointbench_model::effects::WITH_WEIGHT;
+use jointbench_model::effects::{ONLY_WEIGHT, WITH_WEIGHT};
 use jointbench_model::{EffectInfo, effects as effects_of};
 use jointbench_procedure::catalogue;
 use jointbench_procedure::parameter::ParameterKind;
@@ -52,9 +52,12 @@ pub fn effects(asked: Option<&str>) -> Done {
     for effect in named {
         let one = effect.info();
         println!("{} ({}): {}\n{}\n  {}", one.id, one.kind, one.title, one.sentence, one.formula);
-        let weighed = effect.formula_of(WITH_WEIGHT);
-        if weighed != one.formula {
-            println!("  with a gravity load that the torque sensor does not measure:\n  {weighed}");
+        let cases = [
+            (WITH_WEIGHT, "with a gravity load that the torque sensor does not measure"),
+            (ONLY_WEIGHT, "with a gravity load and without a torque sensor"),
+        ];
+        for (form, case) in cases.into_iter().filter(|(form, _)| effect.formula_of(form) != one.formula) {
+            println!("  {case}:\n  {}", effect.formula_of(form));
         }
         for parameter in one.parameters {
             println!("  {} [{}], {} to {}", parameter.name, parameter.unit, parameter.min, parameter.max);

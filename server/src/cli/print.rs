@@ -36,7 +36,7 @@ pub fn fit(fit: &Fit) {
     );
     if let Some(rms) = fit.effects_rms {
         println!(
-            "          effects    {} without nuisance terms, as an exported model predicts",
+            "          effects    {} without nuisance terms, as an exported model predicts the fitted data",
             words::figure(rms, &fit.unit)
         );
     }
@@ -200,7 +200,7 @@ pub fn regions(regions: &[Region], unit: &str) {
         return;
     }
     println!();
-    println!("regions with significant residual (simultaneous 95 % intervals):");
+    println!("regions with significant residual of this model (simultaneous 95 % intervals):");
     for region in regions {
         let [low, high] = region.ci95.map(f64::abs);
         let (low, high) = (words::figure(low.min(high), unit), words::figure(low.max(high), unit));
@@ -216,7 +216,7 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     println!();
     let several = suggestions.len() > 1;
     let beside = if several { " (parameters with all of these in the model)" } else { "" };
-    println!("missing effects, most important first{beside}; ΔBIC below 0 favours the effect:");
+    println!("missing effects{beside}; ΔBIC below 0 favours the effect:");
     for (i, suggestion) in suggestions.iter().enumerate() {
         let (share, rms) = (suggestion.error_reduction, suggestion.validation_rms);
         // Effects of reversals and ramps are evaluated there, and do not change the error in steady state.

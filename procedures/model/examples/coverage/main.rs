@@ -97,7 +97,7 @@ fn study(case: &Case, sets: u64) -> Result<Vec<Seen>, Box<dyn Error>> {
                 None => return Err(format!("{}: no parameter {effect}.{name}", case.name).into()),
                 Some(p)
                     if p.state != ParameterState::Ok
-                        && p.note.as_deref() != Some("not identified by this run: it may be zero") =>
+                        && p.note.as_deref() != Some("not identified by this run: its interval includes zero") =>
                 {
                     seen.in_words += 1;
                 }

@@ -247,7 +247,8 @@ fn evidence_sentence(found: &Findings, scored: &ScoredCandidate, importance: f64
         let weighted = percent(importance);
         match over_all > 0.0 {
             true => format!(
-                "When added, it reduces the squared validation error by {} ({weighted} with less weight on reversals and rest).",
+                "Added to the effects before it, it reduces the squared validation error by {} ({weighted} with less weight on \
+                 reversals and rest).",
                 percent(over_all)
             ),
             false => {
@@ -343,7 +344,7 @@ fn experiment(found: &Findings, prepared: &Prepared) -> Option<Experiment> {
         return Some(Experiment {
             procedure: prepared.kind.name().into(),
             parameters,
-            why: "without repeats of the same profile the noise floor is not known".into(),
+            why: "without repeats of the same motion the noise floor is not known".into(),
             expected_z: None,
             expected_duration_s: None,
             separates: Vec::new(),

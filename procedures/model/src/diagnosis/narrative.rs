@@ -80,12 +80,21 @@ fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion])
             percent(found.ranking().first().map_or(0.0, |(_, share)| *share))
         );
     }
+    let with_all = unit.figure(complete.validation_rms);
     let all = match suggestions.len() {
         1 => String::new(),
-        _ => format!(", and adding all of them to {}", unit.figure(complete.validation_rms)),
+        _ if complete.validation_rms < first.validation_rms => format!(", and adding all of them to {with_all}"),
+        _ => format!("; with all of them it is {with_all}"),
     };
-    let alone = first.effects_rms.map(|alone| format!(" ({} without the nuisance terms)", unit.figure(alone)));
-    let alone = alone.unwrap_or_default();
+    let alone = match (fit.effects_rms, first.effects_rms) {
+        (Some(before), Some(after)) if after > before => format!(
+            " (the effects alone, without the nuisance terms, predict worse: {} instead of {})",
+            figure(after, &fit.unit),
+            figure(before, &fit.unit)
+        ),
+        (_, Some(after)) => format!(" ({} without the nuisance terms)", unit.figure(after)),
+        _ => String::new(),
+    };
     format!("Adding {effect} reduces the validation error from {error} to {with}{alone}{all}; {floor}.")
 }
 
@@ -127,6 +136,9 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
         (_, None) => {
             format!("The model explains this run. Validation error {error}, {floor}{}.", above(found, fit))
         }
+        (_, Some(Undecided { text: why, .. })) if is_untested(found) => format!(
+            "No effect was tested (validation error {error}). Whether the model is adequate cannot be decided: {why}."
+        ),
         (_, Some(Undecided { text: why, .. })) => format!(
             "This run identifies no further effect (validation error {error}). Whether the model is adequate cannot be \
              decided: {why}."
@@ -308,7 +320,7 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
     let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
     let (reason, text) = match verdict {
         _ if !found.start.prepared.data_errors.is_empty() => {
-            (UndecidedReason::ContradictoryColumns, "its columns contradict each other".to_owned())
+            (UndecidedReason::ContradictoryColumns, "the recording has the data problem above".to_owned())
         }
         Verdict::Adequate if smallest > options.alpha => {
             (UndecidedReason::TooFewBlocks, format!("{blocks} independent blocks are too few for a significance test"))
@@ -345,12 +357,18 @@ fn impossible(fits: &[&Fit]) -> Option<String> {
     let mut impossible = last.parameters.iter().filter(is_impossible);
     let p = impossible.find(|p| others.iter().all(|fit| in_fit(fit, p)))?;
     let note = p.note.as_deref().unwrap_or_default();
-    Some(format!("{} of {} is {}, which {note}", p.name, marked(&p.effect), figure(p.value, &p.unit)))
+    let with = if others.is_empty() { "" } else { " with the missing effects added" };
+    Some(format!("{} of {} is {}{with}, which {note}", p.name, marked(&p.effect), figure(p.value, &p.unit)))
+}
+
+/// Contradicting columns would make every effect spurious.
+fn is_untested(found: &Findings) -> bool {
+    !found.start.prepared.data_errors.fatal.is_empty()
 }
 
 /// Statement about unexplained structure; a rejected effect might explain it.
 fn unexplained(found: &Findings) -> &'static str {
-    if !found.start.prepared.data_errors.fatal.is_empty() {
+    if is_untested(found) {
         return "No effect was tested.";
     }
     let is_refused = found.decided.as_ref().is_some_and(|decided| !decided.refused.is_empty());

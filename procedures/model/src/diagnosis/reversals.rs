@@ -31,7 +31,7 @@ pub fn region(model: &TwoStageModel, reach: f64, fit: &Fit, reference: Option<&R
     let t = student::quantile(means.len() as f64 - 1.0, 0.975).filter(|_| means.len() >= 3)?;
     let half_width = t * summary::standard_error(&means);
     let side = if mean > 0.0 { "low" } else { "high" };
-    let measure = reference.map_or_else(String::new, |y| format!(", {}", y.says(mean.abs())));
+    let measure = reference.map_or_else(String::new, |y| format!(", {}", y.compare(mean.abs())));
     let angle = model.prepared.column_unit(Signal::Position);
     Some(Region {
         axis: "way_since_reversal_rad".into(),

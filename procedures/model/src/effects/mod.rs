@@ -5,12 +5,12 @@ pub(crate) mod encoder;
 pub(crate) mod friction;
 pub(crate) mod stiffness;
 
-pub use crate::effects::friction::teeth::WITH_WEIGHT;
+pub use crate::effects::friction::teeth::{ONLY_WEIGHT, WITH_WEIGHT};
 
 use crate::ModelError;
 use crate::effect::{Effect, Form, Shape, ShapeSearch};
 use crate::signal::Signal;
-use crate::thresholds::FOLLOWED_ROWS;
+use crate::thresholds::{FOLLOWED_ROWS, PERIODS_SEEN, WHOLE_TURN};
 use crate::view::View;
 use jointbench_instrument::Kind;
 use std::ops::RangeInclusive;
@@ -125,12 +125,17 @@ fn whole_orders(
     vec![Form { name: "harmonic", linear: linear.to_vec(), shape, grid }]
 }
 
-/// The same for an axis that may cover only a part of a turn. An order counts if the angle covered a whole turn, or
-/// two periods of the wave. A shorter section is a curve over the angle, and under gravity a curve over the load.
+/// The same for an axis that may cover only a part of a turn: orders that are repeated.
 fn repeated_harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form<'static>> {
+    let first = orders.clone().find(|order| is_repeated(view, angle, *order));
+    first.map_or_else(Vec::new, |first| harmonic_form(view, angle, first..=*orders.end()))
+}
+
+/// Whether the angle covered nearly a whole turn, or two periods of the wave. A shorter section is a curve over the angle,
+/// and under gravity a curve over the load.
+fn is_repeated(view: &View, angle: Signal, order: u32) -> bool {
     let turns = view.turns(angle);
-    let twice = if turns >= 1.0 { 1 } else { (2.0 / turns).ceil() as u32 };
-    harmonic_form(view, angle, twice.max(*orders.start())..=*orders.end())
+    turns >= WHOLE_TURN || turns * f64::from(order) >= PERIODS_SEEN
 }
 
 /// Name of the form of an effect that may have several harmonics.

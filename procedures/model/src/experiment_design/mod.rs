@@ -340,8 +340,8 @@ fn again(choice: &Choice) -> Experiment {
     Experiment {
         procedure: choice.procedure.clone(),
         parameters: choice.parameters.clone(),
-        why: "without repeats of the same profile the noise floor is not known; repeat this run with numbered repeats, or \
-              perform the proposed run, which is closest to it"
+        why: "without repeats of the same motion the noise floor is not known; repeat this run with equal, numbered \
+              repeats, or perform the proposed run"
             .into(),
         expected_z: None,
         expected_duration_s: choice.duration_s.is_finite().then_some(choice.duration_s),

@@ -80,7 +80,7 @@ impl Formula {
     }
 
     /// Contradicting units for this motion. If the motion is unknown, only contradictions for both.
-    pub(crate) fn doubt(&self, motion: Option<Motion>) -> Option<&Mistake> {
+    pub(crate) fn unit_fault(&self, motion: Option<Motion>) -> Option<&Mistake> {
         let [turning, sliding] = &self.unit_faults;
         match motion {
             Some(Motion::Rotary) => turning.as_ref(),

@@ -56,7 +56,10 @@ fn a_formula_may_use_a_column_of_the_run() {
     let (oil, known) = (Signal::Column("oil_pressure_pa"), Signal::Temperature);
     assert_eq!(named, [("temperature", "°C", known), ("oil_pressure_pa", "Pa", oil)]);
     let doubt = |units: &[&str]| {
-        Formula::parse(Kind::Friction, "tau = a * column(oil_pressure_pa)", &["a"], units).unwrap().doubt(None).cloned()
+        Formula::parse(Kind::Friction, "tau = a * column(oil_pressure_pa)", &["a"], units)
+            .unwrap()
+            .unit_fault(None)
+            .cloned()
     };
     assert!(doubt(&["Nm/Pa"]).is_none() && doubt(&["Nm"]).is_some_and(|d| d.message.contains("tau is in Nm")));
 }
@@ -125,9 +128,9 @@ fn check_units(kind: Kind, marked: &str, units: [&str; 3], words: &str) {
     let text = marked.replacen('§', "", 1);
     let found = Formula::parse(kind, &text, &["a", "b", "w"], &units);
     match marked.find('§') {
-        None => assert_eq!(found.unwrap().doubt(None), None, "{marked}"),
+        None => assert_eq!(found.unwrap().unit_fault(None), None, "{marked}"),
         Some(at) => {
-            let mistake = found.unwrap().doubt(None).cloned().unwrap_or_else(|| panic!("{marked}"));
+            let mistake = found.unwrap().unit_fault(None).cloned().unwrap_or_else(|| panic!("{marked}"));
             assert!(mistake.at.start == at && mistake.message.contains(words), "{marked}: {mistake:?}");
         }
     }

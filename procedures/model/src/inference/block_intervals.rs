@@ -1,7 +1,6 @@
 //! Parameters of a model that is judged sample by sample, with 95 % intervals from a delete-block jackknife and from
 //! other filter corners.
 
-use crate::effect::ShapeSearch;
 use crate::inference::parameter_state::{self, Intervals, Slot};
 use crate::preprocess::Problem;
 use crate::regression::linear_model::{LinearModel, Relative, Term, columns};
@@ -119,8 +118,7 @@ fn shapes(term: &Term, motion: Motion) -> Vec<Parameter> {
         tried.sort_by(f64::total_cmp);
         let below = tried.iter().rev().find(|v| **v < value).copied().unwrap_or(shape.min.min(value));
         let above = tried.iter().find(|v| **v > value).copied().unwrap_or(shape.max.max(value));
-        let whole = shape.search == ShapeSearch::Whole;
-        let ci95 = if whole { [value, value] } else { [below, above] };
+        let ci95 = if shape.is_smooth() { [below, above] } else { [value, value] };
         let unit = motion.label(info.unit(shape.name));
         let slot = Slot {
             effect: info.id,
@@ -130,7 +128,8 @@ fn shapes(term: &Term, motion: Motion) -> Vec<Parameter> {
             possible: (shape.min, shape.max),
             shape: Some(*shape),
         };
-        let (state, note) = if whole { (ParameterState::Ok, None) } else { parameter_state::judge(&slot, ci95, false) };
+        let (state, note) =
+            if shape.is_smooth() { parameter_state::judge(&slot, ci95, false) } else { (ParameterState::Ok, None) };
         Parameter { effect: info.id.into(), name: shape.name.into(), value, unit: slot.unit, ci95, state, note }
     };
     term.form.shape.iter().enumerate().map(of).collect()

@@ -86,8 +86,8 @@ pub fn nuisance(model: &LinearModel, unit: &str) -> Option<Nuisance> {
     let alone: Vec<f64> = solution.residual.iter().zip(&sum).map(|(residual, nuisance)| residual + nuisance).collect();
     let effects_rms = rms(&alone);
     let note = format!(
-        "nuisance terms (transients and other forms of the effects) explain {} RMS, {} of the torque; an exported model has \
-         the effects only, and its error on this run is {} RMS",
+        "nuisance terms (transients and other forms of the effects) have {} RMS, {} of that of the torque; an exported model \
+         has the effects only, and its error on this run is {} RMS",
         figure(size, unit),
         percent(size / whole.max(f64::MIN_POSITIVE)),
         figure(effects_rms, unit)

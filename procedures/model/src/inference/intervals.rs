@@ -46,8 +46,8 @@ pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
         let reach = if spd.is_dependent(k) { f64::INFINITY } else { t * variance[k].sqrt() };
         let ci95 = match slot.shape {
             Some(shape) => [
-                shape.moved(slot.value, (-reach).max(-50.0)).max(shape.min.min(slot.value)),
-                shape.moved(slot.value, reach.min(50.0)).min(shape.max.max(slot.value)),
+                shape.stepped(slot.value, (-reach).max(-50.0)).max(shape.min.min(slot.value)),
+                shape.stepped(slot.value, reach.min(50.0)).min(shape.max.max(slot.value)),
             ],
             None => [slot.value - reach, slot.value + reach],
         };

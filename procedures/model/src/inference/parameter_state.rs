@@ -23,9 +23,9 @@ pub struct Slot<'a> {
     pub shape: Option<Shape<'a>>,
 }
 
-const MAY_BE_ZERO: &str = "not identified by this run: it may be zero";
+const INCLUDES_ZERO: &str = "not identified by this run: its interval includes zero";
 
-/// A coefficient that is significantly smaller than another one of its effect is identified, even if it may be zero:
+/// A coefficient that is significantly smaller than another one of its effect is identified, even if its interval includes zero:
 /// it is the phase of a wave, or a coefficient of a curve.
 pub fn know_the_small(parameters: &mut [Parameter]) {
     let known: Vec<(String, String, f64)> = parameters
@@ -33,7 +33,7 @@ pub fn know_the_small(parameters: &mut [Parameter]) {
         .filter(|p| p.state == ParameterState::Ok)
         .map(|p| (p.effect.clone(), p.unit.clone(), p.value.abs()))
         .collect();
-    for p in parameters.iter_mut().filter(|p| p.note.as_deref() == Some(MAY_BE_ZERO)) {
+    for p in parameters.iter_mut().filter(|p| p.note.as_deref() == Some(INCLUDES_ZERO)) {
         let reach = p.ci95[0].abs().max(p.ci95[1].abs());
         if known.iter().any(|(effect, unit, size)| *effect == p.effect && *unit == p.unit && reach < *size) {
             (p.state, p.note) = (ParameterState::Ok, None);
@@ -52,7 +52,7 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
             return nothing();
         }
         if ci95[0] < 0.0 && ci95[1] > 0.0 {
-            return (ParameterState::Unidentified, Some(MAY_BE_ZERO.into()));
+            return (ParameterState::Unidentified, Some(INCLUDES_ZERO.into()));
         }
         if ci95[1] < least || ci95[0] > most {
             let possible = match (least.is_finite(), most.is_finite()) {
@@ -96,7 +96,7 @@ mod tests {
                 unit: "Nm".into(),
                 ci95,
                 state: if is_zero { ParameterState::Unidentified } else { ParameterState::Ok },
-                note: is_zero.then(|| MAY_BE_ZERO.into()),
+                note: is_zero.then(|| INCLUDES_ZERO.into()),
             }
         };
         let mut all = vec![

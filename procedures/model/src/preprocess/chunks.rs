@@ -5,6 +5,7 @@ use crate::preprocess::design::{blocks, replicates, segments};
 use crate::preprocess::memo::Memo;
 use crate::preprocess::{Problem, Reduce, residual_acceleration};
 use crate::signal::{Signal, Signals};
+use crate::thresholds::{EVEN_PART, EVEN_SPEED};
 use crate::view::{Constants, View};
 use std::collections::HashSet;
 use std::ops::Range;
@@ -29,13 +30,11 @@ pub struct Source {
     pub constants: Constants,
 }
 
-/// Speeds within this share of the kept speed count as equal.
-const EVEN: f64 = 0.05;
-
 /// Median of the largest group of nearly equal speeds.
 fn usual(mut speeds: Vec<f64>) -> f64 {
     speeds.sort_unstable_by(f64::total_cmp);
-    let near = |low: usize| speeds.partition_point(|v| *v <= speeds[low] * (1.0 + EVEN) / (1.0 - EVEN)) - low;
+    let near =
+        |low: usize| speeds.partition_point(|v| *v <= speeds[low] * (1.0 + EVEN_SPEED) / (1.0 - EVEN_SPEED)) - low;
     let low = (0..speeds.len()).max_by_key(|low| near(*low));
     low.map_or(0.0, |low| speeds[low + near(low) / 2])
 }
@@ -73,19 +72,17 @@ impl Source {
     /// time again until the motion has settled: the gear flanks still change there. A leg without a constant speed is
     /// returned whole.
     pub fn even_part(&self, leg: &Range<usize>, chunk: usize) -> Range<usize> {
-        /// Least share of a leg at constant speed. On the half wave of a sine, 0.28 of the speeds are nearly equal.
-        const KEEPS: f64 = 0.4;
         let Some(velocity) = self.signals.find(Signal::Velocity) else { return leg.clone() };
         // A model file may demand chunks that are longer than the leg.
         let chunk = chunk.min(leg.len()).max(1);
         let means: Vec<f64> =
             velocity[leg.clone()].chunks(chunk).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
         let kept = usual(means.iter().map(|mean| mean.abs()).collect());
-        let is_even = |mean: &f64| (mean.abs() - kept).abs() <= EVEN * kept;
+        let is_even = |mean: &f64| (mean.abs() - kept).abs() <= EVEN_SPEED * kept;
         let (first, last) = (means.iter().position(is_even), means.iter().rposition(is_even));
         let even = means.iter().filter(|m| is_even(m)).count() as f64;
         match (first, last) {
-            (Some(first), Some(last)) if even >= KEEPS * means.len() as f64 => {
+            (Some(first), Some(last)) if even >= EVEN_PART * means.len() as f64 => {
                 leg.start + (2 * first).min(last) * chunk..(leg.start + (last + 1) * chunk).min(leg.end)
             }
             _ => leg.clone(),

@@ -1,7 +1,7 @@
 //! Currents in steps: during a change, the readings of current and torque and the coil current belong to different
 //! moments.
 
-use crate::thresholds::{DWELL_CHANGE, DWELL_NOISES};
+use crate::thresholds::{DWELL_CHANGE, DWELL_NOISE, DWELL_NOISES};
 
 /// For each chunk of `n` samples: whether the current is constant there and in a margin before and after. Empty if
 /// the current has no steps.
@@ -13,7 +13,7 @@ pub fn held(current: &[f64], n: usize) -> Vec<bool> {
     let usual = sorted.get(sorted.len() * 9 / 10).copied().unwrap_or(0.0);
     let noise = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
     // If the current changes all the time, its median change is no noise.
-    if usual == 0.0 || noise > 0.1 * usual {
+    if usual == 0.0 || noise > DWELL_NOISE * usual {
         return Vec::new();
     }
     let changes = (0..steps.len()).filter(|k| steps[*k] > (DWELL_CHANGE * usual).max(DWELL_NOISES * noise));

@@ -1,12 +1,11 @@
 //! The count of an encoder, from its readings.
 
 use crate::stats::summary::quantile;
+use crate::thresholds::ON_MULTIPLES;
 use std::f64::consts::TAU;
 
 /// Counts in a turn, as powers of two.
 const BITS: std::ops::RangeInclusive<u32> = 8..=24;
-/// Resultant length of readings on multiples of a count with a noise of a fifth of it.
-const ON_MULTIPLES: f64 = 0.5;
 /// Numerical tolerance of the smallest difference, and the smallest difference that is none of rounding [rad].
 const TOLERANCE: f64 = 1.01;
 const LEAST: f64 = 1e-7;

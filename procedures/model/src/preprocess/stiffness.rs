@@ -9,7 +9,7 @@ use crate::preprocess::held_side::moves_by_twist_only;
 use crate::preprocess::{Prepared, filter, sample_s, sweeps};
 use crate::signal::{Signal, Signals};
 use crate::stats::summary::{mean, peak, range};
-use crate::thresholds::NOISE_ERRORS;
+use crate::thresholds::{NOISE_ERRORS, OFF_MULTIPLES, ON_MULTIPLES};
 use crate::view::Constants;
 use crate::words::figure;
 use crate::{ModelError, Options};
@@ -89,9 +89,6 @@ fn quantization(motor: &[f64], link: &[f64], torque: &[f64], gear: f64, is_held:
 /// The count of an encoder that moves by a few counts [rad], a power of two in a turn: the readings are multiples of
 /// it, while the torque that moves the angle is continuous. Zero if no count is detected.
 fn count_of_held(angle: &[f64], torque: &[f64]) -> f64 {
-    /// Resultant length of readings on multiples with a noise of a fifth of a count, and of arbitrary angles.
-    const ON: f64 = 0.5;
-    const ANYWHERE: f64 = 0.25;
     let (middle, centre) = (mean(angle), mean(torque));
     let product =
         |f: &dyn Fn(f64, f64) -> f64| angle.iter().zip(torque).map(|(a, t)| f(a - middle, t - centre)).sum::<f64>();
@@ -108,7 +105,8 @@ fn count_of_held(angle: &[f64], torque: &[f64]) -> f64 {
     let travel = high - low;
     let mut steps =
         (8..=24).map(|bits| std::f64::consts::TAU / f64::from(1u32 << bits)).filter(|step| 2.0 * step < travel);
-    let is_counted = |step: &f64| on_multiples(angle, *step) > ON && on_multiples(&moved, *step) < ANYWHERE;
+    let is_counted =
+        |step: &f64| on_multiples(angle, *step) > ON_MULTIPLES && on_multiples(&moved, *step) < OFF_MULTIPLES;
     steps.find(is_counted).unwrap_or(0.0)
 }
 

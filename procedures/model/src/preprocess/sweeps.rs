@@ -9,6 +9,7 @@ use crate::preprocess::{Prepared, Problem, current_dwells, initial_hysteresis_st
 use crate::report::fit::Preparation;
 use crate::signal::Signal;
 use crate::stats::summary::peak;
+use crate::thresholds::{SAME_LEVEL, SMALL_LEVEL};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Kind, RunTable};
 use std::ops::Range;
@@ -130,7 +131,7 @@ fn conditions(samples: &Source, legs: &[Range<usize>], inputs: &[Same]) -> Vec<u
                     values[range.clone()].iter().sum::<f64>() / range.len().max(1) as f64
                 })
                 .collect();
-            let cluster = blocks::clusters(&means, |v| 0.03 * v.abs() + 0.01 * peak);
+            let cluster = blocks::clusters(&means, |v| SAME_LEVEL * v.abs() + SMALL_LEVEL * peak);
             keys.iter_mut().zip(cluster).for_each(|(k, c)| k.push(c));
         }
     }

@@ -3,12 +3,13 @@
 
 use crate::ModelSpec;
 use crate::effect::{Columns, Effect, Form, Regime};
-use crate::preprocess::Problem;
 use crate::preprocess::filter::ABREAST;
+use crate::preprocess::{Prepared, Problem};
 use crate::regression::linear_model::Term;
 use crate::report::reasons::Invisible;
 use jointbench_instrument::Kind;
 use rayon::prelude::*;
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 /// An effect in one form at one grid point.
@@ -89,5 +90,28 @@ impl<'e> CandidateSet<'e> {
             }
         }
         library
+    }
+}
+
+/// Candidate sets of a run that is judged sample by sample: for a friction direction that switches at once, and for one
+/// with presliding. Each is computed once, because filtering the columns of all forms takes longer than their
+/// regression.
+pub struct CandidateSets<'p> {
+    pub prepared: &'p Prepared,
+    pub spec: &'p ModelSpec,
+    plain: OnceCell<CandidateSet<'p>>,
+    bristled: OnceCell<CandidateSet<'p>>,
+}
+
+impl<'p> CandidateSets<'p> {
+    pub fn new(prepared: &'p Prepared, spec: &'p ModelSpec) -> Self {
+        Self { prepared, spec, plain: OnceCell::new(), bristled: OnceCell::new() }
+    }
+
+    /// The candidate set with the friction direction of this problem.
+    pub fn of(&self, problem: &'p Problem) -> &CandidateSet<'p> {
+        let is_plain = std::ptr::eq(problem, &self.prepared.main);
+        let known = if is_plain { &self.plain } else { &self.bristled };
+        known.get_or_init(|| CandidateSet::new(self.spec, problem, self.prepared.regimes()))
     }
 }

@@ -1,7 +1,7 @@
 //! Canonical model of a run that is judged sample by sample: the same set of effects gives the same model,
 //! independent of their order.
 
-use crate::effect::Effect;
+use crate::effect::{Effect, ShapeSearch};
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::{errors, visible};
 use crate::regression::linear_model::{LinearModel, Relative, Term, allows};
@@ -43,7 +43,8 @@ pub fn fit_canonical<'p>(
         let parts = extend(&mut model, chosen, &forms);
         let is_part = |form: &Regressor| parts.iter().any(|part| std::ptr::eq(*part, form));
         let Some(term) = model.terms.last() else { break };
-        let others = forms.iter().filter(|form| !is_part(form)).map(|form| relative(form, term));
+        let others = forms.iter().filter(|form| !is_part(form) && is_form_error(form, &parts));
+        let others = others.map(|form| relative(form, term));
         let relatives = model.relatives.iter().cloned().chain(others).collect();
         model.relatives = Arc::new(relatives);
     }
@@ -95,6 +96,16 @@ fn best_form(solution: &Solution, forms: &[&Regressor]) -> (f64, usize) {
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
     best.map_or((0.0, 0), |at| (order(&at).1, at))
+}
+
+/// Whether a form belongs to the form error of an effect in these components. The grid of a nonlinear parameter is coarse,
+/// so that every other form does. The order of a wave is exact: only its second and third harmonic do, and the
+/// orders beside it, which modulate it once a turn.
+fn is_form_error(form: &Regressor, parts: &[&Regressor]) -> bool {
+    let is_near = |part: &f64, order: &f64| (part - order).abs() <= 1.0 || [2.0, 3.0].contains(&(order / part));
+    form.form.shape.iter().zip(&form.shape).all(|(shape, order)| {
+        shape.search != ShapeSearch::Whole || parts.iter().flat_map(|part| &part.shape).any(|part| is_near(part, order))
+    })
 }
 
 fn relative<'p>(form: &Regressor<'p>, term: &Term) -> Relative<'p> {

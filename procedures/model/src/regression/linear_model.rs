@@ -197,16 +197,16 @@ fn subtract(from: &mut [f64], part: &[f64]) {
     from.iter_mut().zip(part).for_each(|(y, part)| *y -= part);
 }
 
-/// ∂(Σ coefficient·column + fixed part) by a step of each free nonlinear parameter (see [`Shape::moved`]), by central
+/// ∂(Σ coefficient·column + fixed part) by a step of each free nonlinear parameter (see [`Shape::stepped`]), by central
 /// differences. The reduction of columns to rows is linear, so that the sum is reduced only once.
 ///
-/// [`Shape::moved`]: crate::effect::Shape::moved
+/// [`Shape::stepped`]: crate::effect::Shape::stepped
 pub(in crate::regression) fn slopes(term: &Term, coefficients: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
     const STEP: f64 = 1e-4;
     let slope = |k: usize| {
         let at = |sign: f64| {
             let mut shape = term.shape.clone();
-            shape[k] = term.form.shape[k].moved(shape[k], sign * STEP);
+            shape[k] = term.form.shape[k].stepped(shape[k], sign * STEP);
             let fixed = term.effect.fixed_part(term.form.name, &shape, &problem.view);
             (term.effect.columns(term.form.name, &shape, &problem.view), fixed)
         };
@@ -323,7 +323,7 @@ pub fn varpro(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem
             let mut trial = terms.to_vec();
             for ((i, k), s) in index.iter().zip(&step) {
                 let bounds = trial[*i].form.shape[*k];
-                let value = bounds.moved(trial[*i].shape[*k], s.clamp(-1.0, 1.0));
+                let value = bounds.stepped(trial[*i].shape[*k], s.clamp(-1.0, 1.0));
                 trial[*i].shape[*k] = value.clamp(bounds.min, bounds.max);
             }
             for term in &mut trial {

@@ -3,7 +3,7 @@
 
 use crate::effect::Regime;
 use crate::preprocess::{Prepared, Problem};
-use crate::regression::candidates::CandidateSet;
+use crate::regression::candidates::{CandidateSet, CandidateSets};
 use crate::regression::canonical_fit::{enter, fit_canonical};
 use crate::regression::hysteresis_form::form_of;
 use crate::regression::linear_model::{LinearModel, Term, columns, fixed_part};
@@ -85,11 +85,35 @@ impl<'p> TwoStageModel<'p> {
     }
 
     /// The model of a run that is judged sample by sample.
-    pub fn decided(prepared: &'p Prepared, spec: &'p ModelSpec, effects: Vec<String>) -> Result<Self, ModelError> {
+    fn decided(prepared: &'p Prepared, spec: &'p ModelSpec, effects: Vec<String>) -> Result<Self, ModelError> {
+        let (unfitted, effects_to_fit) = Self::unfitted(prepared, spec, effects)?;
+        let ids: Vec<&str> = effects_to_fit.iter().map(|effect| effect.info().id).collect();
+        let library = CandidateSet::only(spec, unfitted.main.problem, prepared.regimes(), &ids);
+        Ok(unfitted.fitted(&effects_to_fit, &library))
+    }
+
+    /// The same, from candidates that are known.
+    pub fn from_candidates(sets: &CandidateSets<'p>, effects: Vec<String>) -> Result<Self, ModelError> {
+        let (unfitted, effects_to_fit) = Self::unfitted(sets.prepared, sets.spec, effects)?;
+        let library = sets.of(unfitted.main.problem);
+        Ok(unfitted.fitted(&effects_to_fit, library))
+    }
+
+    fn fitted(mut self, effects: &[&'p dyn Effect], library: &CandidateSet<'p>) -> Self {
+        self.main = crate::regression::layout::fit_canonical(&self.main, effects, library);
+        self
+    }
+
+    /// The offset terms of a model, and the effects that have to be fitted.
+    fn unfitted(
+        prepared: &'p Prepared,
+        spec: &'p ModelSpec,
+        effects: Vec<String>,
+    ) -> Result<(Self, Vec<&'p dyn Effect>), ModelError> {
         let main = LinearModel::new(prepared.judged(&effects));
         let mut assembly =
             Self { prepared, spec, effects, main, moving: None, ramp_offset: Vec::new(), hidden: Vec::new() };
-        let mut effects_to_fit: Vec<&dyn Effect> = Vec::new();
+        let mut effects_to_fit: Vec<&'p dyn Effect> = Vec::new();
         let view = &prepared.main.view;
         for id in &assembly.effects {
             let effect = spec.find(id)?;
@@ -106,10 +130,7 @@ impl<'p> TwoStageModel<'p> {
                 effects_to_fit.push(effect);
             }
         }
-        let ids: Vec<&str> = effects_to_fit.iter().map(|effect| effect.info().id).collect();
-        let library = CandidateSet::only(spec, assembly.main.problem, prepared.regimes(), &ids);
-        assembly.main = crate::regression::layout::fit_canonical(&assembly.main, &effects_to_fit, &library);
-        Ok(assembly)
+        Ok((assembly, effects_to_fit))
     }
 
     /// Whether steady-state means cannot show the effect, so that it is fitted where the motion changes.

@@ -84,7 +84,8 @@ pub struct Diagnosis {
     /// Whether structure remains with all suggestions.
     #[serde(default)]
     pub structure_remains: bool,
-    /// Missing effects, the most important first. Empty unless the verdict is `missing_effect`.
+    /// Missing effects: in the order of addition where samples are judged, elsewhere the most important first. Empty unless
+    /// the verdict is `missing_effect`.
     pub suggestions: Vec<Suggestion>,
     /// An effect that may be present in addition to the suggestions and changes the parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]

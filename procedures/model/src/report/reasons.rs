@@ -119,9 +119,7 @@ impl RemovalReason {
             RemovalReason::Insignificant => "it adds nothing to the other effects",
             RemovalReason::Swapped => "another effect predicts better in its place",
             RemovalReason::RandomWalk => "a zero that drifts over time explains as much",
-            RemovalReason::Unidentified => {
-                "this run determines its size or shape poorly, and the error hardly increases without it"
-            }
+            RemovalReason::Unidentified => "this run does not determine its size or shape well enough",
             RemovalReason::PartialExplanation => "it explains only part of the structure over its axis",
             RemovalReason::Spurious => "it explains nothing beyond the remaining structure",
         }

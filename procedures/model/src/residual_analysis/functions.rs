@@ -47,7 +47,7 @@ pub fn functions(problem: &Problem) -> Vec<Functions> {
     for column in view.points.unknown() {
         let values = view.get(column);
         let knots = levels(values, LEVELS);
-        let [rising, falling] = ways(values, direction);
+        let [rising, falling] = rising_and_falling(values, direction);
         let both = [hats(values, &knots, &rising), hats(values, &knots, &falling)].concat();
         push(vec![column, Signal::Direction], both);
     }
@@ -55,7 +55,7 @@ pub fn functions(problem: &Problem) -> Vec<Functions> {
 }
 
 /// The direction while a signal rises and while it falls.
-fn ways(values: &[f64], direction: &[f64]) -> [Vec<f64>; 2] {
+fn rising_and_falling(values: &[f64], direction: &[f64]) -> [Vec<f64>; 2] {
     let steps: Vec<f64> =
         (0..values.len()).map(|i| values[(i + 1).min(values.len() - 1)] - values[i.saturating_sub(1)]).collect();
     let usual = quantile(steps.iter().map(|s| s.abs()), 0.5) + 1e-12;

@@ -125,7 +125,9 @@ fn unknown(prepared: &Prepared) -> String {
         true => {
             "no noise floor, because the repeats share no condition and phase; use the same steps in every repeat, in any order"
         }
-        false => "no noise floor, because the run has no repeats of the same profile",
+        false => {
+            "no noise floor, because no repeats were found: the run has no column for them, and its motion no clear period"
+        }
     };
     source.to_owned()
 }

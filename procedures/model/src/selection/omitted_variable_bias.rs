@@ -85,12 +85,12 @@ impl<'p> FloatingSearch<'_, 'p> {
 
     /// Whether a coefficient of the given model differs from its value in another model.
     pub(crate) fn is_biased_by(&self, other: &LinearModel<'p>) -> bool {
-        moved(&self.now, other, &self.initial_terms).is_some()
+        biased_coefficient(&self.now, other, &self.initial_terms).is_some()
     }
 }
 
 /// A coefficient in two models.
-pub struct Moved<'p> {
+pub struct BiasedCoefficient<'p> {
     pub term: Term<'p>,
     pub coefficient: &'p str,
     pub was: f64,
@@ -98,7 +98,11 @@ pub struct Moved<'p> {
 }
 
 /// The first coefficient of these effects whose change between two models exceeds the error.
-pub fn moved<'p>(was: &LinearModel<'p>, is: &LinearModel<'p>, effects: &[impl AsRef<str>]) -> Option<Moved<'p>> {
+pub fn biased_coefficient<'p>(
+    was: &LinearModel<'p>,
+    is: &LinearModel<'p>,
+    effects: &[impl AsRef<str>],
+) -> Option<BiasedCoefficient<'p>> {
     let (then, now) = (was.linear(), is.linear());
     let both = was.terms.iter().enumerate().filter(|(_, term)| effects.iter().any(|id| id.as_ref() == term.id()));
     // In another form the coefficients have another meaning.
@@ -111,6 +115,6 @@ pub fn moved<'p>(was: &LinearModel<'p>, is: &LinearModel<'p>, effects: &[impl As
             (is - was).abs() > BIASED_COEFFICIENT * is.abs() && size > then.sse
         };
         let (k, was, is) = pairs.find(|(k, was, is)| is_wrong(*k, *was, *is))?;
-        Some(Moved { term: term.clone(), coefficient: term.form.linear[k], was, is })
+        Some(BiasedCoefficient { term: term.clone(), coefficient: term.form.linear[k], was, is })
     })
 }

@@ -13,7 +13,7 @@ use crate::selection::floating_search::{FloatingSearch, Move};
 use crate::selection::hysteresis_stage::hysteresis_step;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::offset_terms;
-use crate::selection::omitted_variable_bias::{Imitated as Found, moved};
+use crate::selection::omitted_variable_bias::{Imitated as Found, biased_coefficient};
 use crate::selection::pruning::unidentified::{Undetermined, is_identified};
 use crate::selection::pruning::{Point, Rejected, Trial};
 use crate::selection::ramp_stage::delay;
@@ -219,7 +219,7 @@ fn imitated(
     spec: &ModelSpec,
     prepared: &Prepared,
 ) -> Option<Imitated> {
-    let found = moved(without, with, &spec.effects)?;
+    let found = biased_coefficient(without, with, &spec.effects)?;
     let info = found.term.effect.info();
     Some(Imitated {
         effect: id.into(),

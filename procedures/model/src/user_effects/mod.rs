@@ -78,7 +78,7 @@ impl OwnEffect {
         let response = self.formula.columns.iter().find_map(|(_, e)| e.place_of(Signal::Drive));
         let response = response.map(|at| Mistake::new(at, OF_RESPONSE));
         let found = |mistake: Mistake| mistake.found(self.id(), "formula", &self.definition.formula);
-        self.formula.doubt(motion).cloned().into_iter().chain(response).map(found).collect()
+        self.formula.unit_fault(motion).cloned().into_iter().chain(response).map(found).collect()
     }
 
     /// The first column of the formula that is not among `columns`.

@@ -30,7 +30,7 @@ pub fn print(maps: &ResidualMaps, named: &[String], kind: Kind) {
             None => axis.0.bins.iter().for_each(|bin| println!("{}", line(bin, &maps.unit, largest))),
             Some(pair) => {
                 for (y, [from, _]) in pair.y_bins.iter().enumerate() {
-                    println!("{}:", words::way(kind, *from > 0.0));
+                    println!("{}:", words::direction_text(kind, *from > 0.0));
                     let side = pair.cells.iter().filter(|cell| cell.y == y);
                     side.for_each(|cell| println!("{}", line(&bin(pair, cell), &maps.unit, largest)));
                 }

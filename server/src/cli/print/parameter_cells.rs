@@ -12,11 +12,11 @@ pub struct Cells {
     pub interval: String,
 }
 
-/// A selected integer, and a parameter without influence on the run, have no interval.
+/// A selected integer, a known value, and a parameter without influence on the run have no interval.
 pub fn cells(value: f64, ci95: [f64; 2], unit: &str) -> Cells {
     let [low, high] = ci95;
     if low == high {
-        let (value, interval) = if low == 0.0 { ("–".to_owned(), "–") } else { (figure(value), "discrete") };
+        let (value, interval) = if low == 0.0 { ("–".to_owned(), "–") } else { (figure(value), "no interval") };
         return Cells { value, unit: plain(unit), interval: interval.to_owned() };
     }
     if !(low.is_finite() && high.is_finite()) {
@@ -43,7 +43,7 @@ mod tests {
             (4.2e-5, [4.05e-5, 4.35e-5], "Nm·s/rad", ["42.0", "µNm·s/rad", "40.5 … 43.5"]),
             (1.2e-5, [1.1e-5, 1.3e-5], "kg·m²", ["1.200·10⁻⁵", "kg·m²", "1.100·10⁻⁵ … 1.300·10⁻⁵"]),
             (0.820308, [0.820306, 0.82031], "1", ["0.8203080", "", "0.8203060 … 0.8203100"]),
-            (7.0, [7.0, 7.0], "1", ["7.000", "", "discrete"]),
+            (7.0, [7.0, 7.0], "1", ["7.000", "", "no interval"]),
             (0.0, [0.0, 0.0], "Nm", ["–", "Nm", "–"]),
             (0.03, [0.02, f64::INFINITY], "Nm", ["0.03000", "Nm", "0.02000 … ∞"]),
         ] {

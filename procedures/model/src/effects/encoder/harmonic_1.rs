@@ -28,8 +28,12 @@ impl Effect for Harmonic1 {
         INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form<'_>> {
-        vec![Form::linear(&["a", "b"])]
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        if crate::effects::is_repeated(view, Signal::Position, 1) {
+            vec![Form::linear(&["a", "b"])]
+        } else {
+            Vec::new()
+        }
     }
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {

@@ -33,7 +33,7 @@ impl Effect for HarmonicN {
         let poles = view.constants.pole_pairs.map(f64::from);
         let own = |h: f64| poles.is_some_and(|p| h == p || h == 2.0 * p);
         let mut forms =
-            crate::effects::harmonic_form(view, Signal::Position, 3..=if poles.is_some() { 120 } else { 15 });
+            crate::effects::repeated_harmonic_form(view, Signal::Position, 3..=if poles.is_some() { 120 } else { 15 });
         forms.iter_mut().for_each(|f| f.grid.retain(|h| !own(h[0])));
         forms
     }

@@ -3,7 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, orders, waves};
-use crate::thresholds::RIPPLE_PERIOD;
+use crate::thresholds::WHOLE_TURN;
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -35,7 +35,7 @@ impl Effect for FrictionRipple {
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         // With nuisance columns for reversals and speed, a wave of nearly one period is sufficient.
         if view.constants.followed_hz.is_some() {
-            let first = (RIPPLE_PERIOD / view.turns(Signal::Link)).ceil().clamp(1.0, 25.0) as u32;
+            let first = (WHOLE_TURN / view.turns(Signal::Link)).ceil().clamp(1.0, 25.0) as u32;
             return crate::effects::harmonic_form(view, Signal::Link, first..=24);
         }
         let mut forms = crate::effects::repeated_harmonic_form(view, Signal::Link, 1..=60);

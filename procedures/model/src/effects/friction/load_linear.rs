@@ -34,22 +34,23 @@ impl Effect for LoadLinear {
     }
 
     fn formula_of(&self, form: &str) -> &str {
-        if form == teeth::WITH_WEIGHT {
-            "μ·|τ_link/N + g_c·cos θ_link + g_s·sin θ_link|·sign ω"
-        } else {
-            INFO.formula
+        match form {
+            teeth::WITH_WEIGHT => "μ·|τ_link/N + g_c·cos θ_link + g_s·sin θ_link|·sign ω",
+            teeth::ONLY_WEIGHT => "μ·|g_c·cos θ_link + g_s·sin θ_link|·sign ω",
+            _ => INFO.formula,
         }
+    }
+
+    fn missing(&self, view: &View) -> Option<&'static str> {
+        teeth::missing(view)
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        let borne = teeth::bear(shape, view);
-        vec![borne.iter().zip(view.get(Signal::Direction)).map(|(l, d)| l.abs() * d).collect()]
+        let load = teeth::transmitted_torque(shape, view);
+        vec![load.iter().zip(view.get(Signal::Direction)).map(|(l, d)| l.abs() * d).collect()]
     }
 
     fn symbolic(&self, form: &FittedForm) -> Symbolic {
-        match form.name {
-            teeth::WITH_WEIGHT => formula(format!("abs({}) * direction", teeth::TORQUE)),
-            _ => formula("abs(load) * direction"),
-        }
+        formula(format!("abs({}) * direction", teeth::torque(form.name)))
     }
 }

@@ -31,22 +31,23 @@ impl Effect for LoadQuadratic {
     }
 
     fn formula_of(&self, form: &str) -> &str {
-        if form == teeth::WITH_WEIGHT {
-            "μ_2·(τ_link/N + g_c·cos θ_link + g_s·sin θ_link)²·sign ω"
-        } else {
-            INFO.formula
+        match form {
+            teeth::WITH_WEIGHT => "μ_2·(τ_link/N + g_c·cos θ_link + g_s·sin θ_link)²·sign ω",
+            teeth::ONLY_WEIGHT => "μ_2·(g_c·cos θ_link + g_s·sin θ_link)²·sign ω",
+            _ => INFO.formula,
         }
+    }
+
+    fn missing(&self, view: &View) -> Option<&'static str> {
+        teeth::missing(view)
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        let borne = teeth::bear(shape, view);
-        vec![borne.iter().zip(view.get(Signal::Direction)).map(|(l, d)| l * l * d).collect()]
+        let load = teeth::transmitted_torque(shape, view);
+        vec![load.iter().zip(view.get(Signal::Direction)).map(|(l, d)| l * l * d).collect()]
     }
 
     fn symbolic(&self, form: &FittedForm) -> Symbolic {
-        match form.name {
-            teeth::WITH_WEIGHT => formula(format!("({})^2 * direction", teeth::TORQUE)),
-            _ => formula("load * load * direction"),
-        }
+        formula(format!("{0} * {0} * direction", teeth::torque(form.name)))
     }
 }

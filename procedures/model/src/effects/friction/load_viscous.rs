@@ -31,22 +31,23 @@ impl Effect for LoadViscous {
     }
 
     fn formula_of(&self, form: &str) -> &str {
-        if form == teeth::WITH_WEIGHT {
-            "c_l·|τ_link/N + g_c·cos θ_link + g_s·sin θ_link|·ω"
-        } else {
-            INFO.formula
+        match form {
+            teeth::WITH_WEIGHT => "c_l·|τ_link/N + g_c·cos θ_link + g_s·sin θ_link|·ω",
+            teeth::ONLY_WEIGHT => "c_l·|g_c·cos θ_link + g_s·sin θ_link|·ω",
+            _ => INFO.formula,
         }
+    }
+
+    fn missing(&self, view: &View) -> Option<&'static str> {
+        teeth::missing(view)
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        let borne = teeth::bear(shape, view);
-        vec![borne.iter().zip(view.get(Signal::Velocity)).map(|(l, w)| l.abs() * w).collect()]
+        let load = teeth::transmitted_torque(shape, view);
+        vec![load.iter().zip(view.get(Signal::Velocity)).map(|(l, w)| l.abs() * w).collect()]
     }
 
     fn symbolic(&self, form: &FittedForm) -> Symbolic {
-        match form.name {
-            teeth::WITH_WEIGHT => formula(format!("abs({}) * velocity", teeth::TORQUE)),
-            _ => formula("abs(load) * velocity"),
-        }
+        formula(format!("abs({}) * velocity", teeth::torque(form.name)))
     }
 }

@@ -112,10 +112,12 @@ pub fn spikes(run: &RunTable) -> Option<String> {
         }
         let first = *found.first()?;
         let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
-        let samples = if found.len() == 1 { "one sample that stands".to_owned() } else { format!("{} samples that stand", found.len()) };
+        let (samples, them) = match found.len() {
+            1 => ("one sample that stands alone,".to_owned(), "it"),
+            count => (format!("{count} samples that stand alone, the first"), "them"),
+        };
         Some(format!(
-            "{name} has {samples} alone, the first at {:.3} s with {}: what is fitted bends towards them; check the cable, or leave \
-             them out",
+            "{name} has {samples} at {:.3} s with {}: what is fitted bends towards {them}; check the cable, or leave {them} out",
             time_s[first],
             figure(values[first], &unit)
         ))

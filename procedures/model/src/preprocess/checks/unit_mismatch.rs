@@ -130,12 +130,12 @@ fn clash(run: &RunTable, blocks: &[Block], one: &str, other: &str, ratio: f64) -
             return Some(Contradiction::fatal(reported));
         }
     }
-    let ways = ways(blocks, a, b, is_speed, ratio);
-    let times = alike(&ways).or_else(|| mostly(&ways))?;
+    let travels = travels(blocks, a, b, is_speed, ratio);
+    let times = alike(&travels).or_else(|| mostly(&travels))?;
     if (1.0 / CLASH_RATIO..=CLASH_RATIO).contains(&times) {
         let is_geared = !is_speed && ratio != 1.0;
         return is_geared
-            .then(|| other_gear(&ways, ratio))
+            .then(|| other_gear(&travels, ratio))
             .flatten()
             .map(|text| Contradiction { is_fatal: false, text });
     }
@@ -145,11 +145,11 @@ fn clash(run: &RunTable, blocks: &[Block], one: &str, other: &str, ratio: f64) -
 }
 
 /// Travel of `ratio · one` and of `other` in each block of a run.
-fn ways(blocks: &[Block], a: &[f64], b: &[f64], is_speed: bool, ratio: f64) -> Vec<(f64, f64)> {
+fn travels(blocks: &[Block], a: &[f64], b: &[f64], is_speed: bool, ratio: f64) -> Vec<(f64, f64)> {
     blocks
         .iter()
         .map(|&(Range { start, end }, passed_s)| {
-            let way = match is_speed {
+            let travel = match is_speed {
                 // By the trapezoidal rule.
                 true => {
                     a[start..=end].windows(2).map(|v| 0.5 * (v[0] + v[1])).sum::<f64>() * passed_s
@@ -157,16 +157,16 @@ fn ways(blocks: &[Block], a: &[f64], b: &[f64], is_speed: bool, ratio: f64) -> V
                 }
                 false => ratio * (a[end] - a[start]),
             };
-            (way, b[end] - b[start])
+            (travel, b[end] - b[start])
         })
         .collect()
 }
 
 /// A gear ratio that is wrong by a tooth or two: the wrong share of the load looks like an effect.
-fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
-    let fast = 0.5 * ways.iter().fold(0.0f64, |most, w| most.max(w.1.abs()));
+fn other_gear(travels: &[(f64, f64)], ratio: f64) -> Option<String> {
+    let fast = 0.5 * travels.iter().fold(0.0f64, |most, w| most.max(w.1.abs()));
     // Blocks at low speed are excluded, because the joint twists at reversals.
-    let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().filter(|w| w.1.abs() >= fast).map(f).sum::<f64>();
+    let sum = |f: fn(&(f64, f64)) -> f64| travels.iter().filter(|w| w.1.abs() >= fast).map(f).sum::<f64>();
     let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
     // The motor angle is much finer than the link angle, so that its noise does not bias this ratio.
     let found = ratio * bb / ab;
@@ -190,18 +190,18 @@ fn rests(one: &str, a: &[f64], other: &str, b: &[f64], ratio: f64) -> Option<Str
 }
 
 /// Ratio of the first to the second travel, if both are correlated.
-fn alike(ways: &[(f64, f64)]) -> Option<f64> {
-    let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().map(f).sum::<f64>();
+fn alike(travels: &[(f64, f64)]) -> Option<f64> {
+    let sum = |f: fn(&(f64, f64)) -> f64| travels.iter().map(f).sum::<f64>();
     let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
     (ab * ab > IN_COMMON * aa * bb).then_some(aa / ab)
 }
 
 /// The same by the median over the blocks: an angle within one turn jumps in the others.
-fn mostly(ways: &[(f64, f64)]) -> Option<f64> {
-    let times: Vec<f64> = ways.iter().filter(|w| w.1 != 0.0).map(|w| w.0 / w.1).collect();
+fn mostly(travels: &[(f64, f64)]) -> Option<f64> {
+    let times: Vec<f64> = travels.iter().filter(|w| w.1 != 0.0).map(|w| w.0 / w.1).collect();
     let middle = crate::preprocess::median(times.iter().copied());
     let near = times.iter().filter(|t| (*t / middle - 1.0).abs() < ALIKE_RATIO).count();
-    (near as f64 > ALIKE_BLOCKS * ways.len() as f64).then_some(middle)
+    (near as f64 > ALIKE_BLOCKS * travels.len() as f64).then_some(middle)
 }
 
 /// An encoder that moves by more than a turn between two samples: its position is ambiguous.

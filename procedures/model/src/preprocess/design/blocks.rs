@@ -1,5 +1,6 @@
 //! Design of the data: rows to blocks, folds and replicate pairs.
 
+use crate::thresholds::RANGE_MARGIN;
 use std::collections::{BTreeSet, HashMap};
 
 /// Divides groups of consecutive rows into blocks of about equal length, so that a slow trend is not contained in one
@@ -74,13 +75,12 @@ pub fn left_out_unit<'a>(condition: &'a [usize], group: &'a [usize]) -> &'a [usi
 /// Distributes stretches (`group`) whose values exceed the range of all other folds over several folds, because other
 /// stretches cannot predict them.
 pub fn share_edges(fold: &mut [usize], folds: usize, group: &[usize], values: &[f64]) {
-    const BEYOND: f64 = 0.02;
     let range = |without: Option<usize>| {
         let held = values.iter().zip(fold.iter()).filter(|(_, f)| Some(**f) != without).map(|(v, _)| *v);
         held.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
     };
     let (low, high) = range(None);
-    let margin = BEYOND * (high - low);
+    let margin = RANGE_MARGIN * (high - low);
     let others: Vec<(f64, f64)> = (0..folds).map(|f| range(Some(f))).collect();
     let is_beyond = |row: usize| {
         let (low, high) = others[fold[row]];

@@ -1,5 +1,6 @@
 //! Segments, recordings and repeats: from their columns, or detected if these are missing.
 
+use crate::thresholds::{OTHER_DIRECTION, PERIOD_CORRELATION, RECORDING_GAP, RECORDING_JUMP, SWING, TREND_NOISES};
 use jointbench_instrument::RunTable;
 use std::ops::Range;
 
@@ -24,8 +25,8 @@ pub fn runs(run: &RunTable) -> Vec<usize> {
 
 /// First samples of recordings: after a gap in time of more than ten samples, or at a jump of the position.
 pub fn recordings(time_s: &[f64], position: &[f64], step_s: f64) -> Vec<usize> {
-    let reach = 50.0 * crate::preprocess::median(position.windows(2).map(|w| (w[1] - w[0]).abs())).max(1e-4);
-    let gap = |i: usize| time_s[i] - time_s[i - 1] > 10.0 * step_s;
+    let reach = RECORDING_JUMP * crate::preprocess::median(position.windows(2).map(|w| (w[1] - w[0]).abs())).max(1e-4);
+    let gap = |i: usize| time_s[i] - time_s[i - 1] > RECORDING_GAP * step_s;
     let jump = |i: usize| (position[i] - position[i - 1]).abs() > reach.max(0.5);
     std::iter::once(0).chain((1..time_s.len()).filter(|i| gap(*i) || jump(*i))).collect()
 }
@@ -48,13 +49,11 @@ pub fn direction(velocity: &[f64], band: f64) -> Vec<f64> {
 
 /// Rising or falling: the trend changes where the signal has returned from its last extreme by more than its noise.
 pub fn trend(values: &[f64]) -> Vec<f64> {
-    /// Noise limit in standard deviations, for the number of samples of a run.
-    const NOISE: f64 = 6.0;
     /// Median of |x − 2y + z| of white noise, in standard deviations.
     const SECOND_DIFFERENCE: f64 = 0.6745 * 2.449;
     let every = values.len().div_ceil(crate::preprocess::INFORMATIVE_ROWS);
     let can_absorb = values.windows(3).step_by(every).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs());
-    let depth = NOISE * crate::preprocess::median(can_absorb) / SECOND_DIFFERENCE;
+    let depth = TREND_NOISES * crate::preprocess::median(can_absorb) / SECOND_DIFFERENCE;
     let (mut low, mut high) = (0, 0);
     let mut sign = 0.0;
     let mut trend = vec![0.0; values.len()];
@@ -81,28 +80,26 @@ pub fn trend(values: &[f64]) -> Vec<f64> {
 
 /// The direction of a run that moves in the other direction in less than a tenth of its samples.
 pub fn main_direction(direction: &[f64]) -> Option<f64> {
-    const FEW: f64 = 0.1;
     let ahead = direction.iter().sum::<f64>().signum();
     let back = direction.iter().filter(|d| **d == -ahead).count() as f64;
-    (back < FEW * direction.len() as f64).then_some(ahead)
+    (back < OTHER_DIRECTION * direction.len() as f64).then_some(ahead)
 }
 
 /// A joint that creeps over its gear teeth repeatedly swings back a little, which is no reversal. If these swings are
 /// short and rare, the whole run has one direction.
 pub fn without_swings(direction: Vec<f64>, position: &[f64], starts: &[usize]) -> Vec<f64> {
-    const SHORT: f64 = 0.01;
     let Some(ahead) = main_direction(&direction) else { return direction };
-    let (mut reached, mut deepest, mut way) = (f64::NEG_INFINITY, 0.0f64, 0.0f64);
+    let (mut reached, mut deepest, mut travel) = (f64::NEG_INFINITY, 0.0f64, 0.0f64);
     for (i, q) in position.iter().enumerate() {
         if starts.contains(&i) {
             reached = f64::NEG_INFINITY;
         } else if ahead * q > reached {
-            way += ahead * q - reached;
+            travel += ahead * q - reached;
         }
         reached = reached.max(ahead * q);
         deepest = deepest.max(reached - ahead * q);
     }
-    if deepest < SHORT * way { vec![ahead; direction.len()] } else { direction }
+    if deepest < SWING * travel { vec![ahead; direction.len()] } else { direction }
 }
 
 /// A column as integers, if the run has it.
@@ -148,7 +145,7 @@ pub fn period(signal: &[f64]) -> Option<usize> {
     };
     let (near, _) = best(&mut (lag..=n / 2).step_by(stride));
     let (period, value) = best(&mut (near.saturating_sub(stride - 1).max(1)..=(near + stride - 1).min(n / 2)));
-    (value > 0.98).then_some(period)
+    (value > PERIOD_CORRELATION).then_some(period)
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::preprocess::{Prepared, Problem};
 use crate::report::fit::Preparation;
 use crate::signal::Signal;
 use crate::stats::summary::{mean, median, peak};
-use crate::thresholds::{KEPT_SHARE, SETTLED_SHARE};
+use crate::thresholds::{KEPT_SHARE, NOISE_ERRORS, SAME_LENGTH, SAME_LEVEL, SETTLED_SHARE, SMALL_LEVEL, STEADY_SPEED};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
 use rayon::prelude::*;
@@ -26,9 +26,6 @@ const MOST_ROWS: usize = 12_000;
 const REACH: usize = 3;
 /// Largest number of rows around reversals; of a longer run only some pairs of segments are used.
 const MOST_MOVING_ROWS: usize = 8_000;
-/// Least ratio of speed to its scatter. Half of that is sufficient if the speed oscillates about its median: a slow
-/// step over gear teeth.
-const STEADY: f64 = 5.0;
 /// Least number of crossings of the median for an oscillation; the arc of a swing has fewer.
 const WAVERS: usize = 4;
 
@@ -62,7 +59,7 @@ fn settled(
     let target = median(speed[second_half.clone()].iter().copied());
     let scatter = 1.5 * median(speed[second_half.clone()].iter().map(|v| (v - target).abs()));
     let crossings = speed[second_half.clone()].windows(2).filter(|w| (w[0] > target) != (w[1] > target)).count();
-    let steady = if crossings >= WAVERS { STEADY / 2.0 } else { STEADY };
+    let steady = if crossings >= WAVERS { STEADY_SPEED / 2.0 } else { STEADY_SPEED };
     if target.abs() < steady * scatter || target == 0.0 {
         return None;
     }
@@ -82,7 +79,7 @@ fn settled(
         let (first, second) = of[kept.clone()].split_at(kept.len() / 2);
         (mean(second) - mean(first)).abs()
     };
-    let by_chance = 3.0 * scatter * (4.0 / kept.len() as f64).sqrt();
+    let by_chance = NOISE_ERRORS * scatter * (4.0 / kept.len() as f64).sqrt();
     let way_rad = target.abs() * link_s * kept.len() as f64 / 2.0;
     let winds_up = load.is_some_and(|load| changes(&load) > (SETTLED_SHARE + way_rad) * heaviest);
     if winds_up || changes(&speed) > KEPT_SHARE * target.abs() + by_chance {
@@ -188,10 +185,10 @@ pub fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&
         Some(_) => peak(&loads),
         None => peak(&loads).max(peak(&middles(&samples.target))),
     };
-    let speed = blocks::clusters(&speeds, |v| 0.03 * v.abs());
-    let load = blocks::clusters(&loads, |l| 0.03 * l.abs() + 0.01 * peak);
+    let speed = blocks::clusters(&speeds, |v| SAME_LEVEL * v.abs());
+    let load = blocks::clusters(&loads, |l| SAME_LEVEL * l.abs() + SMALL_LEVEL * peak);
     // Short steps and long turns at one speed are different conditions, because they start at different positions.
-    let length = blocks::clusters(&lengths, |l| 0.3 * l);
+    let length = blocks::clusters(&lengths, |l| SAME_LENGTH * l);
     let mut known: Vec<(usize, usize, usize)> = (0..plateaus.len()).map(|i| (length[i], load[i], speed[i])).collect();
     let each = known.clone();
     known.sort_unstable();

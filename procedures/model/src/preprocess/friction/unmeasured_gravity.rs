@@ -1,4 +1,4 @@
-//! Gravity torque of the link that the load sensor does not measure.
+//! Gravity torque of the link that no load sensor measures.
 
 use crate::linear::basis::{Basis, dot};
 use crate::signal::{Signal, Signals};
@@ -7,18 +7,21 @@ use crate::thresholds::{GRAVITY_OWN_SHARE, GRAVITY_SHARE};
 /// Largest number of evaluated points.
 const MOST: usize = 4000;
 
-/// Gravity torque in addition to the measured load, as coefficients of cos and sin of the link angle [Nm]. The gear
-/// teeth carry it too if the sensor is mounted beyond the weight.
+/// Gravity torque in addition to the measured load, if there is one, as coefficients of cos and sin of the link angle
+/// [Nm]. The gear teeth carry it too if the sensor is mounted beyond the weight.
 pub fn unmeasured(signals: &Signals, torque_nm: &[f64]) -> Option<[f64; 2]> {
     let every = torque_nm.len().div_ceil(MOST);
     let thin = |values: &[f64]| -> Vec<f64> { values.iter().step_by(every).copied().collect() };
-    let load = thin(signals.find(Signal::Load)?);
+    let load = signals.find(Signal::Load).map(thin);
     let link = thin(signals.find(Signal::Link)?);
     let direction = thin(signals.find(Signal::Direction)?);
-    let mut columns = vec![vec![1.0; load.len()]];
+    let mut columns = vec![vec![1.0; link.len()]];
     columns.extend([Signal::Velocity, Signal::Acceleration].into_iter().filter_map(|s| signals.find(s)).map(thin));
-    columns.push(load.iter().zip(&direction).map(|(l, d)| l.abs() * d).collect());
-    columns.extend([load, direction]);
+    if let Some(load) = load {
+        columns.push(load.iter().zip(&direction).map(|(l, d)| l.abs() * d).collect());
+        columns.push(load);
+    }
+    columns.push(direction);
     let mut basis = Basis::of(&columns);
     let waves: [Vec<f64>; 2] = [link.iter().map(|a| a.cos()).collect(), link.iter().map(|a| a.sin()).collect()];
     let left = basis.rest(&thin(torque_nm));

@@ -8,7 +8,7 @@ use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::maps::binned_axis::BinnedAxis;
 use crate::residual_analysis::maps::map::{Cell, Map};
 use crate::thresholds::{AXIS_DOMINATES, AXIS_SHADOW, REGION_OVERLAP, REGION_WORSE};
-use crate::words::{figure, percent, spoken_axis, way};
+use crate::words::{direction_text, figure, percent, spoken_axis};
 use jointbench_instrument::Kind;
 
 /// Largest number of reported regions.
@@ -23,7 +23,7 @@ pub struct ReferenceMagnitude {
 
 impl ReferenceMagnitude {
     /// `18 % of the Coulomb friction`, `35 times the noise`.
-    pub fn says(&self, size: f64) -> String {
+    pub fn compare(&self, size: f64) -> String {
         match size / self.value {
             times if times >= 9.95 => format!("{times:.0} times {}", self.what),
             times if times >= 1.995 => format!("{times:.1} times {}", self.what),
@@ -165,8 +165,8 @@ impl Stretch<'_> {
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
         let direction = self.map.y.as_ref().map(|y| if y.bins[self.y].centre > 0.0 { "positive" } else { "negative" });
         let side = if self.mean > 0.0 { "low" } else { "high" };
-        let measure = reference.map_or_else(String::new, |y| format!(", {}", y.says(self.mean.abs())));
-        let motion = direction.map_or_else(String::new, |d| format!(" {}", way(kind, d == "positive")));
+        let measure = reference.map_or_else(String::new, |y| format!(", {}", y.compare(self.mean.abs())));
+        let motion = direction.map_or_else(String::new, |d| format!(" {}", direction_text(kind, d == "positive")));
         Region {
             axis: x.name.clone(),
             from,
@@ -186,7 +186,7 @@ impl Stretch<'_> {
     /// `below 9.0 rad/s`, `near 2.4 Nm`, `between a link position of 1.1 rad and 1.3 rad`.
     fn place(&self, kind: Kind, x: &BinnedAxis) -> String {
         if x.name == "direction" {
-            return way(kind, x.bins[self.first].centre > 0.0).into();
+            return direction_text(kind, x.bins[self.first].centre > 0.0).into();
         }
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
         if x.name == "repeat" {

@@ -6,13 +6,18 @@ use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_columns, nuisance};
 use crate::regression::two_stage_model::TwoStageModel;
+use crate::selection::evidence_search::rules::nonzero_size::has_size;
 use crate::thresholds::DECISION_SHARE;
 
-/// The added effect without which the validation error does not increase, if other effects were added too.
+/// An added effect without a size, or the one without which the validation error does not increase, if other effects were
+/// added too.
 pub fn insignificant<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     let added: Vec<&'p str> =
         end.effects.iter().filter(|e| !spec.contains(e)).filter_map(|e| Some(spec.find(e).ok()?.info().id)).collect();
     let form_error = end.main.problem.form_error.as_deref()?;
+    if let Some(id) = added.iter().find(|id| !has_size(id, &end.main)) {
+        return Some(id);
+    }
     if added.len() < 2 {
         return None;
     }

@@ -11,7 +11,7 @@ mod power_balance;
 pub(crate) mod rules;
 
 use crate::preprocess::Prepared;
-use crate::regression::candidates::CandidateSet;
+use crate::regression::candidates::CandidateSets;
 use crate::regression::cross_validation::validation_rms;
 use crate::regression::evidence::Evidence;
 use crate::regression::linear_model::LinearModel;
@@ -32,32 +32,15 @@ use crate::selection::model_selection::ModelSelection;
 use crate::selection::refused::{EvidenceResult, Refused};
 use crate::thresholds::{LEFT_SHARE, MOST_NAMED};
 use crate::{ModelError, ModelSpec, Options};
-use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Candidate sets of a run: for a friction direction that switches at once, and for one with presliding.
-struct Libraries<'p> {
-    plain: OnceCell<CandidateSet<'p>>,
-    bristled: OnceCell<CandidateSet<'p>>,
-}
-
-impl<'p> Libraries<'p> {
-    /// The candidate set that matches the friction direction of a model.
-    fn of(&self, model: &LinearModel<'p>, prepared: &'p Prepared, spec: &'p ModelSpec) -> &CandidateSet<'p> {
-        let is_plain = std::ptr::eq(model.problem, &prepared.main);
-        let known = if is_plain { &self.plain } else { &self.bristled };
-        known.get_or_init(|| CandidateSet::new(spec, model.problem, prepared.regimes()))
-    }
-}
-
 /// Data and state of the search.
 struct Search<'a, 'p> {
-    prepared: &'p Prepared,
     spec: &'p ModelSpec,
     options: &'a Options,
     path: Path<'a, 'p>,
-    libraries: Libraries<'p>,
+    sets: CandidateSets<'p>,
 }
 
 /// `on_advance` gets each step when it is made.
@@ -69,13 +52,13 @@ pub fn search<'p>(
     on_advance: &mut dyn FnMut(&SelectionStep),
 ) -> Result<ModelSelection<'p>, ModelError> {
     let start = TwoStageModel::new(prepared, spec, options)?;
-    let libraries = Libraries { plain: OnceCell::new(), bristled: OnceCell::new() };
-    let mut search = Search { prepared, spec, options, path: Path::new(start, on_advance), libraries };
+    let sets = CandidateSets::new(prepared, spec);
+    let mut search = Search { spec, options, path: Path::new(start, on_advance), sets };
     // Contradicting columns make every effect spurious: none is tested.
     let mut refused = Vec::new();
     if prepared.data_errors.fatal.is_empty() {
         if most > 0
-            && let Some(step) = power_balance(&search.path.start, options)
+            && let Some(step) = power_balance(&search.path.start, &search.sets, options)
         {
             search.path.push(step);
         }
@@ -92,7 +75,7 @@ pub fn search<'p>(
 impl<'p> Search<'_, 'p> {
     /// Evidence for the candidates of a model, with its solution. `None` for a run that is not judged sample by sample.
     fn evidence(&self, now: &TwoStageModel<'p>) -> Option<(Arc<Solution>, Vec<Evidence<'_, 'p>>)> {
-        let library = self.libraries.of(&now.main, self.prepared, self.spec);
+        let library = self.sets.of(now.main.problem);
         let forms = library.candidates.iter().filter(|c| !self.spec.contains(c.id())).count();
         let solution = Solution::of(&now.main)?;
         let all = candidates(now, &solution, library, forms);
@@ -111,7 +94,7 @@ impl<'p> Search<'_, 'p> {
             let (mut named, mut rejected) = (None, BTreeMap::new());
             for e in in_turn(&passing) {
                 let effects = now.effects.iter().cloned().chain([e.id().to_owned()]).collect();
-                let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+                let after = TwoStageModel::from_candidates(&self.sets, effects)?;
                 match rules::model_rejection(&Refit { now, solution: &solution, id: e.id(), after: &after }) {
                     Some(reason) => rejected.insert(e.id(), reason),
                     None => {
@@ -127,8 +110,10 @@ impl<'p> Search<'_, 'p> {
             let id = best.best.id();
             let mut ties = Vec::new();
             for tied in all.iter().filter(|e| e.id() != id && is_tied(best, e)) {
-                if self.fits_alike(tied.best.id(), &after)? && !ties.contains(&tied.best.id()) {
-                    ties.push(tied.best.id());
+                let rival = tied.best.id();
+                let with_rival = now.effects.iter().cloned().chain([rival.to_owned()]).collect();
+                if !ties.contains(&rival) && self.fits_alike(&after, with_rival)? {
+                    ties.push(rival);
                 }
             }
             let scored = scored(best, now, AdditionReason::ErrorReduction);
@@ -136,12 +121,11 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// Whether it predicts left-out blocks as well in the place of the added effect.
-    fn fits_alike(&self, rival: &str, after: &TwoStageModel<'p>) -> Result<bool, ModelError> {
-        let effects = self.path.end().effects.iter().cloned().chain([rival.to_owned()]).collect();
-        let other = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+    /// Whether a model of these effects predicts left-out blocks as well as the given one.
+    fn fits_alike(&self, model: &TwoStageModel<'p>, effects: Vec<String>) -> Result<bool, ModelError> {
+        let other = TwoStageModel::from_candidates(&self.sets, effects)?;
         let losses = |model: &LinearModel| Solution::of(model).map(|solution| solution.validation_losses(model));
-        Ok(match (losses(&after.main), losses(&other.main)) {
+        Ok(match (losses(&model.main), losses(&other.main)) {
             (Some(best), Some(losses)) => is_tie(&best, &losses),
             _ => true,
         })
@@ -153,9 +137,9 @@ impl<'p> Search<'_, 'p> {
         let Some((set, rival)) = shared_tie(&self.path) else { return Ok(()) };
         let end = self.path.end();
         let others: Vec<String> = end.effects.iter().filter(|e| !set.contains(&e.as_str())).cloned().collect();
-        let base = TwoStageModel::decided(self.prepared, self.spec, others.clone())?;
+        let base = TwoStageModel::from_candidates(&self.sets, others.clone())?;
         let with = others.into_iter().chain([rival.to_owned()]).collect();
-        let after = TwoStageModel::decided(self.prepared, self.spec, with)?;
+        let after = TwoStageModel::from_candidates(&self.sets, with)?;
         let Some((solution, all)) = self.evidence(&base) else { return Ok(()) };
         let refit = Refit { now: &base, solution: &solution, id: rival, after: &after };
         let passes = |e: &&Evidence| {
@@ -176,7 +160,7 @@ impl<'p> Search<'_, 'p> {
 
     fn remove(&mut self, id: &'p str, why: RemovalReason) -> Result<(), ModelError> {
         let effects = self.path.end().effects.iter().filter(|e| *e != id).cloned().collect();
-        let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+        let after = TwoStageModel::from_candidates(&self.sets, effects)?;
         self.path.push(SelectionStep { added: None, removed: Some((id, why)), ties: Vec::new(), after });
         Ok(())
     }
@@ -198,23 +182,30 @@ impl<'p> Search<'_, 'p> {
         Ok(of(self).or(left))
     }
 
+    /// Ties from the time of addition that the final model does not resolve: added effect and rival.
+    fn open_ties(&self) -> Result<Vec<(&'p str, &'p str)>, ModelError> {
+        let end = self.path.end();
+        let is_in = |id: &str| end.effects.iter().any(|e| e == id);
+        let named = self.path.advances.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
+        let mut open = Vec::new();
+        for (id, rival) in named.flat_map(|(id, rivals)| rivals.iter().map(move |rival| (id, *rival))) {
+            let in_place = || end.effects.iter().map(|e| if e == id { rival.to_owned() } else { e.clone() }).collect();
+            if is_in(id) && !is_in(rival) && self.fits_alike(end, in_place())? {
+                open.push((id, rival));
+            }
+        }
+        Ok(open)
+    }
+
     fn finish(self, left: Option<Unexplained>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
+        let ties = self.open_ties()?;
         let end = self.path.end();
         let now = end.main.clone();
         let detection_limits = Solution::of(&now).map_or_else(Vec::new, |solution| {
-            detection_limits::detection_limits(
-                end,
-                &solution,
-                self.libraries.of(&now, self.prepared, self.spec),
-                self.options,
-            )
+            detection_limits::detection_limits(end, &solution, self.sets.of(now.problem), self.options)
         });
         let residual = now.linear().residual;
-        let is_in = |id: &str| end.effects.iter().any(|e| e == id);
-        let named = self.path.advances.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
-        let ties = named.flat_map(|(id, ids)| ids.iter().map(move |scored| (id, *scored)));
-        let ties = ties.filter(|(id, scored)| is_in(id) && !is_in(scored)).collect();
-        let maps = Maps::new(self.prepared, residual.clone(), self.options);
+        let maps = Maps::new(self.sets.prepared, residual.clone(), self.options);
         Ok(ModelSelection {
             start: self.path.start,
             advances: self.path.advances,

@@ -1,5 +1,6 @@
 //! Adds the power balance before the search: its size is known, so that it has no coefficient to test.
 
+use crate::regression::candidates::CandidateSets;
 use crate::regression::evidence::{chance, errors};
 use crate::regression::linear_model::Term;
 use crate::regression::solution::Solution;
@@ -11,7 +12,11 @@ use crate::thresholds::DECISION_SHARE;
 use crate::{Effect, Options};
 
 /// The power balance, if the model lacks it and the data supports it.
-pub fn power_balance<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionStep<'p>> {
+pub fn power_balance<'p>(
+    start: &TwoStageModel<'p>,
+    sets: &CandidateSets<'p>,
+    options: &Options,
+) -> Option<SelectionStep<'p>> {
     let problem = start.main.problem;
     let is_out = |id: &str| !start.effects.iter().any(|e| e == id);
     let missing = |e: &&dyn Effect| e.traits().is_offset && is_out(e.info().id) && e.hidden(&problem.view).is_none();
@@ -19,7 +24,7 @@ pub fn power_balance<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option
     let form = effect.forms(&problem.view).into_iter().next()?;
     let term = Term::new(effect, form, Vec::new(), problem);
     let effects: Vec<String> = start.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
-    let after = TwoStageModel::decided(start.prepared, start.spec, effects).ok()?;
+    let after = TwoStageModel::from_candidates(sets, effects).ok()?;
     let (was, is) = (Solution::of(&start.main)?, Solution::of(&after.main)?);
     let (was, is) = (was.validation_losses(&start.main), is.validation_losses(&after.main));
     let gains: Vec<f64> = was.iter().zip(&is).map(|(was, is)| was - is).collect();

@@ -12,7 +12,7 @@ pub(super) fn passes(refit: &Refit) -> bool {
     has_size(refit.id, &refit.after.main)
 }
 
-fn has_size(id: &str, model: &LinearModel) -> bool {
+pub(in crate::selection::evidence_search) fn has_size(id: &str, model: &LinearModel) -> bool {
     let Some(solution) = Solution::of(model) else { return true };
     let mut first = 0;
     for term in &model.terms {
