@@ -4,6 +4,7 @@ pub(crate) mod evidence;
 pub(crate) mod excluded_effects;
 pub(crate) mod findings;
 pub(crate) mod narrative;
+pub(crate) mod rejected;
 pub(crate) mod reversals;
 
 use crate::diagnosis::findings::Findings;
