@@ -215,8 +215,8 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     }
     println!();
     let several = suggestions.len() > 1;
-    let beside = if several { " (parameters with all of these in the model)" } else { "" };
-    println!("missing effects{beside}; ΔBIC below 0 favours the effect:");
+    let with_all = if several { " (parameters with all of these in the model)" } else { "" };
+    println!("missing effects{with_all}; ΔBIC below 0 favours the effect:");
     for (i, suggestion) in suggestions.iter().enumerate() {
         let (share, rms) = (suggestion.error_reduction, suggestion.validation_rms);
         // Effects of reversals and ramps are evaluated there, and do not change the error in steady state.
@@ -235,11 +235,11 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
             }
         };
         let together = suggestion.error_reduction_together;
-        let beside = format!("{:+.1} % together with the others", -100.0 * together);
+        let jointly = format!("{:+.1} % together with the others", -100.0 * together);
         // An effect that other effects mask shows only together with them.
         let gain = match several {
-            true if together > share => format!("{beside}; alone: {gain}"),
-            true => format!("{gain} alone; {beside}"),
+            true if together > share => format!("{jointly}; alone: {gain}"),
+            true => format!("{gain} alone; {jointly}"),
             false => gain,
         };
         println!("  {}. {}: {gain}, {}", i + 1, suggestion.effect, chance(suggestion));

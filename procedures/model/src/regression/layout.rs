@@ -99,8 +99,8 @@ fn best_form(solution: &Solution, forms: &[&Regressor]) -> (f64, usize) {
 }
 
 /// Whether a form belongs to the form error of an effect in these components. The grid of a nonlinear parameter is coarse,
-/// so that every other form does. The order of a wave is exact: only its second and third harmonic do, and the
-/// orders beside it, which modulate it once a turn.
+/// so that every other form does. The order of a wave is exact: only its second and third harmonic do, and its
+/// neighbouring orders, which are a modulation once a turn.
 fn is_form_error(form: &Regressor, parts: &[&Regressor]) -> bool {
     let is_near = |part: &f64, order: &f64| (part - order).abs() <= 1.0 || [2.0, 3.0].contains(&(order / part));
     form.form.shape.iter().zip(&form.shape).all(|(shape, order)| {
