@@ -116,7 +116,7 @@ pub enum FileFault {
     #[error("{what}: expected one object of facts, such as {{\"kind\": \"friction\", \"gear_ratio\": 50}}")]
     Meta { what: String },
     #[error("{fact} is {found}: expected {expected}")]
-    Fact { fact: String, found: String, expected: String },
+    Fact { fact: String, found: String, expected: &'static str },
     #[error("{found} is not known: did you mean {meant}? A fact of your own needs a name that is less like it")]
     Misspelt { found: String, meant: &'static str },
     #[error("the mapping names column {wanted}, which is not in the file: it has {}", .there.join(", "))]

@@ -2,7 +2,7 @@
 
 use crate::error::{FileError, FileFault};
 use jointbench_instrument::spelling::plainly;
-use jointbench_instrument::{Channel, Meta};
+use jointbench_instrument::{Channel, FactShape, Meta};
 use serde_json::{Map, Value};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -39,21 +39,21 @@ pub fn parse_meta(name: &str, json: &[u8]) -> Result<Meta, FileError> {
     }
 }
 
-/// The fact with the wrong type: serde reports the value it found, but not the fact.
+/// The first fact whose value has another shape than the fact expects.
 fn mistyped(json: &[u8]) -> Option<(String, FileFault)> {
     let facts: Map<String, Value> = serde_json::from_slice(json).ok()?;
     facts.into_iter().find_map(|(fact, value)| {
-        let found = value.to_string();
-        let alone = Map::from_iter([(fact.clone(), value)]);
-        let message = serde_json::from_value::<Meta>(Value::Object(alone)).err()?.to_string();
-        // The message about an unknown word suggests a known word.
-        let expected = match message.strip_prefix("invalid ")?.rsplit_once("expected ")?.1 {
-            "f64" => "a number without quotes, such as 50".to_owned(),
-            "u32" => "a whole number without quotes, such as 12".to_owned(),
-            "a sequence" => "a list, such as [\"coulomb\", \"viscous\"]".to_owned(),
-            other => other.replace('`', "\""),
+        let (_, shape) = Meta::FACTS.into_iter().find(|(known, _)| *known == fact)?;
+        let expected = match shape {
+            FactShape::Word => "a word in quotes",
+            FactShape::Flag => "true or false, without quotes",
+            FactShape::Number => "a number without quotes, such as 50",
+            FactShape::WholeNumber => "a whole number without quotes, such as 12",
+            FactShape::List => "a list, such as [\"coulomb\", \"viscous\"]",
         };
-        Some((fact.clone(), FileFault::Fact { fact, found, expected }))
+        let (found, fits) = (value.to_string(), shape.fits(&value));
+        let is_read = serde_json::from_value::<Meta>(Value::Object(Map::from_iter([(fact.clone(), value)]))).is_ok();
+        (!fits && !is_read).then(|| (fact.clone(), FileFault::Fact { fact, found, expected }))
     })
 }
 

@@ -25,6 +25,6 @@ pub use clock::{Clock, SystemClock};
 pub use fault::{Fault, FaultKind};
 pub use join::JoinFault;
 pub use limits::{Breach, Limits, TorsionLimit};
-pub use meta::{Kind, Meta, Motion};
+pub use meta::{FactShape, Kind, Meta, Motion};
 pub use table::{RunTable, TableFault};
 pub use trace::{Channel, Trace};

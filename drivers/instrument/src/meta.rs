@@ -3,6 +3,7 @@
 use crate::spelling::nearest;
 use crate::units::quantity_of;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 use std::fmt;
 
 /// The measurement of a run table. It determines the prediction of a model.
@@ -98,6 +99,34 @@ impl Motion {
     }
 }
 
+/// The JSON that a fact expects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FactShape {
+    /// One word of a list.
+    Word,
+    /// `true` or `false`.
+    Flag,
+    /// Any number.
+    Number,
+    /// A whole number from 0 to 2³² − 1.
+    WholeNumber,
+    /// A list of words.
+    List,
+}
+
+impl FactShape {
+    /// Whether a value has this shape.
+    pub fn fits(self, value: &Value) -> bool {
+        match self {
+            FactShape::Word => value.is_string(),
+            FactShape::Flag => value.is_boolean(),
+            FactShape::Number => value.is_number(),
+            FactShape::WholeNumber => value.as_u64().is_some_and(|whole| u32::try_from(whole).is_ok()),
+            FactShape::List => value.as_array().is_some_and(|list| list.iter().all(Value::is_string)),
+        }
+    }
+}
+
 /// Facts about the set-up. Facts that a kind does not need stay empty; unknown facts are kept in `other`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -146,33 +175,34 @@ pub struct Meta {
     pub poles: Option<u32>,
     /// Unknown facts, kept as they are.
     #[serde(flatten)]
-    pub other: serde_json::Map<String, serde_json::Value>,
+    pub other: Map<String, Value>,
 }
 
 impl Meta {
-    /// The names of all known facts.
-    pub const FACTS: [&str; 14] = [
-        "kind",
-        "motion",
-        "baseline",
-        "operating_points",
-        "sample_rate_hz",
-        "torque_constant_nm_per_a",
-        "gear_ratio",
-        "rotor_inertia_kg_m2",
-        "bearing_stiffness_nm_per_rad",
-        "reference_bits",
-        "test_bits",
-        "pole_pairs",
-        "rated_current_a",
-        "poles",
+    /// All known facts: name, and the JSON that it expects.
+    pub const FACTS: [(&str, FactShape); 14] = [
+        ("kind", FactShape::Word),
+        ("motion", FactShape::Word),
+        ("baseline", FactShape::List),
+        ("operating_points", FactShape::Flag),
+        ("sample_rate_hz", FactShape::Number),
+        ("torque_constant_nm_per_a", FactShape::Number),
+        ("gear_ratio", FactShape::Number),
+        ("rotor_inertia_kg_m2", FactShape::Number),
+        ("bearing_stiffness_nm_per_rad", FactShape::Number),
+        ("reference_bits", FactShape::WholeNumber),
+        ("test_bits", FactShape::WholeNumber),
+        ("pole_pairs", FactShape::WholeNumber),
+        ("rated_current_a", FactShape::Number),
+        ("poles", FactShape::WholeNumber),
     ];
 
     /// An unknown fact whose name is similar to a known fact that is missing, with that known name. It is probably
     /// misspelt or in another unit.
     pub fn misspelt(&self) -> Option<(&str, &'static str)> {
         let given = serde_json::to_value(self).unwrap_or_default();
-        let missing: Vec<&'static str> = Self::FACTS.into_iter().filter(|fact| given.get(fact).is_none()).collect();
+        let missing: Vec<&'static str> =
+            Self::FACTS.into_iter().map(|(fact, _)| fact).filter(|fact| given.get(fact).is_none()).collect();
         let meant = |name: &str| {
             // The same quantity without a unit or in another unit.
             let same = |fact: &&str| quantity_of(fact).is_some_and(|q| q == name || Some(q) == quantity_of(name));
@@ -206,7 +236,7 @@ mod tests {
         assert_eq!(misspelt(r#"{"pole": 50}"#), meant("pole", "poles"));
         assert_eq!(misspelt(r#"{"note": "dry", "oil": "x", "rated_torque_nm": 13}"#), None);
         assert_eq!(misspelt(r#"{"gear_ratio": 50, "gear_ratio_2": 3}"#), None, "the known one is there");
-        let all: Vec<String> = Meta::FACTS.iter().map(|fact| format!("\"{fact}\": null")).collect();
+        let all: Vec<String> = Meta::FACTS.iter().map(|(fact, _)| format!("\"{fact}\": null")).collect();
         assert!(serde_json::from_str::<Meta>(&format!("{{{}}}", all[4..].join(","))).unwrap().other.is_empty());
     }
 

@@ -13,7 +13,7 @@ use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport, TradeOff};
 use crate::words::figure;
-use crate::{ModelError, ModelSpec, Options, OwnEffect, ResidualKind, export, settings};
+use crate::{ModelError, ModelSpec, Options, ResidualKind, UserEffect, export, settings};
 use jointbench_instrument::RunTable;
 
 /// Fits the effects of a model to a run.
@@ -92,13 +92,13 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
 
     let target = &prepared.main.target;
     let notes = notes(assembly, nuisance.as_ref(), undetermined);
-    let own: Vec<OwnEffect> =
-        assembly.spec.own.iter().filter(|o| assembly.effects.iter().any(|e| e == o.id())).cloned().collect();
-    let scope = Scope::of(prepared, &own);
+    let user_effects: Vec<UserEffect> =
+        assembly.spec.user_effects.iter().filter(|o| assembly.effects.iter().any(|e| e == o.id())).cloned().collect();
+    let scope = Scope::of(prepared, &user_effects);
     let mut fit = Fit {
         kind: prepared.kind,
         effects: assembly.effects.clone(),
-        own,
+        user_effects,
         settings: assembly.spec.settings.clone(),
         rms: (linear.sse / n).sqrt(),
         validation_rms: (validation_losses(main).iter().sum::<f64>() / n).sqrt(),

@@ -4,7 +4,7 @@ use crate::preprocess::{Prepared, Problem, prepare_with};
 use crate::regression::linear_model::columns;
 use crate::regression::solution::PRESLIDING;
 use crate::report::fit::{Fit, Term};
-use crate::user_effects::find_with_own;
+use crate::user_effects::find_with_user_effects;
 use crate::view::View;
 use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
@@ -45,7 +45,7 @@ pub(crate) fn predict_nuisance(fit: &Fit, problem: &Problem) -> Result<Vec<f64>,
     let mut add =
         |column: &[f64], coefficient: f64| predicted.iter_mut().zip(column).for_each(|(p, c)| *p += coefficient * c);
     for term in &fit.form_error {
-        match find_with_own(fit.kind, &fit.own, &term.name) {
+        match find_with_user_effects(fit.kind, &fit.user_effects, &term.name) {
             Ok(effect) => {
                 let columns = columns(effect, &term.form, &term.shape, problem);
                 columns.iter().zip(&term.linear).for_each(|(column, coefficient)| add(column, *coefficient));
@@ -75,13 +75,13 @@ pub(crate) fn predict_on(
         }
     };
     for id in &fit.effects {
-        let effect = find_with_own(fit.kind, &fit.own, id)?;
+        let effect = find_with_user_effects(fit.kind, &fit.user_effects, id)?;
         if effect.traits().is_offset && effect.missing(view).is_none() {
             add(effect.columns("linear", &[], view), &[1.0]);
         }
     }
     for term in &fit.terms {
-        let effect = find_with_own(fit.kind, &fit.own, &term.effect)?;
+        let effect = find_with_user_effects(fit.kind, &fit.user_effects, &term.effect)?;
         if let Some(column) = effect.missing(view) {
             let why = format!("there is no column {column}");
             return Err(ModelError::NotVisible { effect: term.effect.clone(), why });

@@ -5,7 +5,7 @@ use crate::effects;
 use crate::report::setting::ParameterSetting;
 use crate::symbolic::{FittedForm, Symbolic};
 use crate::view::View;
-use crate::{ModelError, OwnEffect};
+use crate::{ModelError, UserEffect};
 use jointbench_instrument::Kind;
 use std::fmt;
 
@@ -13,7 +13,7 @@ use std::fmt;
 #[derive(Clone)]
 enum Whole {
     Library(&'static dyn Effect),
-    Own(Box<OwnEffect>),
+    Own(Box<UserEffect>),
 }
 
 /// A form with fixed coefficients.
@@ -39,9 +39,14 @@ pub struct SetEffect {
 }
 
 impl SetEffect {
-    pub fn new(kind: Kind, own: &[OwnEffect], id: &str, nonlinear: Vec<ParameterSetting>) -> Result<Self, ModelError> {
-        let whole = match own.iter().find(|own| own.id() == id) {
-            Some(own) => Whole::Own(Box::new(own.clone())),
+    pub fn new(
+        kind: Kind,
+        user_effects: &[UserEffect],
+        id: &str,
+        nonlinear: Vec<ParameterSetting>,
+    ) -> Result<Self, ModelError> {
+        let whole = match user_effects.iter().find(|user_effect| user_effect.id() == id) {
+            Some(user_effect) => Whole::Own(Box::new(user_effect.clone())),
             None => Whole::Library(effects::find(kind, id)?),
         };
         Ok(Self { whole, nonlinear, pinned: None })

@@ -56,7 +56,7 @@ pub fn apply(prepared: &Prepared, spec: &ModelSpec, options: &Options) -> Result
                 false => linear.push(setting),
             }
         }
-        ranged.set.push(SetEffect::new(spec.kind, &spec.own, id, nonlinear)?);
+        ranged.set.push(SetEffect::new(spec.kind, &spec.user_effects, id, nonlinear)?);
     }
     let first = TwoStageModel::new(prepared, &ranged, options)?;
     let free = found(&first);

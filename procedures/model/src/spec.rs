@@ -6,7 +6,7 @@ use crate::set_effect::SetEffect;
 use crate::thresholds::{ALPHA, FLIPS, PRACTICAL_SHARE};
 use crate::user_effects;
 use crate::words::list;
-use crate::{ModelError, OwnEffect};
+use crate::{ModelError, UserEffect};
 use jointbench_instrument::{Kind, RunTable};
 use serde::{Deserialize, Serialize};
 
@@ -18,8 +18,8 @@ pub struct ModelSpec {
     /// Stable effect ids, in the order in which they were added.
     pub effects: Vec<String>,
     /// User effects: the model may contain them, and a diagnosis may suggest them.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub own: Vec<OwnEffect>,
+    #[serde(default, rename = "own", skip_serializing_if = "Vec::is_empty")]
+    pub user_effects: Vec<UserEffect>,
     /// Fixed values, bounds and start values of parameters.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settings: Vec<ParameterSetting>,
@@ -31,23 +31,25 @@ pub struct ModelSpec {
 impl ModelSpec {
     /// Checks that every effect is known for the kind and named once.
     pub fn new(kind: Kind, effects: impl IntoIterator<Item = impl Into<String>>) -> Result<Self, ModelError> {
-        Self::with_own(kind, effects, Vec::new())
+        Self::with_user_effects(kind, effects, Vec::new())
     }
 
     /// The same with user effects; those of other kinds are ignored.
-    pub fn with_own(
+    pub fn with_user_effects(
         kind: Kind,
         effects: impl IntoIterator<Item = impl Into<String>>,
-        mut own: Vec<OwnEffect>,
+        mut user_effects: Vec<UserEffect>,
     ) -> Result<Self, ModelError> {
-        own.retain(|effect| effect.kind() == kind);
+        user_effects.retain(|effect| effect.kind() == kind);
         let effects = effects.into_iter().map(Into::into).collect();
-        let spec = Self { kind, effects, own, settings: Vec::new(), set: Vec::new() };
+        let spec = Self { kind, effects, user_effects, settings: Vec::new(), set: Vec::new() };
         if spec.effects.is_empty() {
             return Err(ModelError::EmptyModel);
         }
-        let own = spec.own.iter().enumerate().find(|(i, own)| spec.own[..*i].iter().any(|o| o.id() == own.id()));
-        if let Some((_, twice)) = own {
+        let mut users = spec.user_effects.iter().enumerate();
+        if let Some((_, twice)) =
+            users.find(|(i, one)| spec.user_effects[..*i].iter().any(|other| other.id() == one.id()))
+        {
             return Err(ModelError::TwiceNamed(twice.id().to_owned()));
         }
         for (i, id) in spec.effects.iter().enumerate() {
@@ -104,14 +106,15 @@ impl ModelSpec {
     /// Every effect that a model of this kind may contain.
     pub fn known(&self) -> impl Iterator<Item = &dyn Effect> {
         let as_set = |id: &str| self.set.iter().find(|set| set.info().id == id).map(|set| set as &dyn Effect);
-        user_effects::with_own(self.kind, &self.own).map(move |effect| as_set(effect.info().id).unwrap_or(effect))
+        user_effects::with_user_effects(self.kind, &self.user_effects)
+            .map(move |effect| as_set(effect.info().id).unwrap_or(effect))
     }
 
     /// The effect with an id. [`ModelError::UnknownEffect`] lists the known ids.
     pub fn find(&self, id: &str) -> Result<&dyn Effect, ModelError> {
         match self.set.iter().find(|set| set.info().id == id) {
             Some(set) => Ok(set),
-            None => user_effects::find_with_own(self.kind, &self.own, id),
+            None => user_effects::find_with_user_effects(self.kind, &self.user_effects, id),
         }
     }
 
@@ -125,7 +128,11 @@ impl ModelSpec {
     /// # Errors
     /// [`ModelError::UnknownEffect`] for an unknown id, [`ModelError::TwiceNamed`] if the model contains it already.
     pub fn with(&self, id: &str) -> Result<Self, ModelError> {
-        Self::with_own(self.kind, self.effects.iter().map(String::as_str).chain([id]), self.own.clone())
+        Self::with_user_effects(
+            self.kind,
+            self.effects.iter().map(String::as_str).chain([id]),
+            self.user_effects.clone(),
+        )
     }
 
     /// The model without an effect; unchanged if it does not contain it.

@@ -5,7 +5,7 @@ mod common;
 use common::tables::{Shape, table};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::export::{Format, ModelFile, export};
-use jointbench_model::{Fit, ModelSpec, Options, OwnEffect, evaluate, fit};
+use jointbench_model::{Fit, ModelSpec, Options, UserEffect, evaluate, fit};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use std::sync::LazyLock;
@@ -20,10 +20,10 @@ static FITTED: LazyLock<Vec<(RunTable, Value)>> = LazyLock::new(|| {
             Kind::Stiffness => ("hardening", "rub: torsion = a * tanh(load / w0); a [rad]; w0 [Nm] 0.1..10"),
             Kind::Brake => ("saturation", "rub: tau = a * tanh(current / w0); a [Nm]; w0 [A] 0.1..10"),
         };
-        let own = OwnEffect::inline(kind, own).unwrap();
+        let own = UserEffect::inline(kind, own).unwrap();
         let baseline = run.meta().baseline.clone();
         let effects = baseline.iter().map(String::as_str).chain([more, "rub"]);
-        let spec = ModelSpec::with_own(kind, effects, vec![own]).unwrap();
+        let spec = ModelSpec::with_user_effects(kind, effects, vec![own]).unwrap();
         let found = fit(&run, &spec, &Options::default()).unwrap();
         assert!(found.terms.len() > baseline.len(), "{kind}: {:?}", found.notes);
         (run, serde_json::to_value(ModelFile::new(found)).unwrap())

@@ -5,7 +5,7 @@ mod common;
 use common::bench::{Moment, Staircase};
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_model::{
-    Choice, Diagnosis, ModelSpec, Open, Options, OwnEffect, Stretch, Verdict, diagnose, discover, fit, next_run,
+    Choice, Diagnosis, ModelSpec, Open, Options, Stretch, UserEffect, Verdict, diagnose, discover, fit, next_run,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -96,8 +96,8 @@ fn a_third_load_distinguishes_a_line_from_a_square_and_the_same_load_does_not() 
     // The user effect equals the named effect: it does not hide a candidate that a run can distinguish.
     let formula = if open.ties[0].0 == "load_linear" { "abs(load)" } else { "load^2" };
     let is_replicate =
-        OwnEffect::inline(Kind::Friction, &format!("twin: tau = mu * {formula} * sign(velocity); mu")).unwrap();
-    let mut with_copy = Open { own: vec![is_replicate], ..open.clone() };
+        UserEffect::inline(Kind::Friction, &format!("twin: tau = mu * {formula} * sign(velocity); mu")).unwrap();
+    let mut with_copy = Open { user_effects: vec![is_replicate], ..open.clone() };
     with_copy.ties[0].1.push("twin".into());
     let spared = next_run(&first, &with_copy, &menu, &Options::default()).unwrap().experiment.unwrap();
     assert_eq!((&spared.procedure, spared.expected_z), (&next.procedure, next.expected_z), "{}", spared.why);

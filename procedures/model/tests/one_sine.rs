@@ -1,7 +1,7 @@
 //! On one sine the jerk is proportional to the velocity, and the snap to the acceleration, with opposite signs.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
-use jointbench_model::{ModelSpec, Options, OwnEffect, diagnose, evaluate, fit};
+use jointbench_model::{ModelSpec, Options, UserEffect, diagnose, evaluate, fit};
 use std::f64::consts::TAU;
 
 const KM: f64 = 0.064;
@@ -55,8 +55,8 @@ fn a_missing_effect_is_found_that_form_error_imitates() {
 fn an_effect_of_the_library_comes_before_a_formula_of_a_user() {
     let run = one_sine(&["inertia", "coulomb"]);
     let text = "drag: tau = a * velocity + b * velocity * abs(velocity); a [Nm*s/rad]; b [Nm*s^2/rad^2]";
-    let own = vec![OwnEffect::inline(Kind::Friction, text).unwrap()];
-    let spec = ModelSpec::with_own(Kind::Friction, run.meta().baseline.iter(), own).unwrap();
+    let own = vec![UserEffect::inline(Kind::Friction, text).unwrap()];
+    let spec = ModelSpec::with_user_effects(Kind::Friction, run.meta().baseline.iter(), own).unwrap();
     let found = diagnose(&run, &spec, &Options::default()).unwrap();
     assert_eq!(found.suggestions.first().map(|s| s.effect.as_str()), Some("viscous"), "{}", found.summary);
 }

@@ -6,7 +6,7 @@ use common::bench::Staircase;
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
 use jointbench_model::export::{Format, OnlinePrediction, export};
 use jointbench_model::{
-    Diagnosis, Fit, ModelSpec, Options, OwnEffect, Verdict, diagnose, evaluate, fit, maps, residuals,
+    Diagnosis, Fit, ModelSpec, Options, UserEffect, Verdict, diagnose, evaluate, fit, maps, residuals,
 };
 
 const COLUMN: &str = "oil_pressure_pa";
@@ -90,14 +90,14 @@ const MIDDLE: &str = "middle: tau = a * direction * max(0, sign(2e4 - abs(column
 #[test]
 fn a_formula_over_the_column_takes_it_off() {
     let (run, other) = (run_with(COLUMN, |sign| 6e-3 * sign), run_with("spare_v", |_| 0.0));
-    let own = vec![OwnEffect::inline(Kind::Friction, MIDDLE).unwrap()];
+    let own = vec![UserEffect::inline(Kind::Friction, MIDDLE).unwrap()];
     let baseline = run.meta().baseline.clone();
-    let spec = ModelSpec::with_own(Kind::Friction, baseline.iter().cloned(), own.clone()).unwrap();
+    let spec = ModelSpec::with_user_effects(Kind::Friction, baseline.iter().cloned(), own.clone()).unwrap();
     let found = diagnose(&run, &spec, &Options::default()).unwrap();
     assert_eq!(found.suggestions.first().map(|s| s.effect.as_str()), Some("middle"), "{}", found.summary);
 
     let effects = baseline.into_iter().chain(["middle".to_owned()]);
-    let spec = ModelSpec::with_own(Kind::Friction, effects, own).unwrap();
+    let spec = ModelSpec::with_user_effects(Kind::Friction, effects, own).unwrap();
     let fitted = fit(&run, &spec, &Options::default()).unwrap();
     let a = fitted.parameters.iter().find(|p| p.name == "a").unwrap();
     assert!((a.value - 6e-3).abs() < 6e-4 && a.unit == "Nm", "{a:?}");

@@ -18,6 +18,20 @@ pub enum Safe {
     UnsafeUnknown,
 }
 
+impl Safe {
+    /// Every result, the best first.
+    pub const ALL: [Safe; 3] = [Safe::SafeVerified, Safe::SafeCommanded, Safe::UnsafeUnknown];
+
+    /// Its name in the store and in REST.
+    pub fn name(self) -> &'static str {
+        match self {
+            Safe::SafeVerified => "safe_verified",
+            Safe::SafeCommanded => "safe_commanded",
+            Safe::UnsafeUnknown => "unsafe_unknown",
+        }
+    }
+}
+
 /// Controls of a run; all but the last three come from a person.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

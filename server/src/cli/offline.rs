@@ -38,7 +38,7 @@ pub fn discover(arguments: &Discover) -> Done {
     let about = |fault| Exit::of(&arguments.run.files, fault);
     let mut discovery =
         jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {}).map_err(about)?.bounded();
-    let open = Open { own: spec.own, ..Open::from(&discovery) };
+    let open = Open { user_effects: spec.user_effects, ..Open::from(&discovery) };
     let next = next_run(&run, &open, &Offer::shown_by(&run), &options);
     discovery.experiment = next.experiment;
     discovery.summary.extend(next.in_vain.map(|reason| format!(" {reason}")));
@@ -60,7 +60,7 @@ pub(super) fn decided(undecided: Option<&String>) -> Done {
 
 pub fn fit(arguments: &Fit) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
-    if let Some(idle) = spec.own.iter().find(|effect| !spec.contains(effect.id())) {
+    if let Some(idle) = spec.user_effects.iter().find(|effect| !spec.contains(effect.id())) {
         let (all, id) = (spec.effects.join(","), idle.id());
         return Err(Exit::bad_input(format!("effect {id} is not part of the model: add it, as in --model {all},{id}")));
     }
@@ -107,10 +107,14 @@ fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
     }
     let first = runs.remove(0);
     let run = first.join(runs).map_err(|fault| Exit::bad_input(fault.to_string()))?;
-    let own = measured.own.read(run.kind(), run.meta().motion)?;
+    let user_effects = measured.own.read(run.kind(), run.meta().motion)?;
     let spec = match &measured.model {
-        Some(list) => ModelSpec::with_own(run.kind(), list.split(',').map(str::trim).filter(|id| !id.is_empty()), own)?,
-        None => ModelSpec::with_own(run.kind(), run.meta().baseline.iter(), own)?,
+        Some(list) => ModelSpec::with_user_effects(
+            run.kind(),
+            list.split(',').map(str::trim).filter(|id| !id.is_empty()),
+            user_effects,
+        )?,
+        None => ModelSpec::with_user_effects(run.kind(), run.meta().baseline.iter(), user_effects)?,
     };
     Ok((run, spec, options(&measured.preparation)?))
 }

@@ -297,7 +297,12 @@ pub fn fall(steps: &[(String, f64)], floor: Option<f64>, unit: &str) {
 
 fn prepared(fit: &Fit) -> String {
     let prepared = &fit.preparation;
-    let mut text = format!("{} samples at {} Hz", prepared.samples, (1e3 * prepared.sample_rate_hz).round() / 1e3);
+    let rate_hz = (1e3 * prepared.sample_rate_hz).round() / 1e3;
+    // Only interpolation over gaps gives more rows than samples.
+    let mut text = match prepared.rows * prepared.decimation > prepared.samples {
+        true => format!("{} samples with uneven time stamps, resampled at {rate_hz} Hz", prepared.samples),
+        false => format!("{} samples at {rate_hz} Hz", prepared.samples),
+    };
     if let Some(cutoff_hz) = prepared.cutoff_hz {
         text += &format!(", low-pass {cutoff_hz:.1} Hz");
     }

@@ -4,7 +4,7 @@ use super::exit::Exit;
 use super::files;
 use clap::Args;
 use jointbench_instrument::{Kind, Motion};
-use jointbench_model::{Definition, OwnEffect};
+use jointbench_model::{Definition, UserEffect};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -26,22 +26,22 @@ pub struct OwnEffects {
 
 impl OwnEffects {
     /// Reads all effects; an effect without a kind gets the kind of the run. Prints doubts about the formulas.
-    pub fn read(&self, kind: Kind, motion: Motion) -> Result<Vec<OwnEffect>, Exit> {
+    pub fn read(&self, kind: Kind, motion: Motion) -> Result<Vec<UserEffect>, Exit> {
         let mut all = Vec::new();
         for file in &self.effect_file {
             all.extend(read_file(file, kind)?);
         }
         for text in &self.own {
-            all.push(OwnEffect::inline(kind, text)?);
+            all.push(UserEffect::inline(kind, text)?);
         }
-        for fault in all.iter().flat_map(|own| own.unit_warnings(Some(motion))) {
+        for fault in all.iter().flat_map(|user_effect| user_effect.unit_warnings(Some(motion))) {
             eprintln!("note: {}", Exit::from(fault).message);
         }
         Ok(all)
     }
 }
 
-fn read_file(file: &Path, kind: Kind) -> Result<Vec<OwnEffect>, Exit> {
+fn read_file(file: &Path, kind: Kind) -> Result<Vec<UserEffect>, Exit> {
     let refuse = |fault: &dyn std::fmt::Display| Exit::bad_input(format!("{}: {fault}", file.display()));
     let text = files::read_text(file)?;
     let mut table: toml::Table = toml::from_str(&text).map_err(|fault| refuse(&fault))?;
@@ -55,7 +55,7 @@ fn read_file(file: &Path, kind: Kind) -> Result<Vec<OwnEffect>, Exit> {
             effect.entry("kind").or_insert_with(|| kind.name().into());
         }
         let definition: Definition = effect.try_into().map_err(|fault: toml::de::Error| refuse(&fault))?;
-        let effect = OwnEffect::try_from(definition).map_err(|fault| {
+        let effect = UserEffect::try_from(definition).map_err(|fault| {
             let exit = Exit::from(fault);
             Exit { message: format!("{}: {}", file.display(), exit.message), ..exit }
         })?;

@@ -8,8 +8,9 @@ use super::{Answer, Lab};
 use crate::limits::{self, Requirement};
 use crate::store::UnitRunRecord;
 use crate::view::{Capability, ControlChart, ControlPoint, ControlRule, EmptyChart, Quantity};
+use jointbench_model::stats::student;
 use jointbench_procedure::RunState;
-use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::collections::BTreeMap;
 
 /// Limit of the points.
@@ -227,7 +228,7 @@ fn variance_at(measured: &[(f64, f64)], q: f64) -> f64 {
 
 fn capability(measured: &[(f64, f64)], lower: Option<f64>, upper: Option<f64>) -> Option<Capability> {
     let between = Between::of(measured)?;
-    let t = StudentsT::new(0.0, 1.0, measured.len() as f64 - 1.0).ok()?.inverse_cdf(0.975);
+    let t = student::quantile(measured.len() as f64 - 1.0, 0.975)?;
     let nearest = |mean: f64| {
         let below = lower.map(|lower| mean - lower);
         let above = upper.map(|upper| upper - mean);

@@ -60,7 +60,7 @@ impl Lab {
         let table = self.tables(&model.runs()).await?;
         check_same_joint(&table, &offer.bench)?;
         let found: jointbench_model::Diagnosis = reread(&record.diagnosis)?;
-        let open = Open { own: found.own.clone(), ..Open::from(&found) };
+        let open = Open { user_effects: found.user_effects.clone(), ..Open::from(&found) };
         let next = super::blocking::blocking(move || Ok(next_run(&table, &open, &offer, &Options::default()))).await?;
         Ok(next.experiment.map(|next| reread(&next)).transpose()?)
     }

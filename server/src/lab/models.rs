@@ -11,7 +11,7 @@ use crate::view::{
     model_view, reread, residual_set,
 };
 use jointbench_instrument::{Kind, RunTable};
-use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, OwnEffect};
+use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, UserEffect};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -192,7 +192,9 @@ impl Lab {
                 version.parent.is_none() && version.more_runs == more_runs && version.effects == spec.effects;
             if is_alike && reread::<_, Vec<Exclusion>>(&version.excluded)? == excluded {
                 let fit: Fit = reread(&version.fit)?;
-                if fit.settings == spec.settings && fit.own.iter().all(|own| spec.own.contains(own)) {
+                if fit.settings == spec.settings
+                    && fit.user_effects.iter().all(|user_effect| spec.user_effects.contains(user_effect))
+                {
                     return Ok(Some(version));
                 }
             }
@@ -261,7 +263,7 @@ impl Lab {
     async fn diagnosis_kept(&self, record: &ModelRecord) -> Answer<Option<Diagnosis>> {
         let Some(kept) = self.inner.store.diagnoses(record.id).await?.pop() else { return Ok(None) };
         let known: jointbench_model::Diagnosis = reread(&kept.diagnosis)?;
-        if known.own != self.user_effects_of(record).await? {
+        if known.user_effects != self.user_effects_of(record).await? {
             return Ok(None);
         }
         Ok(Some(diagnosis_view(kept, record.run)?))
@@ -269,22 +271,23 @@ impl Lab {
 
     pub(super) async fn diagnose_here(&self, model: i64, offer: Option<Offer>) -> Answer<Value> {
         let record = self.inner.store.model(model).await?;
-        let own = self.user_effects_of(&record).await?;
+        let user_effects = self.user_effects_of(&record).await?;
         let table = self.fitted_table(&record).await?;
-        let spec = ModelSpec::with_own(table.kind(), &record.effects, own)?;
+        let spec = ModelSpec::with_user_effects(table.kind(), &record.effects, user_effects)?;
         let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
         let diagnosis = blocking(move || diagnose(&table, &spec, &Options::default(), &offer)).await?;
         Ok(reread(&diagnosis)?)
     }
 
     /// Users' effects in their version of the fit, and the others that the run uses.
-    async fn user_effects_of(&self, record: &ModelRecord) -> Answer<Vec<OwnEffect>> {
+    async fn user_effects_of(&self, record: &ModelRecord) -> Answer<Vec<UserEffect>> {
         let fit: Fit = reread(&record.fit)?;
         let used = self.used_effects(fit.kind, record.run).await?;
-        let mut own = fit.own;
-        let others: Vec<OwnEffect> = used.into_iter().filter(|one| !own.iter().any(|o| o.id() == one.id())).collect();
-        own.extend(others);
-        Ok(own)
+        let mut user_effects = fit.user_effects;
+        let others: Vec<UserEffect> =
+            used.into_iter().filter(|one| !user_effects.iter().any(|o| o.id() == one.id())).collect();
+        user_effects.extend(others);
+        Ok(user_effects)
     }
 
     pub async fn diagnosis(&self, id: i64) -> Answer<Diagnosis> {
@@ -319,7 +322,7 @@ pub fn diagnose(
     offer: &Offer,
 ) -> Result<jointbench_model::Diagnosis, ModelError> {
     let mut diagnosis = jointbench_model::diagnose(table, spec, options)?;
-    let open = Open { own: spec.own.clone(), ..Open::from(&diagnosis) };
+    let open = Open { user_effects: spec.user_effects.clone(), ..Open::from(&diagnosis) };
     let next = next_run(table, &open, offer, options);
     diagnosis.experiment = next.experiment;
     diagnosis.summary.extend(next.in_vain.map(|reason| format!(" {reason}")));

@@ -7,7 +7,7 @@ use crate::job::Job;
 use crate::store::{NewModel, Subject};
 use crate::view::{Comparison, Evaluation, ImportedModel, LiveMessage, ModelImport, Worth, finite, model_view, reread};
 use jointbench_model::export::{Format, ModelFile, export};
-use jointbench_model::{Fit, ModelSpec, Options, OwnEffect};
+use jointbench_model::{Fit, ModelSpec, Options, UserEffect};
 
 /// Cache key.
 const WORTH: &str = "worth";
@@ -47,7 +47,7 @@ impl Lab {
         let table = self.fitted_table(&record).await?;
         let refit = move |effect: &str| {
             let others = record.effects.iter().filter(|one| *one != effect);
-            let spec = ModelSpec::with_own(table.kind(), others, fit.own.clone())?;
+            let spec = ModelSpec::with_user_effects(table.kind(), others, fit.user_effects.clone())?;
             let settings = fit.settings.iter().filter(|setting| setting.effect != effect).cloned().collect();
             let spec = spec.with_settings(settings)?;
             jointbench_model::fit(&table, &spec, &Options::default())
@@ -82,11 +82,13 @@ impl Lab {
     }
 
     /// Users' effects of a fit, and the requested effect if a user wrote it.
-    async fn user_effects_with(&self, fit: &Fit, effect: &str) -> Answer<Vec<OwnEffect>> {
-        let mut own = fit.own.clone();
+    async fn user_effects_with(&self, fit: &Fit, effect: &str) -> Answer<Vec<UserEffect>> {
+        let mut user_effects = fit.user_effects.clone();
         let theirs = self.user_effects(fit.kind).await?;
-        own.extend(theirs.into_iter().filter(|one| one.id() == effect && !fit.own.iter().any(|o| o.id() == effect)));
-        Ok(own)
+        user_effects.extend(
+            theirs.into_iter().filter(|one| one.id() == effect && !fit.user_effects.iter().any(|o| o.id() == effect)),
+        );
+        Ok(user_effects)
     }
 
     pub(super) async fn with_effect_here(&self, model: i64, effect: &str) -> Answer<Vec<f64>> {
@@ -94,9 +96,10 @@ impl Lab {
         let before: Fit = reread(&record.fit)?;
         let whole = self.tables(&record.runs()).await?;
         let fitted = self.fitted_table(&record).await?;
-        let own = self.user_effects_with(&before, effect).await?;
+        let user_effects = self.user_effects_with(&before, effect).await?;
         let effects = record.effects.iter().map(String::as_str).chain([effect]);
-        let spec = ModelSpec::with_own(before.kind, effects, own)?.with_settings(before.settings.clone())?;
+        let spec =
+            ModelSpec::with_user_effects(before.kind, effects, user_effects)?.with_settings(before.settings.clone())?;
         blocking(move || {
             let options = Options::default();
             let after = jointbench_model::fit(&fitted, &spec, &options)?;
@@ -135,7 +138,7 @@ impl Lab {
             )));
         }
         let held: Evaluation = self.compute(Job::EvaluateFile { file, run }).await?;
-        self.import_effects(&kept.own, run, by).await?;
+        self.import_effects(&kept.user_effects, run, by).await?;
         let new = NewModel {
             run: import.run,
             more_runs: Vec::new(),

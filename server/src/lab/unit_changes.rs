@@ -6,9 +6,9 @@
 use super::{Answer, Lab};
 use crate::store::{RunRecord, UnitRunRecord};
 use crate::view::{Quantity, QuantityChange, SettingChange, UnitChanges};
+use jointbench_model::stats::student;
 use jointbench_procedure::RunState;
 use serde_json::Value;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::BTreeSet;
 
 /// Limit of the earlier runs.
@@ -129,7 +129,7 @@ fn prediction(centre: f64, squares: f64, freedom: usize, variance_factor: f64) -
     if freedom < LEAST_FREEDOM {
         return None;
     }
-    let t = StudentsT::new(0.0, 1.0, freedom as f64).ok()?.inverse_cdf(0.975);
+    let t = student::quantile(freedom as f64, 0.975)?;
     let reach = t * (squares / freedom as f64 * variance_factor).sqrt();
     reach.is_finite().then_some([centre - reach, centre + reach])
 }

@@ -12,7 +12,7 @@ use crate::view::{
 };
 use jointbench_instrument::Kind;
 use jointbench_model::formula::{self, Function};
-use jointbench_model::{Definition, Effect as _, ModelError, ModelSpec, Options, OwnEffect, TradeOff};
+use jointbench_model::{Definition, Effect as _, ModelError, ModelSpec, Options, TradeOff, UserEffect};
 use serde::{Deserialize, Serialize};
 
 impl Lab {
@@ -39,23 +39,23 @@ impl Lab {
             Some(run) => self.used_effects(kind, run).await?,
             None => Vec::new(),
         };
-        let mut own = self.user_effects(kind).await?;
-        own.retain(|one| effects.iter().any(|id| id == one.id()) || used.contains(one));
-        Ok(ModelSpec::with_own(kind, effects, own)?)
+        let mut user_effects = self.user_effects(kind).await?;
+        user_effects.retain(|one| effects.iter().any(|id| id == one.id()) || used.contains(one));
+        Ok(ModelSpec::with_user_effects(kind, effects, user_effects)?)
     }
 
     /// Users' effects that the diagnosis of a run may suggest.
-    pub(super) async fn used_effects(&self, kind: Kind, run: i64) -> Answer<Vec<OwnEffect>> {
+    pub(super) async fn used_effects(&self, kind: Kind, run: i64) -> Answer<Vec<UserEffect>> {
         let uses = self.inner.store.effect_uses().await?;
-        let is_used = |own: &OwnEffect| {
-            uses.iter().any(|one| one.run == run && one.kind == kind.name() && one.effect == own.id())
+        let is_used = |user_effect: &UserEffect| {
+            uses.iter().any(|one| one.run == run && one.kind == kind.name() && one.effect == user_effect.id())
         };
-        let mut own = self.user_effects(kind).await?;
-        own.retain(is_used);
-        Ok(own)
+        let mut user_effects = self.user_effects(kind).await?;
+        user_effects.retain(is_used);
+        Ok(user_effects)
     }
 
-    pub(super) async fn user_effects(&self, kind: Kind) -> Answer<Vec<OwnEffect>> {
+    pub(super) async fn user_effects(&self, kind: Kind) -> Answer<Vec<UserEffect>> {
         let records = self.inner.store.user_effects().await?;
         records.iter().filter(|record| record.kind == kind.name()).map(read).collect()
     }
@@ -71,23 +71,26 @@ impl Lab {
     }
 
     async fn reading(&self, trial: &EffectTrial) -> Answer<EffectCheck> {
-        let own = parse(&trial.effect)?;
+        let user_effect = parse(&trial.effect)?;
         let mut motion = None;
         if let Some(run) = trial.columns_of.or(trial.run) {
             motion = Some(self.facts(run).await?.0.motion);
             let none = self.inner.store.trace(run, None, 0..0).await?;
             let columns: Vec<&str> = none.channels().iter().map(|channel| channel.name.as_str()).collect();
-            own.missing(&columns).map_or(Ok(()), |fault| Err(LabError::Formula(fault.into())))?;
+            user_effect.missing(&columns).map_or(Ok(()), |fault| Err(LabError::Formula(fault.into())))?;
         }
-        let warnings: Vec<String> = own.unit_warnings(motion).iter().map(ToString::to_string).collect();
-        let name = |p: &usize| own.definition().parameters[*p].name.clone();
+        let warnings: Vec<String> = user_effect.unit_warnings(motion).iter().map(ToString::to_string).collect();
+        let name = |p: &usize| user_effect.definition().parameters[*p].name.clone();
         let mut check = EffectCheck {
-            effect: Some(Effect { definition: Some(reread(own.definition())?), ..effect_view(&own.info()) }),
+            effect: Some(Effect {
+                definition: Some(reread(user_effect.definition())?),
+                ..effect_view(&user_effect.info())
+            }),
             mistake: None,
             doubt: (!warnings.is_empty()).then(|| warnings.join("; ")),
-            linear: own.formula().columns.iter().map(|(p, _)| name(p)).collect(),
-            shape: own.formula().shape.iter().map(name).collect(),
-            signals: own.formula().signals.iter().map(|s| s.name.to_owned()).collect(),
+            linear: user_effect.formula().columns.iter().map(|(p, _)| name(p)).collect(),
+            shape: user_effect.formula().shape.iter().map(name).collect(),
+            signals: user_effect.formula().signals.iter().map(|s| s.name.to_owned()).collect(),
             parameters: Vec::new(),
             like: Vec::new(),
             error: None,
@@ -101,18 +104,18 @@ impl Lab {
 
     /// The effect fitted together with the other effects, on the samples that the version of the page uses.
     pub(super) async fn try_effect_here(&self, trial: &EffectTrial) -> Answer<TrialFit> {
-        let own = parse(&trial.effect)?;
+        let user_effect = parse(&trial.effect)?;
         let runs: Vec<i64> = trial.run.iter().chain(&trial.more_runs).copied().collect();
         let table = exclusions::without(self.tables(&runs).await?, &trial.exclude)?;
         let model = trial.effects.as_ref().unwrap_or(&table.meta().baseline).iter();
-        let others: Vec<String> = model.filter(|id| *id != own.id()).cloned().collect();
+        let others: Vec<String> = model.filter(|id| *id != user_effect.id()).cloned().collect();
         let mut available = self.user_effects(table.kind()).await?;
-        available.retain(|one| one.id() != own.id());
-        available.push(own.clone());
-        let spec = |effects: Vec<&str>| ModelSpec::with_own(table.kind(), effects, available.clone());
+        available.retain(|one| one.id() != user_effect.id());
+        available.push(user_effect.clone());
+        let spec = |effects: Vec<&str>| ModelSpec::with_user_effects(table.kind(), effects, available.clone());
         let names = || others.iter().map(String::as_str);
-        let (without, with) = (spec(names().collect()), spec(names().chain([own.id()]).collect())?);
-        let id = own.id().to_owned();
+        let (without, with) = (spec(names().collect()), spec(names().chain([user_effect.id()]).collect())?);
+        let id = user_effect.id().to_owned();
         let alone = id.clone();
         let (fit, before_rms, like) = blocking(move || {
             let options = Options::default();
@@ -140,13 +143,13 @@ impl Lab {
     /// Stores an effect; an existing id gets the next version. The diagnosis of `run`, in whose workbench it was written,
     /// may suggest it.
     pub async fn define_effect(&self, definition: &EffectDefinition, run: Option<i64>, by: &str) -> Answer<Effect> {
-        let own = parse(definition)?;
+        let user_effect = parse(definition)?;
         if let Some(run) = run {
-            self.check_kind(run, own.kind()).await?;
+            self.check_kind(run, user_effect.kind()).await?;
         }
-        let record = self.keep_effect(&own).await?;
+        let record = self.keep_effect(&user_effect).await?;
         if let Some(run) = run {
-            self.use_effect(run, own.id(), true, by).await?;
+            self.use_effect(run, user_effect.id(), true, by).await?;
         }
         view(&record, &self.inner.store.effect_uses().await?)
     }
@@ -155,10 +158,10 @@ impl Lab {
     pub async fn use_effect(&self, run: i64, effect: &str, used: bool, by: &str) -> Answer<()> {
         let kind = find_kind(&self.inner.store.run(run).await?.kind)?;
         let known = self.user_effects(kind).await?;
-        if !known.iter().any(|own| own.id() == effect) {
+        if !known.iter().any(|user_effect| user_effect.id() == effect) {
             return Err(StoreError::NoEffect(effect.to_owned()).into());
         }
-        if self.used_effects(kind, run).await?.iter().any(|own| own.id() == effect) == used {
+        if self.used_effects(kind, run).await?.iter().any(|user_effect| user_effect.id() == effect) == used {
             return Ok(());
         }
         self.inner.store.use_effect(run, kind.name(), effect, used, by).await?;
@@ -176,26 +179,28 @@ impl Lab {
         }
     }
 
-    async fn keep_effect(&self, own: &OwnEffect) -> Answer<UserEffectRecord> {
-        let kept = reread(own.definition())?;
-        let record = self.inner.store.save_user_effect(own.kind().name(), own.id(), &kept).await?;
-        tracing::info!(effect = own.id(), version = record.version, "effect defined");
-        self.publish_effect(own.kind(), own.id());
+    async fn keep_effect(&self, user_effect: &UserEffect) -> Answer<UserEffectRecord> {
+        let kept = reread(user_effect.definition())?;
+        let record = self.inner.store.save_user_effect(user_effect.kind().name(), user_effect.id(), &kept).await?;
+        tracing::info!(effect = user_effect.id(), version = record.version, "effect defined");
+        self.publish_effect(user_effect.kind(), user_effect.id());
         Ok(record)
     }
 
     /// Stores the effects of a model that is imported for a run, which uses them. Refuses an id that has another formula
     /// here.
-    pub(super) async fn import_effects(&self, brought: &[OwnEffect], run: i64, by: &str) -> Answer<()> {
+    pub(super) async fn import_effects(&self, brought: &[UserEffect], run: i64, by: &str) -> Answer<()> {
         let mut new = Vec::new();
-        for own in brought {
-            let content =
-                |own: &OwnEffect| (own.definition().formula.trim().to_owned(), own.definition().parameters.clone());
-            match self.user_effects(own.kind()).await?.iter().find(|here| here.id() == own.id()) {
-                None => new.push(own),
-                Some(here) if content(here) == content(own) => {}
+        for user_effect in brought {
+            let content = |user_effect: &UserEffect| {
+                (user_effect.definition().formula.trim().to_owned(), user_effect.definition().parameters.clone())
+            };
+            match self.user_effects(user_effect.kind()).await?.iter().find(|here| here.id() == user_effect.id()) {
+                None => new.push(user_effect),
+                Some(here) if content(here) == content(user_effect) => {}
                 Some(here) => {
-                    let (id, there, here) = (own.id(), &own.definition().formula, &here.definition().formula);
+                    let (id, there, here) =
+                        (user_effect.id(), &user_effect.definition().formula, &here.definition().formula);
                     let why = if there.trim() == here.trim() { ", with other parameters" } else { "" };
                     return Err(LabError::Invalid(format!(
                         "effect {id} of the model ({there}) differs from effect {id} of this daemon ({here}{why}): \
@@ -205,11 +210,11 @@ impl Lab {
                 }
             }
         }
-        for own in new {
-            self.keep_effect(own).await?;
+        for user_effect in new {
+            self.keep_effect(user_effect).await?;
         }
-        for own in brought {
-            self.use_effect(run, own.id(), true, by).await?;
+        for user_effect in brought {
+            self.use_effect(run, user_effect.id(), true, by).await?;
         }
         Ok(())
     }
@@ -248,10 +253,10 @@ impl Lab {
 }
 
 /// The other effects that have a parameter trade-off with this one, without repetition.
-fn trading(own: &str, pairs: &[TradeOff]) -> Vec<String> {
+fn trading(user_effect: &str, pairs: &[TradeOff]) -> Vec<String> {
     let effects =
         |pair: &TradeOff| [&pair.first, &pair.second].map(|name| name.split('.').next().unwrap_or_default().to_owned());
-    let other = |[first, second]: [String; 2]| match (first == own, second == own) {
+    let other = |[first, second]: [String; 2]| match (first == user_effect, second == user_effect) {
         (true, false) => Some(second),
         (false, true) => Some(first),
         _ => None,
@@ -262,14 +267,14 @@ fn trading(own: &str, pairs: &[TradeOff]) -> Vec<String> {
     others
 }
 
-fn parse(definition: &EffectDefinition) -> Answer<OwnEffect> {
+fn parse(definition: &EffectDefinition) -> Answer<UserEffect> {
     find_kind(&definition.kind)?;
     names::check_effect(definition)?;
     let definition: Definition = reread(definition)?;
-    OwnEffect::try_from(definition).map_err(|fault| LabError::Formula(fault.into()))
+    UserEffect::try_from(definition).map_err(|fault| LabError::Formula(fault.into()))
 }
 
-fn read(record: &UserEffectRecord) -> Answer<OwnEffect> {
+fn read(record: &UserEffectRecord) -> Answer<UserEffect> {
     let unread = |fault| LabError::Internal(format!("effect {} cannot be read: {fault}", record.effect));
     serde_json::from_value(record.definition.clone()).map_err(unread)
 }

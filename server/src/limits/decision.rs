@@ -5,13 +5,11 @@
 //! part that is common to all repeats, such as a calibration or a joint that is not warm, does not fall. A result does
 //! not state this part, so the advice is a lower bound; a broken precondition is known, and then there is none.
 
-use crate::view::{DecidedBy, Identified, LimitDecision, Shown};
+use crate::view::{DecidedBy, Identified, LimitDecision, Shown, raised};
 use jointbench_procedure::parameter::{Parameter, ParameterKind};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
 
-/// More repeats are no advice.
-const MOST_TIMES: f64 = 100.0;
 /// Settings that multiply the independent data of a run, the first of a procedure counts.
 const LENGTHS: [&str; 6] = ["repeats", "rounds", "breakaways", "power_ups", "histories", "duration_s"];
 
@@ -47,8 +45,8 @@ impl Made<'_> {
         }
     }
 
-    /// For a value whose guard band is kept only by a part of its interval. `distance`: of the value to the guard band,
-    /// `reach`: of the value to the nearest end of its interval in this direction, both positive.
+    /// For an interval that crosses a limit or its guard band. `distance`: of the value to that limit or guard band,
+    /// `reach`: of the value to the end of its interval in this direction, both positive.
     pub fn narrower_interval(&self, result: &Shown, distance: f64, reach: f64) -> LimitDecision {
         if result.verdict == Identified::IdentifiedWithWarning {
             return self.decision(DecidedBy::Precondition);
@@ -56,7 +54,7 @@ impl Made<'_> {
         let times = (reach / distance).powi(2);
         let needed = LimitDecision { times: times.is_finite().then_some(times), ..self.decision(DecidedBy::NoSetting) };
         match self.length() {
-            _ if times > MOST_TIMES => LimitDecision { by: DecidedBy::TooManyRepeats, ..needed },
+            _ if times > LimitDecision::MOST_TIMES => LimitDecision { by: DecidedBy::TooManyRepeats, ..needed },
             None => needed,
             Some((parameter, present)) => match longer(parameter, present * times) {
                 Some(setting) => LimitDecision {
@@ -88,36 +86,6 @@ fn longer(parameter: &Parameter, least: f64) -> Option<Value> {
     (value <= parameter.max).then(|| if whole { Value::from(value as u64) } else { Value::from(value) })
 }
 
-/// The next whole number, with a tolerance for rounding.
-fn raised(value: f64) -> f64 {
-    (value * (1.0 - 1e-9)).ceil()
-}
-
-/// The advice for a person.
-pub fn sentence(decision: &LimitDecision) -> String {
-    let LimitDecision { by, procedure, settings, times } = decision;
-    let many = times.map(|times| format!("{:.0} times as many repeats", raised(times))).unwrap_or_default();
-    match by {
-        DecidedBy::LongerRun => {
-            let settings: Vec<String> =
-                settings.iter().map(|(name, value)| format!("{name}={}", crate::view::typed(value))).collect();
-            format!("a run of {procedure} with {} would decide if the value stays", settings.join(", "))
-        }
-        DecidedBy::TooManyRepeats if times.is_some_and(|times| times <= MOST_TIMES) => {
-            format!("{many} would decide, more than one run of {procedure} permits")
-        }
-        DecidedBy::TooManyRepeats => "the value is too near to the limit for any number of repeats".to_owned(),
-        DecidedBy::NoSetting => format!("{many} would decide, but {procedure} has no setting for repeats"),
-        DecidedBy::Precondition => {
-            "repeats do not help: the run found a precondition broken, and repeats have the same bias".to_owned()
-        }
-        DecidedBy::OtherValue => "repeats do not help: the value itself is in the guard band".to_owned(),
-        DecidedBy::NoInterval => {
-            format!("repeats do not help: {procedure} states no interval for this quantity")
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::requirement::tests::found;
@@ -127,7 +95,7 @@ mod tests {
     fn decided(id: &str, parameters: &Value, distance: f64, reach: f64) -> (LimitDecision, String) {
         let made = Made { procedure: id, parameters: parameters.as_object().unwrap() };
         let decision = made.narrower_interval(&found().result, distance, reach);
-        let text = sentence(&decision);
+        let text = decision.to_string();
         (decision, text)
     }
 

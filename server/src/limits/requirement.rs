@@ -1,6 +1,6 @@
 //! Limits on the quantities of a result: `tau_c < 0.035 Nm` of a script, or a line of a limits file.
 
-use super::decision::{Made, sentence};
+use super::decision::Made;
 use crate::view::{LimitDecision, LimitOutcome, LimitResult, Quantity, Shown};
 use jointbench_instrument::spelling::nearest;
 use jointbench_procedure::catalogue::Findable;
@@ -114,7 +114,7 @@ impl Requirement {
             None => format!("{}: {} = {value}", self.text, self.name),
         };
         if let Some(decision) = &decision {
-            message += &format!(": {}", sentence(decision));
+            message += &format!(": {decision}");
         }
         Ok(Judged { outcome, message, decision })
     }
@@ -135,7 +135,20 @@ impl Requirement {
         let guard_band = self.guard_band * factor;
         let own = margin(quantity.value);
         if own < 0.0 {
-            return (LimitOutcome::Fail, None);
+            let [low, high] = quantity.ci95.unwrap_or([quantity.value; 2]);
+            let is_above = self.upper.is_some_and(|upper| quantity.value > upper * factor);
+            // The end of the interval towards the limit that the value exceeds.
+            let (end, crosses) = match is_above {
+                true => (low, self.upper.is_some_and(|upper| low <= upper * factor)),
+                false => (high, self.lower.is_some_and(|lower| high >= lower * factor)),
+            };
+            return match crosses {
+                true => {
+                    let reach = (quantity.value - end).abs();
+                    (LimitOutcome::Marginal, Some(made.narrower_interval(result, -own, reach)))
+                }
+                false => (LimitOutcome::Fail, None),
+            };
         }
         if own < guard_band {
             return (LimitOutcome::Marginal, Some(made.other_value()));
@@ -241,7 +254,11 @@ pub(crate) mod tests {
             panic!("30.6 is above 30.5")
         };
         assert!(why.ends_with("the value itself is in the guard band"), "{why}");
-        assert!(matches!(limit(30.5, 0.0).check(made(), &found().result), Ok((LimitOutcome::Fail, _))));
+        let Ok((LimitOutcome::Marginal, why)) = limit(30.5, 0.0).check(made(), &found().result) else {
+            panic!("the interval begins at 30.2")
+        };
+        assert!(why.ends_with("a run of friction with repeats=32 would decide if the value stays"), "{why}");
+        assert!(matches!(limit(30.1, 0.0).check(made(), &found().result), Ok((LimitOutcome::Fail, _))));
         let mut bare = found();
         bare.result.quantities[0].ci95 = None;
         assert!(matches!(limit(32.0, 0.0).check(made(), &bare.result), Ok((LimitOutcome::Inconclusive, _))));

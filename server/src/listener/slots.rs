@@ -10,11 +10,11 @@ use tokio_util::sync::CancellationToken;
 #[derive(Debug, Clone)]
 pub struct ConnectionSlots {
     limits: Arc<Limits>,
-    all: Arc<Mutex<Taken>>,
+    all: Arc<Mutex<Connections>>,
 }
 
 #[derive(Debug, Default)]
-struct Taken {
+struct Connections {
     next: u64,
     places: BTreeMap<u64, Place>,
 }
@@ -26,7 +26,7 @@ struct Place {
     reserved: bool,
 }
 
-impl Taken {
+impl Connections {
     /// Among the connections that `may` be closed, closes the one that has waited longest for its client.
     fn close_oldest(&mut self, may: impl Fn(&Place) -> bool) -> bool {
         let waiting = self.places.iter().filter(|(_, place)| may(place));
@@ -78,7 +78,7 @@ impl ConnectionSlots {
         self.limits.connections - self.limits.reserved
     }
 
-    fn lock(&self) -> MutexGuard<'_, Taken> {
+    fn lock(&self) -> MutexGuard<'_, Connections> {
         self.all.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -16,6 +16,7 @@ pub fn limits(check: &LimitCheck, result: &Shown, most: usize) -> Markup {
             @for limit in sorted.iter().take(most) {
                 @let (value, interval) = measured(limit, result);
                 tr { td { (limit.text) } td.figure { (value) } td.figure { (interval) } td { (word_of(limit.outcome)) } }
+                @if let Some(decision) = &limit.decision { tr { td.quiet colspan="4" { (decision.to_string()) } } }
             }
         }
         @if sorted.len() > most { p.quiet { "All " (sorted.len()) " limits: appendix." } }

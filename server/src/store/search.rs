@@ -6,8 +6,8 @@
 
 use super::StoreError;
 use jointbench_instrument::Kind;
+use jointbench_instrument::spelling::instead;
 use jointbench_procedure::{RunState, Safe};
-use serde::de::{DeserializeOwned, IntoDeserializer, value};
 use sqlx::{QueryBuilder, Sqlite};
 
 /// Fields with their column; a prefix of the value is enough.
@@ -162,13 +162,15 @@ fn condition(term: &str) -> Result<Condition, StoreError> {
     if let Some((_, column)) = FIELDS.iter().find(|(name, _)| *name == key) {
         // The dashboard uses `done` for this state.
         let value = if (key, value) == ("state", "done") { "completed" } else { value };
-        match key {
-            "kind" => known::<Kind>(value),
-            "state" => known::<RunState>(value),
-            "safe" => known::<Safe>(value),
-            _ => Ok(()),
+        let known = match key {
+            "kind" => Kind::ALL.map(Kind::name).to_vec(),
+            "state" => RunState::ALL.map(RunState::name).to_vec(),
+            "safe" => Safe::ALL.map(Safe::name).to_vec(),
+            _ => Vec::new(),
+        };
+        if !known.is_empty() && !known.iter().any(|name| name.starts_with(value)) {
+            return Err(refuse(format!("unknown value {value}: {}", instead(value, &known))));
         }
-        .map_err(|fault| refuse(fault.to_string()))?;
         return Ok(Condition::Field(column, value.to_owned()));
     }
     match (key, value) {
@@ -184,13 +186,6 @@ fn condition(term: &str) -> Result<Condition, StoreError> {
         }
         _ => Err(refuse(format!("there is no field {key}; there are {KEYS}"))),
     }
-}
-
-/// Checks that a variant of the type begins with `word`; the error lists all variants.
-fn known<T: DeserializeOwned>(word: &str) -> Result<(), value::Error> {
-    let Err(fault): Result<T, value::Error> = T::deserialize(word.into_deserializer()) else { return Ok(()) };
-    let begins = fault.to_string().split_once("expected").is_some_and(|(_, all)| all.contains(&format!("`{word}")));
-    if begins { Ok(()) } else { Err(fault) }
 }
 
 /// Splits at blanks outside quotation marks, in lower case.
@@ -245,9 +240,10 @@ mod tests {
             ("rows>many", "\"many\" is no number"),
             ("tag:", "a value is missing"),
             ("after:tomorrow", "2026-01-31"),
-            ("state:bogus", "unknown variant `bogus`, expected one of `queued`, `arming`"),
-            ("kind:motor", "expected one of `friction`"),
-            ("-safe:yes", "`safe_verified`"),
+            ("state:bogus", "unknown value bogus: there are queued, arming"),
+            ("state:compelted", "did you mean completed?"),
+            ("kind:motor", "there are friction"),
+            ("-safe:yes", "there are safe_verified"),
             ("simulated:perhaps", "simulated:yes or simulated:no"),
         ] {
             let refused = Search::parse(text).unwrap_err().to_string();

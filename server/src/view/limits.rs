@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+use std::fmt;
 use utoipa::ToSchema;
 
 /// Outcome of a limit; of several limits the worst, which is the last of these words.
@@ -10,11 +11,11 @@ use utoipa::ToSchema;
 pub enum LimitOutcome {
     /// The 95 % interval is within the limits by the guard band.
     Pass,
-    /// The value is within the limits, but its interval or the guard band is not.
+    /// The interval crosses a limit or its guard band.
     Marginal,
     /// The result has no such quantity, or the quantity has no interval.
     Inconclusive,
-    /// The value exceeds a limit.
+    /// The whole interval exceeds a limit, or the value of a quantity without an interval.
     Fail,
 }
 
@@ -60,6 +61,43 @@ pub struct LimitDecision {
     /// Number of independent repeats, as a multiple of those of this run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub times: Option<f64>,
+}
+
+impl LimitDecision {
+    /// More repeats are no advice.
+    pub const MOST_TIMES: f64 = 100.0;
+}
+
+/// The advice for a person.
+impl fmt::Display for LimitDecision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { by, procedure, settings, times } = self;
+        let many = times.map(|times| format!("{:.0} times as many repeats", raised(times))).unwrap_or_default();
+        match by {
+            DecidedBy::LongerRun => {
+                let settings: Vec<String> =
+                    settings.iter().map(|(name, value)| format!("{name}={}", super::typed(value))).collect();
+                write!(f, "a run of {procedure} with {} would decide if the value stays", settings.join(", "))
+            }
+            DecidedBy::TooManyRepeats if times.is_some_and(|times| times <= Self::MOST_TIMES) => {
+                write!(f, "{many} would decide, more than one run of {procedure} permits")
+            }
+            DecidedBy::TooManyRepeats => f.write_str("the value is too near to the limit for any number of repeats"),
+            DecidedBy::NoSetting => write!(f, "{many} would decide, but {procedure} has no setting for repeats"),
+            DecidedBy::Precondition => {
+                f.write_str("repeats do not help: the run found a precondition broken, and repeats have the same bias")
+            }
+            DecidedBy::OtherValue => f.write_str("repeats do not help: the value itself is in the guard band"),
+            DecidedBy::NoInterval => {
+                write!(f, "repeats do not help: {procedure} states no interval for this quantity")
+            }
+        }
+    }
+}
+
+/// The next whole number, with a tolerance for rounding.
+pub fn raised(value: f64) -> f64 {
+    (value * (1.0 - 1e-9)).ceil()
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]

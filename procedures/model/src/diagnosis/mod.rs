@@ -88,7 +88,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     Ok(Diagnosis {
         kind: prepared.kind,
         model: found.start.effects.clone(),
-        own: spec.own.clone(),
+        user_effects: spec.user_effects.clone(),
         residual: fit.residual,
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
@@ -281,7 +281,7 @@ fn tie(
         return Ok(String::new());
     }
     let others = found.end().effects.iter().filter(|effect| *effect != id).cloned();
-    let base = ModelSpec::with_own(spec.kind, others, spec.own.clone())?;
+    let base = ModelSpec::with_user_effects(spec.kind, others, spec.user_effects.clone())?;
     let prepared = found.start.prepared;
     let without = TwoStageModel::new(prepared, &base, options)?;
     let own = base.with(id)?;

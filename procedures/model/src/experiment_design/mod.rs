@@ -17,7 +17,7 @@ use crate::signal::Signal;
 use crate::stats::summary::peak;
 use crate::thresholds::{NEARLY_COVERED, SEPARATED_Z, USELESS_Z};
 use crate::words::list;
-use crate::{ModelError, ModelSpec, Options, OwnEffect};
+use crate::{ModelError, ModelSpec, Options, UserEffect};
 use jointbench_instrument::{Motion, RunTable};
 use serde_json::{Map, Value};
 use std::cmp::Ordering;
@@ -82,7 +82,7 @@ pub struct Open {
     /// Unexplained structure remains in this data; a run for effects that it cannot show would not explain that.
     pub has_structure: bool,
     /// User effects that the model or its alternatives contain.
-    pub own: Vec<OwnEffect>,
+    pub user_effects: Vec<UserEffect>,
 }
 
 impl From<&Diagnosis> for Open {
@@ -95,7 +95,7 @@ impl From<&Diagnosis> for Open {
             imitated: diagnosis.imitated.as_ref().map(|open| open.effect.clone()),
             has_noise_floor: diagnosis.noise_floor_rms.is_some(),
             has_structure: diagnosis.structure_remains,
-            own: Vec::new(),
+            user_effects: Vec::new(),
         }
     }
 }
@@ -110,7 +110,7 @@ impl From<&Discovery> for Open {
             imitated: discovery.imitated.as_ref().map(|open| open.effect.clone()),
             has_noise_floor: discovery.noise_floor_rms.is_some(),
             has_structure: discovery.verdict == Verdict::UnexplainedStructure,
-            own: Vec::new(),
+            user_effects: Vec::new(),
         }
     }
 }
@@ -141,7 +141,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     if !prepared.data_errors.is_empty() {
         return Ok(Next::default());
     }
-    let spec = ModelSpec::with_own(run.kind(), &open.model, open.own.clone())?;
+    let spec = ModelSpec::with_user_effects(run.kind(), &open.model, open.user_effects.clone())?;
     let model = TwoStageModel::new(&prepared, &spec, options)?;
     let noise = Noise::of(&model.main);
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
@@ -206,7 +206,7 @@ impl<'a> RunPlanner<'a> {
         let instead = |alternative: &String| {
             let effects: Vec<String> =
                 open.model.iter().map(|e| if e == effect { alternative } else { e }.clone()).collect();
-            ModelSpec::with_own(self.prepared.kind, effects, open.own.clone())
+            ModelSpec::with_user_effects(self.prepared.kind, effects, open.user_effects.clone())
         };
         // A candidate that no run separates does not prevent the separation of the others.
         let (mut apart, mut specs, mut alike, mut first) = (Vec::new(), Vec::new(), Vec::new(), None);
@@ -268,13 +268,13 @@ impl From<Experiment> for Next {
 fn over_time(model: &ModelSpec, prepared: &Prepared) -> Result<Option<(String, ModelSpec)>, ModelError> {
     for id in &model.effects {
         let Some(over_time) = confounding::over_time(model.find(id)?, prepared) else { continue };
-        if model.own.iter().any(|own| own.id() == over_time.id()) {
+        if model.user_effects.iter().any(|user_effect| user_effect.id() == over_time.id()) {
             continue;
         }
         let effects = model.effects.iter().map(|e| if e == id { over_time.id() } else { e }.to_owned());
         let effects: Vec<String> = effects.collect();
-        let own = model.own.iter().cloned().chain([over_time.clone()]).collect();
-        return Ok(Some((id.clone(), ModelSpec::with_own(model.kind, effects, own)?)));
+        let user_effects = model.user_effects.iter().cloned().chain([over_time.clone()]).collect();
+        return Ok(Some((id.clone(), ModelSpec::with_user_effects(model.kind, effects, user_effects)?)));
     }
     Ok(None)
 }

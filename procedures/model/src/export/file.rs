@@ -47,7 +47,8 @@ impl ModelFile {
             return Err(ModelError::BadFile(format!("{found}, but this program reads {FORMAT} version {VERSION}")));
         }
         let fit = self.fit;
-        let spec = ModelSpec::with_own(fit.kind, fit.effects.iter().map(String::as_str), fit.own.clone())?;
+        let spec =
+            ModelSpec::with_user_effects(fit.kind, fit.effects.iter().map(String::as_str), fit.user_effects.clone())?;
         if let Some(term) = fit.terms.iter().find(|term| !spec.contains(&term.effect)) {
             return Err(ModelError::BadFile(format!("a term of {}, which is not in the model", term.effect)));
         }

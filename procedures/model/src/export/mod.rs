@@ -104,7 +104,7 @@ fn about(fit: &Fit, parts: &Parts, left_out: &[(&str, String)], errors: Vec<Stri
         format!("Effects: {}", fit.effects.join(", ")),
     ];
     lines.extend(errors);
-    let named = signals_with(fit.kind, &fit.own);
+    let named = signals_with(fit.kind, &fit.user_effects);
     let is_input = |range: &&SignalRange| {
         let signal = named.iter().find(|s| s.name == range.name);
         signal.is_some_and(|s| s.signal != Signal::Direction && parts.uses(s.signal))

@@ -4,7 +4,7 @@ use crate::effect::Regime;
 use crate::export::predict;
 use crate::report::fit::Fit;
 use crate::signal::Signal;
-use crate::user_effects::{find_with_own, signals_with};
+use crate::user_effects::{find_with_user_effects, signals_with};
 use jointbench_instrument::{Kind, Trace};
 
 /// Below this share of the fastest fitted speed, the direction of the previous motion is kept.
@@ -26,7 +26,8 @@ pub struct OnlinePrediction {
 impl OnlinePrediction {
     /// `None` for a model that needs more history than the previous row.
     pub fn new(fit: Fit, torque_constant_nm_per_a: f64, gear_ratio: f64) -> Option<Self> {
-        let stage = |id: &String| find_with_own(fit.kind, &fit.own, id).map(|effect| effect.traits().regime);
+        let stage =
+            |id: &String| find_with_user_effects(fit.kind, &fit.user_effects, id).map(|effect| effect.traits().regime);
         let knows = fit.effects.iter().all(|id| stage(id).is_ok_and(|stage| stage != Regime::Hysteresis));
         let velocity = fit.scope.as_ref()?.signals.iter().find(|signal| signal.name == "velocity")?;
         let still_rad_s = STILL * velocity.min.abs().max(velocity.max.abs());
@@ -70,7 +71,7 @@ impl OnlinePrediction {
         ];
         moments.extend(rows.column("link_torque_nm").map(|load| ("load", geared(load))));
         moments.extend(rows.column("temperature_c").map(|measured| ("temperature", measured.to_vec())));
-        let named = signals_with(self.fit.kind, &self.fit.own).into_iter();
+        let named = signals_with(self.fit.kind, &self.fit.user_effects).into_iter();
         let unknown = named.filter(|s| matches!(s.signal, Signal::Column(_)));
         moments.extend(unknown.filter_map(|s| Some((s.name, rows.column(s.column)?.to_vec()))));
         let sample_s = passed_s / rows.len() as f64;

@@ -6,7 +6,7 @@ use crate::formula::syntax;
 use crate::report::fit::{Fit, Term};
 use crate::signal::Signal;
 use crate::symbolic::{Column, FittedForm, Rule};
-use crate::user_effects::find_with_own;
+use crate::user_effects::find_with_user_effects;
 use crate::{Effect, ModelError};
 
 /// One effect of the model as a controller computes it.
@@ -51,7 +51,7 @@ impl<'f> Parts<'f> {
     pub fn of(fit: &'f Fit) -> Result<Self, ModelError> {
         let mut parts = Self { parts: Vec::new(), left_out: Vec::new() };
         for id in &fit.effects {
-            let effect = find_with_own(fit.kind, &fit.own, id)?;
+            let effect = find_with_user_effects(fit.kind, &fit.user_effects, id)?;
             let title = effect.info().title;
             if effect.traits().is_offset {
                 let columns = vec![PartColumn::Formula(formula(fit, "load", &[])?)];
@@ -101,9 +101,9 @@ fn part<'f>(effect: &'f str, title: &'f str, term: &'f Term, columns: Vec<PartCo
 
 /// The columns, or why a controller cannot compute them.
 fn columns(fit: &Fit, effect: &dyn Effect, term: &Term) -> Result<Result<Vec<PartColumn>, &'static str>, ModelError> {
-    if let Some(own) = fit.own.iter().find(|own| own.id() == term.effect) {
+    if let Some(user_effect) = fit.user_effects.iter().find(|user_effect| user_effect.id() == term.effect) {
         // The definition numbers all parameters, the part only the nonlinear ones.
-        let formula = own.formula();
+        let formula = user_effect.formula();
         let number = |p: usize| formula.shape.iter().position(|s| *s == p).unwrap_or(usize::MAX);
         return Ok(Ok(formula.columns.iter().map(|(_, e)| PartColumn::Formula(e.renumbered(&number))).collect()));
     }

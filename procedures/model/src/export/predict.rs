@@ -14,7 +14,7 @@ pub type Moments<'m> = [(&'m str, Vec<f64>)];
 pub fn predict(fit: &Fit, moments: &Moments, sample_s: f64) -> Result<Vec<f64>, ModelError> {
     let rows = moments.first().map_or(0, |(_, values)| values.len());
     let mut given = Signals::new(rows);
-    let signals = signals_with(fit.kind, &fit.own);
+    let signals = signals_with(fit.kind, &fit.user_effects);
     for (name, values) in moments {
         let Some(signal) = signals.iter().find(|s| s.name == *name) else {
             let known: Vec<&str> = signals.iter().map(|s| s.name).collect();

@@ -6,7 +6,7 @@ use crate::report::fit::{Fit, FormErrorTerm, ParameterState, Term};
 use crate::signal::{Signal, Signals};
 use crate::view::View;
 use crate::words::list;
-use crate::{ModelError, OwnEffect};
+use crate::{ModelError, UserEffect};
 use std::f64::consts::TAU;
 
 /// Every effect of the model has exactly the terms that it needs.
@@ -22,7 +22,9 @@ pub fn check(fit: &Fit, effects: &[&dyn Effect]) -> Result<(), ModelError> {
                 return fault("has a term, but it enters as it is: no term is expected".into());
             }
             [term] => {
-                if let Err(why) = check_term(term, *effect, fit.own.iter().find(|own| own.id() == id)) {
+                if let Err(why) =
+                    check_term(term, *effect, fit.user_effects.iter().find(|user_effect| user_effect.id() == id))
+                {
                     return fault(why);
                 }
             }
@@ -38,9 +40,9 @@ fn check_form_error(fit: &Fit, term: &FormErrorTerm) -> Result<(), ModelError> {
     if !term.linear.iter().chain(&term.shape).all(|value| value.is_finite()) {
         return fault("has a value that is not finite");
     }
-    let own = fit.own.iter().find(|own| own.id() == term.name);
-    let forms: Vec<Form> = match (own, find(fit.kind, &term.name)) {
-        (Some(own), _) => vec![own.form(&View::default())],
+    let user_effect = fit.user_effects.iter().find(|user_effect| user_effect.id() == term.name);
+    let forms: Vec<Form> = match (user_effect, find(fit.kind, &term.name)) {
+        (Some(user_effect), _) => vec![user_effect.form(&View::default())],
         (None, Ok(effect)) => forms(effect, term.linear.len()),
         (None, Err(_)) => return Ok(()),
     };
@@ -60,9 +62,9 @@ fn is_hidden(fit: &Fit, id: &str) -> bool {
         && parameters.all(|p| p.state == ParameterState::Unidentified && p.value == 0.0 && p.ci95 == [0.0, 0.0])
 }
 
-fn check_term(term: &Term, effect: &dyn Effect, own: Option<&OwnEffect>) -> Result<(), String> {
-    let forms: Vec<Form> = match own {
-        Some(own) => vec![own.form(&View::default())],
+fn check_term(term: &Term, effect: &dyn Effect, user_effect: Option<&UserEffect>) -> Result<(), String> {
+    let forms: Vec<Form> = match user_effect {
+        Some(user_effect) => vec![user_effect.form(&View::default())],
         None => forms(effect, term.linear.len()),
     };
     let named: Vec<&Form> = forms.iter().filter(|form| form.name == term.form).collect();
@@ -93,7 +95,7 @@ fn check_term(term: &Term, effect: &dyn Effect, own: Option<&OwnEffect>) -> Resu
         // A value at a bound is rounded there. Zero has no logarithm.
         let rounding = 1e-9 * value.abs();
         let is_within = value + rounding >= min && value - rounding <= max;
-        let is_possible = is_within && (own.is_some() || shape.search == ShapeSearch::Signed || *value > 0.0);
+        let is_possible = is_within && (user_effect.is_some() || shape.search == ShapeSearch::Signed || *value > 0.0);
         if !is_possible {
             return Err(format!("has {} = {value}: expected is {} to {max}", shape.name, min.max(0.0)));
         }

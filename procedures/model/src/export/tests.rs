@@ -1,4 +1,4 @@
-use crate::OwnEffect;
+use crate::UserEffect;
 use crate::export::*;
 use crate::formula::signals;
 use crate::report::fit::{Preparation, ResidualKind, Scope, Term};
@@ -40,11 +40,11 @@ fn view(kind: Kind) -> View {
 }
 
 /// The effects of a kind with their terms, each in its `n`-th form. Offset effects have no term.
-fn terms_of_all(kind: Kind, n: usize, own: &[OwnEffect]) -> (Vec<String>, Vec<Term>) {
+fn terms_of_all(kind: Kind, n: usize, user_effects: &[UserEffect]) -> (Vec<String>, Vec<Term>) {
     let view = view(kind);
     let mut terms = Vec::new();
     let mut ids: Vec<String> = Vec::new();
-    for effect in user_effects::with_own(kind, own) {
+    for effect in user_effects::with_user_effects(kind, user_effects) {
         let forms = effect.forms(&view);
         if effect.traits().is_offset {
             ids.push(effect.info().id.into());
@@ -101,12 +101,12 @@ fn scope(kind: Kind) -> Scope {
 }
 
 /// A fit of all effects of a kind, each in its `n`-th form.
-fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
-    let (effects, terms) = terms_of_all(kind, n, &own);
+fn fit_of_all(kind: Kind, n: usize, user_effects: Vec<UserEffect>) -> Fit {
+    let (effects, terms) = terms_of_all(kind, n, &user_effects);
     Fit {
         kind,
         effects,
-        own,
+        user_effects,
         settings: Vec::new(),
         rms: 1.0,
         validation_rms: 1.1,
@@ -138,10 +138,10 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
     }
 }
 
-fn rub() -> Vec<OwnEffect> {
+fn rub() -> Vec<UserEffect> {
     let text = "rub: tau = a * tanh(velocity / w0) * abs(load) ^ 1.5 - b * min(load, 0.2 * wrap(9 * velocity)) + sign(velocity) * a; \
                 a [1] 0..1; b [1]; w0 [rad/s] 0.1..10";
-    vec![OwnEffect::inline(Kind::Friction, text).unwrap()]
+    vec![UserEffect::inline(Kind::Friction, text).unwrap()]
 }
 
 /// The fit without the effects that a controller cannot compute.
@@ -203,8 +203,8 @@ fn run_c(fit: &Fit) -> Option<Vec<f64>> {
 fn c_computes_what_the_model_computes() {
     for kind in Kind::ALL {
         for n in 0..3 {
-            let own = if kind == Kind::Friction { rub() } else { Vec::new() };
-            let fit = carried(fit_of_all(kind, n, own));
+            let user_effects = if kind == Kind::Friction { rub() } else { Vec::new() };
+            let fit = carried(fit_of_all(kind, n, user_effects));
             let Some(found) = run_c(&fit) else { return };
             let truth = predict(&fit, &moments(kind), STEP_S).unwrap();
             assert_eq!(found.len(), truth.len());
@@ -292,8 +292,8 @@ fn only_ranges_of_inputs_are_reported() {
 #[test]
 fn what_comes_back_predicts_the_same_bits() {
     for kind in Kind::ALL {
-        let own = if kind == Kind::Friction { rub() } else { Vec::new() };
-        let mut fit = fit_of_all(kind, 1, own);
+        let user_effects = if kind == Kind::Friction { rub() } else { Vec::new() };
+        let mut fit = fit_of_all(kind, 1, user_effects);
         fit.terms.iter_mut().flat_map(|t| &mut t.linear).for_each(|v| *v = (*v / 3.0).exp());
         fit.condition = f64::INFINITY;
         let text = export(&fit, Format::Json).unwrap();

@@ -2,12 +2,13 @@
 //! other filter corners.
 
 use crate::inference::parameter_state::{self, Intervals, Slot};
+use crate::linear::cholesky::projections;
 use crate::preprocess::Problem;
 use crate::regression::linear_model::{LinearModel, Relative, Term, columns};
 use crate::regression::solution::Solution;
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
-use crate::stats::student;
 use crate::stats::summary::deviation;
+use crate::stats::{jackknife, student};
 use crate::thresholds::TRADE_OFF_CORRELATION;
 use jointbench_instrument::Motion;
 use rayon::prelude::*;
@@ -27,20 +28,11 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
     let replicates = coefficients_without(&solution);
     let blocks = replicates.len() as f64;
     let t = student::half_width_95(blocks - 1.0);
-    let others: Vec<(Vec<f64>, Vec<f64>)> = model
-        .problem
-        .bandwidths
-        .par_iter()
-        .filter_map(|problem| {
-            let other = Solution::of(&at_corner(model, problem))?;
-            Some((other.coefficients.clone(), other.standard_errors()))
-        })
-        .collect();
-    let own = solution.standard_errors();
+    let others = model.problem.bandwidths.par_iter().filter_map(|problem| Estimates::of(&at_corner(model, problem)));
+    let all: Vec<Estimates> = std::iter::once(Estimates::of(model)?).chain(others.collect::<Vec<_>>()).collect();
     let half_width = |k: usize| {
-        let error = others.iter().map(|(_, errors)| errors[k]).fold(own[k], f64::max);
-        let estimates: Vec<f64> =
-            std::iter::once(solution.coefficients[k]).chain(others.iter().map(|o| o.0[k])).collect();
+        let error = all.iter().map(|one| one.errors[k]).fold(0.0, f64::max);
+        let estimates: Vec<f64> = all.iter().flat_map(|one| &one.coefficients).map(|one| one[k]).collect();
         (t * error).hypot(OF_CORNERS * deviation(&estimates))
     };
     let mut parameters = Vec::new();
@@ -84,6 +76,54 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
     Some(Intervals { parameters, trade_offs: trade_offs(&replicates, &names) })
 }
 
+/// Coefficients of the effects by two attributions that explain the run equally well, and their standard errors.
+struct Estimates {
+    /// With all that other forms have in common with the effects, and with only what they have in common with their own
+    /// effect.
+    coefficients: [Vec<f64>; 2],
+    /// The larger one of both attributions.
+    errors: Vec<f64>,
+}
+
+impl Estimates {
+    fn of(model: &LinearModel) -> Option<Self> {
+        let solution = Solution::of(model)?;
+        let moved = moved(model, &solution);
+        let size = solution.coefficients.len();
+        let only_own = |coefficients: &[f64], relatives: &[f64], k: usize| {
+            coefficients[k] + moved.iter().zip(relatives).map(|(moved, c)| moved[k] * c).sum::<f64>()
+        };
+        let first = size + solution.error.len();
+        let replicates: Vec<Vec<f64>> = solution.ridge.replicates().collect();
+        let error_of = |k: usize| {
+            let of_block = replicates.iter().map(|all| only_own(all, &all[first..], k));
+            jackknife::variance_about_mean(of_block).sqrt()
+        };
+        let errors = solution.standard_errors().into_iter().enumerate().map(|(k, error)| error.max(error_of(k)));
+        let others = (0..size).map(|k| only_own(&solution.coefficients, &solution.relatives, k)).collect();
+        Some(Self { errors: errors.collect(), coefficients: [solution.coefficients.clone(), others] })
+    }
+}
+
+/// What each effect gains for a unit of another form, if only its own forms count as its size.
+fn moved(model: &LinearModel, solution: &Solution) -> Vec<Vec<f64>> {
+    let columns = model.relatives.iter().flat_map(|relative| relative.columns.iter().map(move |c| (relative, c)));
+    let of = |((relative, column), parts): ((&Relative, &Vec<f64>), &Vec<f64>)| {
+        let mut moved: Vec<f64> = parts.iter().map(|part| -part).collect();
+        let mut first = 0;
+        for term in &model.terms {
+            if term.id() == relative.effect.info().id {
+                let effects: Vec<&Vec<f64>> = term.columns.iter().collect();
+                let own = projections(std::slice::from_ref(column), &effects).remove(0);
+                moved[first..].iter_mut().zip(own).for_each(|(moved, part)| *moved += part);
+            }
+            first += term.columns.len();
+        }
+        moved
+    };
+    columns.zip(&solution.parts).map(of).collect()
+}
+
 /// Coefficients of the effects, refitted without each block in turn.
 fn coefficients_without(solution: &Solution) -> Vec<Vec<f64>> {
     let size = solution.coefficients.len();
@@ -101,11 +141,8 @@ fn at_corner<'p>(model: &LinearModel<'p>, problem: &'p Problem) -> LinearModel<'
     other.offsets.clone_from(&model.offsets);
     let term = |term: &Term<'p>| Term::new(term.effect, term.form.clone(), term.shape.clone(), problem);
     other.terms = model.terms.iter().map(term).collect();
-    let relative = |r: &Relative<'p>| {
-        let own = other.terms.iter().find(|term| term.id() == r.effect.info().id)?;
-        Some(r.at(own, problem))
-    };
-    other.relatives = Arc::new(model.relatives.par_iter().filter_map(relative).collect());
+    other.relatives =
+        Arc::new(model.relatives.par_iter().map(|relative: &Relative<'p>| relative.at(problem)).collect());
     other
 }
 

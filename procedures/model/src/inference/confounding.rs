@@ -5,7 +5,7 @@ use crate::linear::basis::dot;
 use crate::preprocess::Prepared;
 use crate::signal::Signal;
 use crate::thresholds::{COLUMN_CORRELATION, TRADE_OFF_CORRELATION};
-use crate::{Effect, OwnEffect};
+use crate::{Effect, UserEffect};
 
 /// The column of the temperature effects.
 const TEMPERATURE: &str = "temperature_c";
@@ -27,9 +27,9 @@ pub fn instead(effect: &dyn Effect, prepared: &Prepared) -> Vec<String> {
 }
 
 /// The same effect over time instead of temperature, as a formula, if this run cannot distinguish them.
-pub fn over_time(effect: &dyn Effect, prepared: &Prepared) -> Option<OwnEffect> {
+pub fn over_time(effect: &dyn Effect, prepared: &Prepared) -> Option<UserEffect> {
     drift(prepared)?;
-    OwnEffect::inline(prepared.kind, effect.traits().over_time?).ok()
+    UserEffect::inline(prepared.kind, effect.traits().over_time?).ok()
 }
 
 fn is_of_temperature(effect: &dyn Effect) -> bool {
@@ -65,8 +65,8 @@ mod tests {
         let all = [Kind::Friction, Kind::Encoder, Kind::Stiffness].map(|kind| {
             let effects: Vec<_> = of_temperature(kind).collect();
             for effect in &effects {
-                let own = OwnEffect::inline(kind, effect.traits().over_time.unwrap()).unwrap();
-                assert_eq!(own.unit_warnings(None), []);
+                let user_effect = UserEffect::inline(kind, effect.traits().over_time.unwrap()).unwrap();
+                assert_eq!(user_effect.unit_warnings(None), []);
             }
             effects.len()
         });

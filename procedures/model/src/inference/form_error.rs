@@ -69,17 +69,17 @@ pub fn nuisance(model: &LinearModel, unit: &str) -> Option<Nuisance> {
         });
     }
     let mut coefficients = solution.relatives.iter();
-    // The part of the other forms that has the effect's own shape counts as its size.
-    let mut own: Vec<Vec<f64>> = model.terms.iter().map(|term| vec![0.0; term.columns.len()]).collect();
     for relative in model.relatives.iter() {
         let linear: Vec<f64> = coefficients.by_ref().take(relative.columns.len()).copied().collect();
-        if let Some(at) = model.terms.iter().position(|term| term.id() == relative.effect.info().id) {
-            own[at].iter_mut().zip(relative.own_part(&linear)).for_each(|(own, part)| *own -= part);
-        }
         terms.push(form_error_term(relative.effect, &relative.form, &relative.shape, linear));
     }
-    for (term, own) in model.terms.iter().zip(own).filter(|(_, own)| own.iter().any(|part| *part != 0.0)) {
-        terms.push(form_error_term(term.effect, &term.form, &term.shape, own));
+    // What the other forms have in common with the effects counts as size of these.
+    let mut parts = solution.attributed().into_iter();
+    for term in &model.terms {
+        let linear: Vec<f64> = parts.by_ref().take(term.columns.len()).map(|part| -part).collect();
+        if linear.iter().any(|part| *part != 0.0) {
+            terms.push(form_error_term(term.effect, &term.form, &term.shape, linear));
+        }
     }
     let sum = solution.form_error(model);
     let (size, whole) = (rms(&sum), rms(&model.problem.target));

@@ -5,12 +5,12 @@ use crate::preprocess::Prepared;
 use crate::report::fit::{Fit, GivenConstant, Scope, SignalRange};
 use crate::signal::Signal;
 use crate::thresholds::{BEYOND_SHARE, RANGE_MARGIN};
-use crate::user_effects::{OwnEffect, find_with_own, signals_with};
+use crate::user_effects::{UserEffect, find_with_user_effects, signals_with};
 use crate::view::View;
 use crate::words::{figure, percent};
 
 impl Scope {
-    pub(crate) fn of(prepared: &Prepared, own: &[OwnEffect]) -> Self {
+    pub(crate) fn of(prepared: &Prepared, user_effects: &[UserEffect]) -> Self {
         let view = &prepared.main.view;
         let range = |s: &NamedSignal| {
             // Steady-state motion has no acceleration; effects of acceleration were fitted to the ramps.
@@ -25,7 +25,7 @@ impl Scope {
             motion: prepared.motion,
             load_scale: prepared.load_scale,
             sample_s: view.sample_s,
-            signals: signals_with(prepared.kind, own).iter().filter_map(range).collect(),
+            signals: signals_with(prepared.kind, user_effects).iter().filter_map(range).collect(),
             constants: prepared.constants.clone(),
             fed_rms: None,
             means: Vec::new(),
@@ -36,18 +36,18 @@ impl Scope {
     /// Limitations of the error of a fit on another run, in sentences.
     pub(crate) fn notes(&self, fit: &Fit, prepared: &Prepared) -> Vec<String> {
         let effects = fit.effects.iter().filter_map(|id| self.other_columns(fit, id, prepared));
-        effects.chain(self.other_constants(prepared)).chain(self.left_by(prepared, &fit.own)).collect()
+        effects.chain(self.other_constants(prepared)).chain(self.left_by(prepared, &fit.user_effects)).collect()
     }
 
     /// An effect that this run cannot show but the fitted run could, or the reverse.
     fn other_columns(&self, fit: &Fit, id: &str, prepared: &Prepared) -> Option<String> {
-        let effect = find_with_own(fit.kind, &fit.own, id).ok()?;
+        let effect = find_with_user_effects(fit.kind, &fit.user_effects, id).ok()?;
         if !effect.traits().is_offset {
             let is_fitted = fit.terms.iter().any(|t| t.effect == id);
             return (!is_fitted).then(|| format!("{id} counts as zero: the run that was fitted could not show it"));
         }
         let column = effect.info().needs.first()?;
-        let signal = signals_with(fit.kind, &fit.own).into_iter().find(|s| s.column == *column)?;
+        let signal = signals_with(fit.kind, &fit.user_effects).into_iter().find(|s| s.column == *column)?;
         let was_there = self.signals.iter().any(|s| s.name == signal.name);
         match (was_there, effect.missing(&prepared.main.view)) {
             (true, Some(column)) => Some(format!(
@@ -82,8 +82,8 @@ impl Scope {
     }
 
     /// Signals of another run that exceed the ranges of this fit, in sentences: there the model extrapolates.
-    fn left_by(&self, prepared: &Prepared, own: &[OwnEffect]) -> Vec<String> {
-        let named = signals_with(prepared.kind, own);
+    fn left_by(&self, prepared: &Prepared, user_effects: &[UserEffect]) -> Vec<String> {
+        let named = signals_with(prepared.kind, user_effects);
         let say = |range: &SignalRange| {
             let signal = named.iter().find(|s| s.name == range.name)?.signal;
             // Time differs between runs, angles are periodic, and the drive torque is the response.

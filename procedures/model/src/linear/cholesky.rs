@@ -90,7 +90,7 @@ impl Cholesky {
     }
 
     /// Squared orthogonal part of each column, given the columns before it.
-    pub fn own(&self) -> impl Iterator<Item = f64> {
+    pub fn orthogonal_squares(&self) -> impl Iterator<Item = f64> {
         let square = |i: usize| if self.dead[i] { 0.0 } else { (self.l[i * self.n + i] / self.scale[i]).powi(2) };
         (0..self.n).map(square)
     }
@@ -127,7 +127,7 @@ impl Cholesky {
 }
 
 /// Least-squares coefficients of each column in others, with zeros for dependent ones.
-pub fn projections(columns: &[Vec<f64>], on: &[Vec<f64>]) -> Vec<Vec<f64>> {
+pub fn projections(columns: &[Vec<f64>], on: &[&Vec<f64>]) -> Vec<Vec<f64>> {
     let size = on.len();
     let gram: Vec<f64> = on.iter().flat_map(|a| on.iter().map(move |b| dot(a, b))).collect();
     let gram = Cholesky::new(&gram, size, 0.0);

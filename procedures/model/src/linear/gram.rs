@@ -60,7 +60,8 @@ impl BlockGrams {
     pub fn validation_losses(&self) -> Vec<f64> {
         let p = self.columns;
         let (xx, xy) = self.total();
-        let least: Vec<f64> = Cholesky::new(&xx, p, 1e-12).own().map(|own| FOLD_COVERAGE * own).collect();
+        let least: Vec<f64> =
+            Cholesky::new(&xx, p, 1e-12).orthogonal_squares().map(|square| FOLD_COVERAGE * square).collect();
         (0..self.groups)
             .map(|g| {
                 let rest: Vec<f64> = xx.iter().zip(self.xx(g)).map(|(a, b)| a - b).collect();

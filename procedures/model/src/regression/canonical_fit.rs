@@ -59,7 +59,7 @@ fn best_of_forms<'l, 'p>(
 ) -> Vec<(f64, &'l Regressor<'p>)> {
     let mut best: Vec<(f64, &Regressor)> = Vec::new();
     for candidate in library.candidates.iter().filter(|c| c.id() == effect.info().id) {
-        let share = partial.own(&candidate.columns).share;
+        let share = partial.orthogonalized(&candidate.columns).share;
         match best.iter_mut().find(|b| b.1.form.name == candidate.form.name) {
             Some(b) if share > b.0 => *b = (share, candidate),
             Some(_) => {}
@@ -83,7 +83,7 @@ pub fn enter<'p>(terms: &mut LinearModel<'p>, effect: &'p dyn Effect) {
     let mut best: Vec<Term<'p>> = Vec::new();
     for form in forms {
         let shapes = form.grid.iter().map(|shape| Term::new(effect, form.clone(), shape.clone(), problem));
-        let shares = shapes.map(|term| (partial.own(&term.columns).share, term));
+        let shares = shapes.map(|term| (partial.orthogonalized(&term.columns).share, term));
         best.extend(shares.max_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1));
     }
     terms.terms.extend(choose(best, &partial, problem));
@@ -97,7 +97,7 @@ fn choose<'p>(mut forms: Vec<Term<'p>>, partial: &PartialRegression, problem: &P
         let mut term = [term];
         let sse = varpro(&mut term, &partial.basis, &partial.residual, problem);
         let [term] = term;
-        (term.allows(&partial.own(&term.columns).coefficients()), sse, term)
+        (term.allows(&partial.orthogonalized(&term.columns).coefficients()), sse, term)
     };
     let forms: Vec<(bool, f64, Term<'p>)> = forms.into_par_iter().map(polished).collect();
     let mut chosen: Option<(bool, f64, Term<'p>)> = None;

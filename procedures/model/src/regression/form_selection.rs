@@ -25,7 +25,7 @@ fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, 
     let term = &terms.terms[at];
     let (part, form) = term.effect.extended(&term.form)?;
     let partial = PartialRegression::of(terms);
-    let share = |c: &Regressor| partial.own(&c.columns).share;
+    let share = |c: &Regressor| partial.orthogonalized(&c.columns).share;
     let is_part = |c: &&Regressor| c.id() == term.id() && c.form.name == part && !term.shape.contains(&c.shape[0]);
     let parts = library.candidates.iter().filter(is_part).map(|c| (share(c), c));
     let (share_of_part, part) = parts.max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -45,7 +45,7 @@ fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, 
             with_other.push(column);
         }
         let left = PartialRegression::new(with_other.clone(), with_other.rest(&partial.residual), terms.problem);
-        left.own(&part.columns).share * left.energy < COMPONENT_OWN_SHARE * share_of_part * partial.energy
+        left.orthogonalized(&part.columns).share * left.sse < COMPONENT_OWN_SHARE * share_of_part * partial.sse
     };
     let is_weak = share_of_part < options.practical_share || others.into_iter().any(|(_, other)| instead(other));
     if is_weak || significance(&part, library, &partial, options) > options.alpha {
@@ -82,7 +82,7 @@ pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p
         };
         let mut forms: Vec<&str> = same.iter().map(|c| c.form.name).filter(|f| is_open(f)).collect();
         forms.dedup();
-        let share = |c: &&&Regressor| partial.own(&c.columns).share;
+        let share = |c: &&&Regressor| partial.orthogonalized(&c.columns).share;
         let start = |form: &str| {
             let of_form = same.iter().filter(|c| c.form.name == form);
             of_form.max_by(|a, b| share(a).total_cmp(&share(b))).map(|c| c.term(terms.problem))
@@ -95,7 +95,7 @@ pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p
                 0.0 => 1.0,
                 more => more,
             };
-            let possible = trial.1.allows(&partial.own(&trial.1.columns).coefficients());
+            let possible = trial.1.allows(&partial.orthogonalized(&trial.1.columns).coefficients());
             if possible && trial.0 < best.0 * (1.0 - BETTER_FORM * more) {
                 best = trial;
             }
@@ -119,7 +119,7 @@ fn two_parts<'p>(same: &[&Regressor<'p>], partial: &PartialRegression, problem: 
     let mut best: Option<(f64, Vec<f64>)> = None;
     for (i, one) in parts.iter().enumerate() {
         for other in &parts[..i] {
-            let own = partial.own(&[&other.columns[..], &one.columns].concat());
+            let own = partial.orthogonalized(&[&other.columns[..], &one.columns].concat());
             if best.as_ref().is_none_or(|b| own.share > b.0) && allows(one.effect, &form, &own.coefficients()) {
                 best = Some((own.share, [&other.shape[..], &one.shape].concat()));
             }

@@ -27,12 +27,12 @@ impl<'p> Reversals<'p> {
 
     /// The effect in the form that explains most, and its partial R².
     pub fn best(&self) -> Option<(Term<'p>, f64)> {
-        let shares = self.library.candidates.iter().map(|c| self.partial.own(&c.columns).share);
+        let shares = self.library.candidates.iter().map(|c| self.partial.orthogonalized(&c.columns).share);
         let (best, _) = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let mut term = [self.library.candidates[best].term(self.problem)];
         let left = varpro(&mut term, &self.partial.basis, &self.partial.residual, self.problem);
         let [term] = term;
-        Some((term, 1.0 - left / self.partial.energy))
+        Some((term, 1.0 - left / self.partial.sse))
     }
 }
 

@@ -42,9 +42,8 @@ pub fn fit_canonical<'p>(
         model.terms.push(chosen.term(problem));
         let parts = extend(&mut model, chosen, &forms);
         let is_part = |form: &Regressor| parts.iter().any(|part| std::ptr::eq(*part, form));
-        let Some(term) = model.terms.last() else { break };
         let others = forms.iter().filter(|form| !is_part(form) && is_form_error(form, &parts));
-        let others = others.map(|form| relative(form, term));
+        let others = others.map(|form| relative(form));
         let relatives = model.relatives.iter().cloned().chain(others).collect();
         model.relatives = Arc::new(relatives);
     }
@@ -108,7 +107,7 @@ fn is_form_error(form: &Regressor, parts: &[&Regressor]) -> bool {
     })
 }
 
-fn relative<'p>(form: &Regressor<'p>, term: &Term) -> Relative<'p> {
+fn relative<'p>(form: &Regressor<'p>) -> Relative<'p> {
     let columns = form.columns.iter().map(|c| c.iter().map(|v| f64::from(*v)).collect()).collect();
-    Relative::new(form.effect, form.form.clone(), form.shape.clone(), columns, term)
+    Relative { effect: form.effect, form: form.form.clone(), shape: form.shape.clone(), columns }
 }

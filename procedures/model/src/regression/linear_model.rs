@@ -1,12 +1,12 @@
 //! A model on one problem: effects with their forms, nonlinear parameters and columns at the rows.
 
+pub use crate::regression::relative::Relative;
 pub use crate::regression::term::{Term, allows, columns, fixed_part};
 
-use crate::effect::{Columns, Effect, Form, ShapeSearch};
+use crate::effect::{Effect, ShapeSearch};
 use crate::linear::basis::{Basis, dot};
-use crate::linear::cholesky::{Cholesky, projections};
+use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
-use crate::stats::summary::rms;
 use crate::thresholds::NEGLIGIBLE_RMS;
 use jointbench_instrument::Kind;
 use rayon::prelude::*;
@@ -23,61 +23,6 @@ pub struct LinearModel<'p> {
     pub terms: Vec<Term<'p>>,
     /// Other forms of the effects, as nuisance columns.
     pub relatives: Arc<Vec<Relative<'p>>>,
-}
-
-/// Another form of an effect of the model: what the form in the model cannot show.
-///
-/// The part of its columns that has the shape of the effect's own columns is taken out of them, so that it counts as
-/// size of the effect. The fitted sum stays the same, because the ridge penalty refers to the whole columns.
-#[derive(Clone)]
-pub struct Relative<'e> {
-    pub effect: &'e dyn Effect,
-    pub form: Arc<Form<'e>>,
-    pub shape: Vec<f64>,
-    pub columns: Columns,
-    /// RMS of each whole column.
-    pub scales: Vec<f64>,
-    /// Coefficients of the effect's own columns in each whole column.
-    own: Vec<Vec<f64>>,
-}
-
-impl<'e> Relative<'e> {
-    /// Another form of the effect of a term, with its whole columns.
-    pub fn new(effect: &'e dyn Effect, form: Arc<Form<'e>>, shape: Vec<f64>, whole: Columns, term: &Term) -> Self {
-        let own = projections(&whole, &term.columns);
-        Self {
-            effect,
-            form,
-            shape,
-            scales: whole.iter().map(|c| rms(c)).collect(),
-            columns: apart(whole, &own, term),
-            own,
-        }
-    }
-
-    /// The same at the rows of the problem of another term of this effect, with the same coefficients.
-    pub fn at(&self, term: &Term, problem: &Problem) -> Self {
-        let whole = columns(self.effect, self.form.name, &self.shape, problem);
-        let scales = whole.iter().map(|c| rms(c)).collect();
-        Self { scales, columns: apart(whole, &self.own, term), ..self.clone() }
-    }
-
-    /// Coefficients of the effect's own columns in the sum of the whole columns.
-    pub fn own_part(&self, coefficients: &[f64]) -> Vec<f64> {
-        let size = self.own.first().map_or(0, Vec::len);
-        let of = |k: usize| self.own.iter().zip(coefficients).map(|(own, coefficient)| own[k] * coefficient).sum();
-        (0..size).map(of).collect()
-    }
-}
-
-/// Columns without their part in the columns of a term.
-fn apart(mut columns: Columns, own: &[Vec<f64>], term: &Term) -> Columns {
-    for (column, own) in columns.iter_mut().zip(own) {
-        for (part, coefficient) in term.columns.iter().zip(own) {
-            column.iter_mut().zip(part).for_each(|(c, p)| *c -= coefficient * p);
-        }
-    }
-    columns
 }
 
 /// The solution of a model: coefficients of the columns of each term, and the residual.

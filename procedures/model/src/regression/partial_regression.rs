@@ -21,7 +21,7 @@ pub struct PartialRegression {
     pub basis: Basis,
     pub residual: Vec<f64>,
     /// Squared residual.
-    pub energy: f64,
+    pub sse: f64,
     /// Rows whose signs are flipped together.
     groups: Vec<Range<usize>>,
     /// Products of each basis vector with the residual, for each group.
@@ -62,10 +62,10 @@ impl PartialRegression {
             })
             .collect();
         let shared = basis.vectors().iter().map(|q| products(q, &residual, &groups)).collect();
-        Self { energy: dot(&residual, &residual), basis, residual, groups, shared }
+        Self { sse: dot(&residual, &residual), basis, residual, groups, shared }
     }
 
-    pub fn own<C: Into<f64> + Copy>(&self, columns: &[Vec<C>]) -> Orthogonalized {
+    pub fn orthogonalized<C: Into<f64> + Copy>(&self, columns: &[Vec<C>]) -> Orthogonalized {
         let p = columns.len();
         let along: Vec<Vec<f64>> =
             columns.iter().map(|c| self.basis.vectors().iter().map(|q| dot(q, c)).collect()).collect();
@@ -88,7 +88,7 @@ impl PartialRegression {
         let of_kept: Vec<f64> = (0..kept.len().pow(2)).map(entry).collect();
         let side_of_kept: Vec<f64> = kept.iter().map(|a| side[*a]).collect();
         let explained: f64 = Cholesky::new(&of_kept, kept.len(), 0.0).whiten(&side_of_kept).iter().map(|v| v * v).sum();
-        let share = if self.energy > 0.0 { explained / self.energy } else { 0.0 };
+        let share = if self.sse > 0.0 { explained / self.sse } else { 0.0 };
         let visible = (0..p).map(|a| gram[a * p + a]).sum::<f64>() / sum;
         Orthogonalized { share, visible, kept, along, gram, side }
     }

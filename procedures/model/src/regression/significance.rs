@@ -8,7 +8,7 @@ use crate::stats::permutation_test::{MaxTNull, Score};
 
 /// Family-wise p-value of an effect: how often noise makes any candidate of the library as significant as this one.
 pub fn significance(term: &Term, library: &CandidateSet, partial: &PartialRegression, options: &Options) -> f64 {
-    let scores = library.candidates.iter().map(|c| partial.score(&c.columns, &partial.own(&c.columns)));
+    let scores = library.candidates.iter().map(|c| partial.score(&c.columns, &partial.orthogonalized(&c.columns)));
     family_wise(&term.columns, scores.collect(), partial, options)
 }
 
@@ -29,7 +29,7 @@ pub fn family_wise(
     partial: &PartialRegression,
     options: &Options,
 ) -> f64 {
-    let own = partial.score(columns, &partial.own(columns));
+    let own = partial.score(columns, &partial.orthogonalized(columns));
     let z = own.z().max(partial.jackknife_z(columns).unwrap_or(f64::NEG_INFINITY));
     scores.push(own);
     MaxTNull::new(&scores, options.flips, options.seed).p_value(z)

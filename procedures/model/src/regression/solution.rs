@@ -1,6 +1,7 @@
 //! A model on a run that is judged sample by sample: columns of the effects and nuisance columns for their form
 //! error.
 
+use crate::effect::Regime;
 use crate::effects;
 use crate::effects::friction::{presliding, signal_delay};
 use crate::linear::basis::{Basis, dot};
@@ -8,11 +9,13 @@ use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
 use crate::preprocess::form_error::{ErrorColumn, FormError, FormErrorKind};
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
 use crate::regression::partial_regression::LEAST_TOLERANCE;
+use crate::regression::relative::Remainder;
 use crate::regression::weights::weights;
 use crate::stats::jackknife;
 use crate::stats::summary::rms;
 use crate::thresholds::NOISE_ERRORS;
 use jointbench_instrument::Kind;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Ridge strength before the weights are known.
@@ -27,12 +30,12 @@ pub const PRESLIDING: &str = presliding::ID;
 /// Nuisance columns of a model: form error, by its place in the list, and other forms of the effects.
 pub struct Nuisance<'a> {
     pub error: Vec<(usize, BaseColumn<'a>)>,
-    pub relatives: Vec<BaseColumn<'a>>,
+    pub relatives: Vec<Remainder>,
 }
 
-impl<'a> Nuisance<'a> {
-    pub fn columns(&self) -> impl Iterator<Item = BaseColumn<'a>> {
-        self.error.iter().map(|(_, column)| *column).chain(self.relatives.iter().copied())
+impl Nuisance<'_> {
+    pub fn columns(&self) -> impl Iterator<Item = BaseColumn<'_>> {
+        self.error.iter().map(|(_, column)| *column).chain(self.relatives.iter().map(Remainder::column))
     }
 }
 
@@ -60,10 +63,18 @@ pub fn nuisance<'a>(
     let columns = form_error.columns.iter().enumerate().filter(|(_, c)| is_nuisance(c));
     let error = columns
         .map(|(at, c)| (at, BaseColumn { values: &c.values, scale: c.scale, is_penalised: c.kind.is_penalised() }));
-    let relatives =
-        model.relatives.iter().flat_map(|relative: &Relative| relative.columns.iter().zip(&relative.scales));
-    let relative = |(values, scale): (&'a Vec<f64>, &f64)| BaseColumn { values, scale: *scale, is_penalised: true };
-    Nuisance { error: error.collect(), relatives: relatives.map(relative).collect() }
+    // Other forms of a friction curve are no evidence of an effect of the acceleration.
+    let effects: Vec<Option<&Vec<f64>>> = model
+        .terms
+        .iter()
+        .flat_map(|term| {
+            let receives = term.effect.traits().regime == Regime::SteadyState;
+            term.columns.iter().map(move |column| receives.then_some(column))
+        })
+        .collect();
+    let wholes: Vec<&Vec<f64>> = model.relatives.iter().flat_map(|relative: &Relative| &relative.columns).collect();
+    let relatives = wholes.into_par_iter().map(|whole| Remainder::of(whole, &effects)).collect();
+    Nuisance { error: error.collect(), relatives }
 }
 
 /// The columns of the effects of a model.
@@ -80,6 +91,8 @@ pub struct Solution {
     pub coefficients: Vec<f64>,
     pub error: Vec<(usize, f64)>,
     pub relatives: Vec<f64>,
+    /// Coefficients of the effects in each whole column of another form.
+    pub parts: Vec<Vec<f64>>,
     pub residual: Vec<f64>,
     /// Coefficients that are held at their bound of zero, with their standard errors before.
     pub bound: Vec<(usize, f64)>,
@@ -121,6 +134,7 @@ impl Solution {
             coefficients: coefficients.to_vec(),
             error: nuisance.error.iter().map(|(at, _)| *at).zip(error.iter().copied()).collect(),
             relatives: relatives.to_vec(),
+            parts: nuisance.relatives.iter().map(|relative| relative.parts.clone()).collect(),
             residual,
             weight,
             ridge,
@@ -139,6 +153,12 @@ impl Solution {
         (0..self.coefficients.len()).map(of).collect()
     }
 
+    /// Coefficients of the effects in the sum of the other forms.
+    pub fn attributed(&self) -> Vec<f64> {
+        let of = |k: usize| self.parts.iter().zip(&self.relatives).map(|(parts, c)| parts[k] * c).sum();
+        (0..self.coefficients.len()).map(of).collect()
+    }
+
     /// Sum of the nuisance terms at the rows.
     pub fn form_error(&self, model: &LinearModel) -> Vec<f64> {
         let mut sum = vec![0.0; model.problem.rows()];
@@ -149,6 +169,8 @@ impl Solution {
         }
         let columns = model.relatives.iter().flat_map(|relative| &relative.columns);
         columns.zip(&self.relatives).for_each(|(column, coefficient)| add(column, *coefficient));
+        let effects = model.terms.iter().flat_map(|term| &term.columns);
+        effects.zip(self.attributed()).for_each(|(column, part)| add(column, -part));
         sum
     }
 
@@ -254,11 +276,10 @@ pub fn effect_coefficient(model: &LinearModel, solution: &Solution, id: &str) ->
 
 /// The ridge regression without one kind of form error.
 pub fn without(model: &LinearModel, solution: &Solution, kind: FormErrorKind) -> BlockedRidge {
+    let form_error = model.problem.form_error.as_deref();
+    let nuisance = form_error.map(|form_error| nuisance(model, form_error, |other| other == kind));
     let mut columns = effect_columns(model);
-    if let Some(form_error) = model.problem.form_error.as_deref() {
-        let nuisance = nuisance(model, form_error, |other| other == kind);
-        columns.extend(nuisance.columns());
-    }
+    columns.extend(nuisance.iter().flat_map(Nuisance::columns));
     // The weights are smallest at the rows that show such an effect.
     let even = vec![1.0; model.problem.rows()];
     BlockedRidge::new(&columns, &model.response(), &even, &model.problem.block, Some(solution.ridge.strength))

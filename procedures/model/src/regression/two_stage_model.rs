@@ -58,8 +58,8 @@ impl<'p> TwoStageModel<'p> {
         let mut settled = Vec::new();
         for id in &assembly.effects {
             let effect = spec.find(id)?;
-            if let Some(own) = spec.own.iter().find(|own| own.id() == id) {
-                own.check(&prepared.main.view)?;
+            if let Some(user_effect) = spec.user_effects.iter().find(|user_effect| user_effect.id() == id) {
+                user_effect.check(&prepared.main.view)?;
             }
             if let Some(why) = effect.hidden(&prepared.main.view) {
                 assembly.hidden.push(Invisible::not_excited(id, why));
@@ -117,8 +117,8 @@ impl<'p> TwoStageModel<'p> {
         let view = &prepared.main.view;
         for id in &assembly.effects {
             let effect = spec.find(id)?;
-            if let Some(own) = spec.own.iter().find(|own| own.id() == id) {
-                own.check(view)?;
+            if let Some(user_effect) = spec.user_effects.iter().find(|user_effect| user_effect.id() == id) {
+                user_effect.check(view)?;
             }
             if let Some(why) = effect.hidden(view) {
                 assembly.hidden.push(Invisible::not_excited(id, why));

@@ -1,6 +1,6 @@
 //! Result of a diagnosis: missing effects and unexplained structure.
 
-use crate::OwnEffect;
+use crate::UserEffect;
 use crate::report::fit::{Fit, Parameter, ResidualKind};
 use crate::report::maps::{PairMap, Region};
 use crate::report::reasons::{AdditionReason, Invisible, LeftOut, RemovalReason};
@@ -45,8 +45,8 @@ pub struct Diagnosis {
     /// Effect ids of the diagnosed model, without suggestions.
     pub model: Vec<String>,
     /// User effects that the diagnosis included.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub own: Vec<OwnEffect>,
+    #[serde(default, rename = "own", skip_serializing_if = "Vec::is_empty")]
+    pub user_effects: Vec<UserEffect>,
     /// The diagnosed model, fitted to the run without suggestions.
     pub fit: Fit,
     /// Data that the residual and all RMS figures refer to.

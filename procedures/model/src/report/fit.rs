@@ -1,6 +1,6 @@
 //! A fitted model.
 
-use crate::OwnEffect;
+use crate::UserEffect;
 use crate::report::setting::ParameterSetting;
 use crate::thresholds::ELEMENT_WEIGHT;
 use jointbench_instrument::{Kind, Motion};
@@ -24,8 +24,8 @@ pub struct Fit {
     /// Effect ids in the order of the model, including effects that the run cannot show.
     pub effects: Vec<String>,
     /// Definitions of the user effects that the fit contains.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub own: Vec<OwnEffect>,
+    #[serde(default, rename = "own", skip_serializing_if = "Vec::is_empty")]
+    pub user_effects: Vec<UserEffect>,
     /// Fixed values, bounds and start values that a user has set.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settings: Vec<ParameterSetting>,

@@ -13,7 +13,7 @@ use crate::thresholds::STRUCTURE_SHARE;
 
 /// The axis over which structure remains.
 pub fn structured(maps: &Maps) -> Option<&str> {
-    maps.removable().filter(|(_, share)| *share > STRUCTURE_SHARE).map(|(axis, _)| axis)
+    maps.explained_share().filter(|(_, share)| *share > STRUCTURE_SHARE).map(|(axis, _)| axis)
 }
 
 /// Whether the structure over an axis is only scatter between stretches of motion, such as an offset that drifts or

@@ -33,7 +33,7 @@ fn detection_limits<'p>(
 ) -> Vec<DetectionLimit<'p>> {
     let partial = PartialRegression::of(end);
     let n = end.problem.rows() as f64;
-    let least = threshold.least_share(partial.energy) * partial.energy;
+    let least = threshold.least_share(partial.sse) * partial.sse;
     let is_out = |id| !end.contains(id) && !withdrawn.contains(&id);
     let candidates: Vec<&Regressor> = library.candidates.iter().filter(|c| is_out(c.id())).collect();
     let looked_for: Vec<Tested> = candidates.into_par_iter().filter_map(|c| Tested::new(c, &partial)).collect();
@@ -70,7 +70,7 @@ struct Tested<'a, 'p> {
 
 impl<'a, 'p> Tested<'a, 'p> {
     fn new(candidate: &'a Regressor<'p>, partial: &PartialRegression) -> Option<Self> {
-        let own = partial.own(&candidate.columns);
+        let own = partial.orthogonalized(&candidate.columns);
         let sums = partial.sums(&candidate.columns, &own);
         let noise = sums.iter().zip(own.squares()).map(|(s, square)| (dot(s, s) / square).sqrt()).reduce(f64::max)?;
         Some(Self { candidate, score: Score::new(&sums), noise, visible: own.visible })

@@ -24,7 +24,7 @@ pub fn encompasses(now: &LinearModel, one: &Term, other: &Term, options: &Option
         with.terms.push(included.clone());
         with.refine();
         let partial = PartialRegression::of(&with);
-        (partial.own(&tested.columns).share, alone(tested, &partial, options))
+        (partial.orthogonalized(&tested.columns).share, alone(tested, &partial, options))
     };
     let ((needed, p_value), (needless, _)) = (left_for(one, other), left_for(other, one));
     needed >= options.practical_share && p_value <= options.alpha && needless < options.practical_share

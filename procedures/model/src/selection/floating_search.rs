@@ -252,14 +252,14 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     pub fn stand_ins(&self, term: &Term<'p>) -> Vec<&'p str> {
         let without = self.now.without(term.id());
         let partial = PartialRegression::of(&without);
-        let enough = SIMPLER_GAIN * (1.0 - self.now.linear().sse / partial.energy);
+        let enough = SIMPLER_GAIN * (1.0 - self.now.linear().sse / partial.sse);
         let mut near: Vec<(f64, &Regressor<'p>)> = Vec::new();
         for candidate in &self.library.candidates {
             let id = candidate.id();
             if id == term.id() || self.now.contains(id) || self.withdrawn.contains(&id) {
                 continue;
             }
-            let share = partial.own(&candidate.columns).share;
+            let share = partial.orthogonalized(&candidate.columns).share;
             match near.iter_mut().find(|known| known.1.id() == id) {
                 Some(known) if share > known.0 => *known = (share, candidate),
                 None if share >= enough => near.push((share, candidate)),

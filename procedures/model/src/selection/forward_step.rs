@@ -47,12 +47,13 @@ pub fn step<'p>(
 ) -> Option<(ScoredCandidate<'p>, Vec<&'p str>)> {
     let options = threshold.options;
     let partial = PartialRegression::of(now);
-    if now.is_negligible((partial.energy / now.problem.rows() as f64).sqrt(), threshold.kind) {
+    if now.is_negligible((partial.sse / now.problem.rows() as f64).sqrt(), threshold.kind) {
         return None;
     }
     let is_open = |candidate: &&Regressor| !now.contains(candidate.id()) && !withdrawn.contains(&candidate.id());
     let open: Vec<&Regressor> = library.candidates.iter().filter(is_open).collect();
-    let gains: Vec<Orthogonalized> = open.par_iter().map(|candidate| partial.own(&candidate.columns)).collect();
+    let gains: Vec<Orthogonalized> =
+        open.par_iter().map(|candidate| partial.orthogonalized(&candidate.columns)).collect();
     let best = short_list(&open, &gains, options);
     if best.is_empty() {
         return None;
@@ -101,7 +102,7 @@ fn acceptable<'p>(
             let mut term = [candidate.term(now.problem)];
             let sse = varpro(&mut term, &partial.basis, &partial.residual, now.problem);
             let [term] = term;
-            let share = 1.0 - sse / partial.energy;
+            let share = 1.0 - sse / partial.sse;
             let is_acceptable = Candidate { term: &term, share, now, partial, threshold }.is_acceptable();
             is_acceptable.then_some((term, share))
         })

@@ -31,7 +31,7 @@ pub fn detection_limits<'p>(now: &TwoStageModel<'p>) -> Vec<DetectionLimit<'p>> 
     let is_meant = |id: &str| now.spec.find(id).is_ok_and(|e| now.is_apart(e)) && !now.effects.iter().any(|e| e == id);
     let Some(problem) = now.prepared.memory.as_ref() else { return Vec::new() };
     let Reversals { partial, library, .. } = Reversals::new(problem, now.predict(problem), now.spec, is_meant);
-    let detectable_rms = (HYSTERESIS_SHARE / (1.0 - HYSTERESIS_SHARE) * partial.energy / problem.rows() as f64).sqrt();
+    let detectable_rms = (HYSTERESIS_SHARE / (1.0 - HYSTERESIS_SHARE) * partial.sse / problem.rows() as f64).sqrt();
     let mut seen: Vec<&str> = library.candidates.iter().map(|c| c.id()).collect();
     seen.dedup();
     seen.into_iter().map(|effect| DetectionLimit { effect, detectable_rms }).collect()

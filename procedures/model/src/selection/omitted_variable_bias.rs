@@ -37,7 +37,7 @@ impl<'p> FloatingSearch<'_, 'p> {
         let mut alike: Vec<(f64, &Regressor<'p>)> = Vec::new();
         let is_open = |id| !self.now.contains(id) && !self.withdrawn.contains(&id);
         for candidate in self.library.candidates.iter().filter(|c| is_open(c.id())) {
-            let own = partial.own(&candidate.columns);
+            let own = partial.orthogonalized(&candidate.columns);
             match alike.iter_mut().find(|known| known.1.id() == candidate.id()) {
                 _ if own.visible > BIAS_TOLERANCE => {}
                 Some(known) if own.share > known.0 => *known = (own.share, candidate),

@@ -158,8 +158,8 @@ impl Tiny {
     /// Whether a rule accepts an effect in its first form, with these nonlinear parameters.
     pub fn passes(&self, rule: fn(&Candidate) -> bool, id: &str, shape: Vec<f64>) -> bool {
         let (now, term, partial) = (self.model(), self.term(id, shape), self.partial());
-        let own = partial.own(&term.columns).share;
-        let threshold = AcceptanceThreshold { plain: partial.energy, kind: self.prepared.kind, options: &self.options };
+        let own = partial.orthogonalized(&term.columns).share;
+        let threshold = AcceptanceThreshold { plain: partial.sse, kind: self.prepared.kind, options: &self.options };
         rule(&Candidate { term: &term, share: own, now: &now, partial: &partial, threshold })
     }
 

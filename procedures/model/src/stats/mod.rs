@@ -3,5 +3,5 @@
 pub(crate) mod grouped;
 pub(crate) mod jackknife;
 pub(crate) mod permutation_test;
-pub(crate) mod student;
+pub mod student;
 pub(crate) mod summary;

@@ -7,7 +7,7 @@ pub fn half_width_95(freedom: f64) -> f64 {
     quantile(freedom, 0.975).unwrap_or(2.0)
 }
 
-/// `None` without a degree of freedom.
+/// The value (in standard errors) that a share of the distribution stays below. `None` without a degree of freedom.
 pub fn quantile(freedom: f64, share: f64) -> Option<f64> {
     Some(law(freedom)?.inverse_cdf(share))
 }

@@ -13,7 +13,7 @@ const MOST_PARAMETERS: usize = 8;
 /// Largest number of tested integers, including all combinations of several integer parameters.
 const MOST_WHOLE: f64 = 512.0;
 
-/// A user effect as written, not yet checked; `OwnEffect::try_from` checks it.
+/// A user effect as written, not yet checked; `UserEffect::try_from` checks it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
@@ -24,7 +24,7 @@ pub struct Definition {
     /// `response = formula` over signals and parameters; the right-hand side alone is sufficient.
     pub formula: String,
     /// Parameters of the formula, at most eight; each must occur in it.
-    pub parameters: Vec<OwnParameter>,
+    pub parameters: Vec<UserParameter>,
     /// Name for users; may be empty.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub title: String,
@@ -36,7 +36,7 @@ pub struct Definition {
 /// A parameter of a user effect. Linear parameters are solved for; nonlinear ones are searched for in their range.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct OwnParameter {
+pub struct UserParameter {
     /// Name in the formula: a letter, then letters, digits and underscores; not a signal, constant or function.
     pub name: String,
     /// Unit in results, `1` if not given; contradictions with the formula are warnings.
@@ -116,7 +116,7 @@ impl Definition {
     }
 }
 
-impl OwnParameter {
+impl UserParameter {
     fn check(&self, kind: Kind, twice: bool) -> Result<(), Mistake> {
         let all = || 0..self.name.len();
         check_name(&self.name)?;

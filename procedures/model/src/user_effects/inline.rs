@@ -2,8 +2,8 @@
 
 use crate::formula::fault::{FormulaFault, Mistake};
 use crate::formula::syntax::{Input, expected, name, number, whole};
-use crate::user_effects::OwnEffect;
-use crate::user_effects::definition::{Definition, OwnParameter};
+use crate::user_effects::UserEffect;
+use crate::user_effects::definition::{Definition, UserParameter};
 use jointbench_instrument::Kind;
 use std::ops::Range;
 use winnow::ascii::multispace0;
@@ -15,15 +15,15 @@ use winnow::{ModalResult, Parser};
 const NEXT: &str =
     "a unit in square brackets, a range such as 0..1, start 0.2..0.5, whole, a semicolon or the end was expected";
 
-pub fn read(kind: Kind, text: &str) -> Result<OwnEffect, FormulaFault> {
+pub fn read(kind: Kind, text: &str) -> Result<UserEffect, FormulaFault> {
     let at_text = |mistake: Mistake| mistake.found(text.split(':').next().unwrap_or_default().trim(), "inline", text);
     let parts = (head, take_while(1.., |c| c != ';').with_span(), repeat(0.., preceded(';', cut_err(parameter))));
     let ((id, id_at), (formula, formula_at), parameters): (_, _, Vec<_>) = whole(parts, text, NEXT).map_err(at_text)?;
-    let (parameters, places): (Vec<OwnParameter>, Vec<Range<usize>>) = parameters.into_iter().unzip();
+    let (parameters, places): (Vec<UserParameter>, Vec<Range<usize>>) = parameters.into_iter().unzip();
     let names: Vec<String> = parameters.iter().map(|p| p.name.clone()).collect();
     let definition =
         Definition { id, kind, formula: formula.to_owned(), parameters, title: String::new(), sentence: String::new() };
-    OwnEffect::try_from(definition).map_err(|fault| {
+    UserEffect::try_from(definition).map_err(|fault| {
         // The last of several equal names is the error.
         let parameter = || names.iter().rposition(|n| *n == fault.text).map_or(0, |p| places[p].start);
         let start = match fault.field {
@@ -43,7 +43,7 @@ fn head(input: &mut Input<'_>) -> ModalResult<(String, Range<usize>)> {
 }
 
 /// `name [unit] min..max start low..high whole`, all but the name optional.
-fn parameter(input: &mut Input<'_>) -> ModalResult<(OwnParameter, Range<usize>)> {
+fn parameter(input: &mut Input<'_>) -> ModalResult<(UserParameter, Range<usize>)> {
     let unit = delimited('[', take_while(1.., |c| c != ']' && c != ';'), ']');
     let (name, at) =
         preceded(multispace0, name.with_span()).context(expected("the name of a parameter")).parse_next(input)?;
@@ -54,7 +54,7 @@ fn parameter(input: &mut Input<'_>) -> ModalResult<(OwnParameter, Range<usize>)>
     multispace0.parse_next(input)?;
     let (min, max) = bounds.unwrap_or_default();
     let unit = unit.map_or("1", str::trim).to_owned();
-    Ok((OwnParameter { name, unit, min, max, start: start.map(Into::into), whole }, at))
+    Ok((UserParameter { name, unit, min, max, start: start.map(Into::into), whole }, at))
 }
 
 /// `0..1`, `0..` or `..1`.

@@ -4,7 +4,7 @@ pub(crate) mod definition;
 pub(crate) mod inline;
 pub(crate) mod ranges;
 
-pub use crate::user_effects::definition::{Definition, OwnParameter};
+pub use crate::user_effects::definition::{Definition, UserParameter};
 
 use crate::ModelError;
 use crate::effect::{Columns, Effect, EffectInfo, Form, ParameterInfo, Regime, Shape, Traits};
@@ -26,7 +26,7 @@ const OF_RESPONSE: &str = "motor_torque is the response that a friction model pr
 /// A user effect with a valid definition.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Definition", into = "Definition")]
-pub struct OwnEffect {
+pub struct UserEffect {
     definition: Definition,
     formula: Formula,
     parameters: Vec<ParameterInfo>,
@@ -36,16 +36,16 @@ pub struct OwnEffect {
     looks: String,
 }
 
-impl OwnEffect {
+impl UserEffect {
     /// Reads the short form `id: formula; parameter [unit] min..max; …`.
     ///
     /// ```
     /// use jointbench_instrument::Kind;
-    /// use jointbench_model::OwnEffect;
+    /// use jointbench_model::UserEffect;
     ///
     /// let text = "rub: tau = a * tanh(velocity / w0) * abs(load); a [1] 0..1; w0 [rad/s] 0.1..10";
-    /// assert_eq!(OwnEffect::inline(Kind::Friction, text).unwrap().id(), "rub");
-    /// let fault = OwnEffect::inline(Kind::Friction, "rub: tau = a * velocty; a [Nm]").unwrap_err();
+    /// assert_eq!(UserEffect::inline(Kind::Friction, text).unwrap().id(), "rub");
+    /// let fault = UserEffect::inline(Kind::Friction, "rub: tau = a * velocty; a [Nm]").unwrap_err();
     /// assert_eq!((fault.position, fault.length), (15, 7));
     /// ```
     pub fn inline(kind: Kind, text: &str) -> Result<Self, FormulaFault> {
@@ -141,7 +141,7 @@ impl OwnEffect {
     }
 }
 
-impl Effect for OwnEffect {
+impl Effect for UserEffect {
     fn info(&self) -> EffectInfo<'_> {
         EffectInfo {
             id: &self.definition.id,
@@ -184,9 +184,9 @@ impl Effect for OwnEffect {
 }
 
 /// The signals of a kind, and the additional columns of these effects.
-pub fn signals_with(kind: Kind, own: &[OwnEffect]) -> Vec<NamedSignal> {
+pub fn signals_with(kind: Kind, user_effects: &[UserEffect]) -> Vec<NamedSignal> {
     let mut all = signals(kind).to_vec();
-    for other in own.iter().flat_map(|own| &own.formula.signals) {
+    for other in user_effects.iter().flat_map(|user_effect| &user_effect.formula.signals) {
         if !all.contains(other) {
             all.push(*other);
         }
@@ -194,7 +194,7 @@ pub fn signals_with(kind: Kind, own: &[OwnEffect]) -> Vec<NamedSignal> {
     all
 }
 
-impl TryFrom<Definition> for OwnEffect {
+impl TryFrom<Definition> for UserEffect {
     type Error = FormulaFault;
 
     fn try_from(definition: Definition) -> Result<Self, FormulaFault> {
@@ -202,7 +202,7 @@ impl TryFrom<Definition> for OwnEffect {
         definition.check()?;
         let definition = definition.whole();
         let formula = definition.check()?;
-        let parameters = definition.parameters.iter().map(OwnParameter::info).collect();
+        let parameters = definition.parameters.iter().map(UserParameter::info).collect();
         let optional = |s: &&NamedSignal| {
             definition.kind.optional_columns().contains(&s.column) || matches!(s.signal, Signal::Column(_))
         };
@@ -220,13 +220,13 @@ impl TryFrom<Definition> for OwnEffect {
     }
 }
 
-impl From<OwnEffect> for Definition {
-    fn from(effect: OwnEffect) -> Self {
+impl From<UserEffect> for Definition {
+    fn from(effect: UserEffect) -> Self {
         effect.definition
     }
 }
 
-impl OwnParameter {
+impl UserParameter {
     fn info(&self) -> ParameterInfo {
         ParameterInfo {
             name: Cow::Owned(self.name.clone()),
@@ -242,15 +242,19 @@ fn is_finite(columns: &Columns) -> bool {
 }
 
 /// The library, followed by the user effects.
-pub(crate) fn with_own(kind: Kind, own: &[OwnEffect]) -> impl Iterator<Item = &dyn Effect> {
-    effects::effects(kind).iter().copied().chain(own.iter().map(|effect| effect as &dyn Effect))
+pub(crate) fn with_user_effects(kind: Kind, user_effects: &[UserEffect]) -> impl Iterator<Item = &dyn Effect> {
+    effects::effects(kind).iter().copied().chain(user_effects.iter().map(|effect| effect as &dyn Effect))
 }
 
-pub(crate) fn find_with_own<'e>(kind: Kind, own: &'e [OwnEffect], id: &str) -> Result<&'e dyn Effect, ModelError> {
-    with_own(kind, own).find(|e| e.info().id == id).ok_or_else(|| ModelError::UnknownEffect {
+pub(crate) fn find_with_user_effects<'e>(
+    kind: Kind,
+    user_effects: &'e [UserEffect],
+    id: &str,
+) -> Result<&'e dyn Effect, ModelError> {
+    with_user_effects(kind, user_effects).find(|e| e.info().id == id).ok_or_else(|| ModelError::UnknownEffect {
         id: id.to_owned(),
         kind,
-        known: with_own(kind, own).map(|e| e.info().id.to_owned()).collect(),
+        known: with_user_effects(kind, user_effects).map(|e| e.info().id.to_owned()).collect(),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::effect::{Shape, ShapeSearch};
 use crate::formula::signals::NamedSignal;
-use crate::user_effects::definition::OwnParameter;
+use crate::user_effects::definition::UserParameter;
 use crate::view::View;
 
 /// Starting points for one, two and more parameters of an effect.
@@ -10,7 +10,7 @@ const POINTS: [usize; 3] = [10, 5, 3];
 
 /// The range of a parameter. A missing bound is derived from the largest value of a signal in the same unit, or from
 /// 1: three decades below it and one above. Negative values require a negative bound.
-pub fn shape<'e>(parameter: &'e OwnParameter, signals: &[NamedSignal], view: &View) -> Shape<'e> {
+pub fn shape<'e>(parameter: &'e UserParameter, signals: &[NamedSignal], view: &View) -> Shape<'e> {
     let same = signals.iter().filter(|s| s.unit == parameter.unit).map(|s| view.peak(s.signal));
     let size = Some(same.fold(0.0, f64::max)).filter(|peak| *peak > 0.0).unwrap_or(1.0);
     let signed = parameter.min.is_some_and(|min| min < 0.0) || parameter.max.is_some_and(|max| max <= 0.0);

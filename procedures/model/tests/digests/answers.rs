@@ -22,7 +22,7 @@ pub fn answers(case: &Case) -> String {
     let left =
         fitted.as_ref().map_err(Clone::clone).and_then(|fit| residuals(run, fit, options).map_err(|e| e.to_string()));
     let next = diagnosis.as_ref().map_err(ToString::to_string).and_then(|found| {
-        let open = Open { own: spec.own.clone(), ..Open::from(found) };
+        let open = Open { user_effects: spec.user_effects.clone(), ..Open::from(found) };
         let next = next_run(run, &open, &menu(run), options).map_err(|e| e.to_string())?;
         Ok(json!({ "experiment": next.experiment, "in_vain": next.in_vain }))
     });
@@ -39,7 +39,7 @@ pub fn answers(case: &Case) -> String {
 
 /// The final model of `discover`.
 fn complete(found: &Discovery, spec: &ModelSpec) -> Result<ModelSpec, ModelError> {
-    ModelSpec::with_own(spec.kind, &found.model, spec.own.clone())
+    ModelSpec::with_user_effects(spec.kind, &found.model, spec.user_effects.clone())
 }
 
 fn of<T: Serialize, E: ToString>(answer: Result<&T, E>) -> String {

@@ -4,7 +4,7 @@
 use crate::common::recordings::{KR300, recording};
 use crate::made;
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
-use jointbench_model::{Choice, ModelSpec, Options, OwnEffect, Stretch};
+use jointbench_model::{Choice, ModelSpec, Options, Stretch, UserEffect};
 use std::path::Path;
 
 pub struct Case {
@@ -57,7 +57,7 @@ impl Way {
         };
         let baseline = ModelSpec::baseline(&run).unwrap();
         let own = if matches!(self, Way::Formula) { vec![formula(run.kind())] } else { Vec::new() };
-        let spec = ModelSpec::with_own(run.kind(), baseline.effects, own).unwrap();
+        let spec = ModelSpec::with_user_effects(run.kind(), baseline.effects, own).unwrap();
         let flips = if matches!(self, Way::Long) { Options::default().flips } else { FLIPS };
         Case { name: format!("{}-{label}", case.name), run, spec, options: Options { flips, ..Options::default() } }
     }
@@ -105,14 +105,14 @@ fn contradictory(run: &RunTable) -> RunTable {
     })
 }
 
-fn formula(kind: Kind) -> OwnEffect {
+fn formula(kind: Kind) -> UserEffect {
     let text = match kind {
         Kind::Friction => "rub: tau = a * sqrt(abs(load) * abs(velocity)) * direction; a [1] 0..1",
         Kind::Encoder => "twist: error = a * tanh(velocity / w0); a [rad]; w0 [rad/s] 0.1..10",
         Kind::Stiffness => "cubic: torsion = a * load^3; a",
         Kind::Brake => "square: tau = a * current^2; a [Nm/A^2] 0..100",
     };
-    OwnEffect::inline(kind, text).unwrap()
+    UserEffect::inline(kind, text).unwrap()
 }
 
 /// Possible next runs: slow, fast, loaded, warm strokes.

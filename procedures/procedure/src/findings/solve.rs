@@ -1,7 +1,8 @@
 //! Least squares with few parameters and their intervals.
 
+use jointbench_model::stats::student;
 use nalgebra::{SMatrix, SVector};
-use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Parameters with the half widths of their 95 % intervals.
 #[derive(Debug, Clone, Copy)]
@@ -38,9 +39,9 @@ pub fn solve<const N: usize>(rows: &[[f64; N]], y: &[f64]) -> Option<Solved<N>> 
     Some(Solved { values: values.into(), reach })
 }
 
-/// Half width of a 95 % interval, in standard errors.
+/// Half width of a 95 % interval, in standard errors. Infinite without a degree of freedom.
 pub fn t95(freedom: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
+    student::quantile(freedom, 0.975).unwrap_or(f64::INFINITY)
 }
 
 /// 95 % interval of a standard deviation, for independent normal deviations.

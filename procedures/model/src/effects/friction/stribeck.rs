@@ -64,8 +64,7 @@ pub(crate) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)
 /// The same for a run that is judged sample by sample. It includes speeds within a reversal, because nuisance columns
 /// represent other forms there.
 fn sampled(fastest: f64) -> (Vec<Shape<'static>>, Vec<Vec<f64>>) {
-    const SPEEDS: [f64; 2] = [0.002, 0.5];
-    let [low, high] = SPEEDS.map(|share| share * fastest);
+    let (low, high) = (0.002 * fastest, fastest / 3.0);
     let shape = vec![
         Shape { name: "omega_s", min: low, max: high, search: ShapeSearch::Smooth },
         Shape { name: "delta", min: 0.5, max: 3.0, search: ShapeSearch::Smooth },

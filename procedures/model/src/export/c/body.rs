@@ -26,7 +26,7 @@ pub struct Body {
 
 impl Body {
     pub fn new(fit: &Fit, parts: &Parts) -> Self {
-        let mut inputs = signals_with(fit.kind, &fit.own);
+        let mut inputs = signals_with(fit.kind, &fit.user_effects);
         let first = inputs.first().copied();
         inputs.retain(|s| parts.uses(s.signal));
         if inputs.is_empty() {

@@ -41,7 +41,7 @@ impl<'f> Layout<'f> {
         let remembers = |column: &PartColumn| !matches!(column, PartColumn::Formula(_));
         let (states, settled): (Vec<_>, Vec<_>) = parts.parts.drain(..).partition(|p| p.columns.iter().any(remembers));
         parts.parts = settled;
-        let signals = signals_with(fit.kind, &fit.own);
+        let signals = signals_with(fit.kind, &fit.user_effects);
         // Mean curves need the axis of their signal, too.
         let (held, gone): (Vec<_>, Vec<_>) = states.into_iter().partition(|p| mean_of(scope, p.effect).is_some());
         let count = parts.parts.len();

@@ -14,7 +14,7 @@ pub struct Map {
     /// Cells with rows, in the order of x and then y.
     pub cells: Vec<Cell>,
     /// Cross-validated R²: share of the squared residual that the cell means remove on rows that were not averaged.
-    pub removable: f64,
+    pub explained_share: f64,
 }
 
 /// Mean residual in one cell.
@@ -46,14 +46,14 @@ impl Map {
         // A function of set points cannot predict a set point that is left out with all its repeats, so that single
         // blocks are left out. A quantity that varies within each block is validated by folds over all set points.
         let is_held = x.is_held && y.as_ref().is_none_or(|y| y.is_held);
-        let removable = validated_share(&cell, count, if is_held { block } else { &problem.fold }, residual);
-        Self { x, y, cells, removable }
+        let explained_share = validated_share(&cell, count, if is_held { block } else { &problem.fold }, residual);
+        Self { x, y, cells, explained_share }
     }
 
     /// Ranking score of the map. The torque of the drive follows from the motion, so that its map is ranked lower.
     pub fn ranking_score(&self) -> f64 {
         let is_drive = std::iter::once(&self.x).chain(&self.y).any(|s| s.name == "motor_torque_nm");
-        if is_drive { DRIVE_AXIS * self.removable } else { self.removable }
+        if is_drive { DRIVE_AXIS * self.explained_share } else { self.explained_share }
     }
 }
 
@@ -109,7 +109,7 @@ fn statistics(
 
 /// Share of the squared error of each part that cell means from the other parts remove.
 fn validated_share(cell: &[usize], count: usize, part: &[usize], residual: &[f64]) -> f64 {
-    let energy = dot(residual, residual);
+    let sse = dot(residual, residual);
     let mut all = vec![(0.0, 0.0); count];
     let mut parts = vec![(0.0, 0.0); count * part.iter().max().map_or(0, |last| last + 1)];
     for (i, c) in cell.iter().enumerate() {
@@ -126,7 +126,7 @@ fn validated_share(cell: &[usize], count: usize, part: &[usize], residual: &[f64
             saved += 2.0 * predicted * sum - n * predicted * predicted;
         }
     }
-    if energy > 0.0 { saved / energy } else { 0.0 }
+    if sse > 0.0 { saved / sse } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -55,14 +55,14 @@ impl Maps {
     }
 
     /// Cross-validated R² of the best map, with its axis.
-    pub fn removable(&self) -> Option<(&str, f64)> {
-        self.best().map(|m| (m.x.name.as_str(), m.removable))
+    pub fn explained_share(&self) -> Option<(&str, f64)> {
+        self.best().map(|m| (m.x.name.as_str(), m.explained_share))
     }
 
     /// The same with both axes of a map by direction.
     pub fn shows_over(&self) -> Option<(Vec<String>, f64)> {
         let names = |m: &Map| std::iter::once(&m.x).chain(&m.y).map(|scale| scale.name.clone()).collect();
-        self.best().map(|m| (names(m), m.removable))
+        self.best().map(|m| (names(m), m.explained_share))
     }
 
     fn best(&self) -> Option<&Map> {
@@ -74,8 +74,8 @@ impl Maps {
     pub fn any_function(&self, contribution: &Maps, axis: &str) -> Option<f64> {
         let own = contribution.axes.iter().chain(&contribution.by_direction);
         let pairs = own.zip(self.axes.iter().chain(&self.by_direction));
-        let same = pairs.filter(|(own, _)| own.x.name == axis && own.removable > AXIS_FUNCTION);
-        same.map(|(_, map)| map.removable).max_by(f64::total_cmp)
+        let same = pairs.filter(|(own, _)| own.x.name == axis && own.explained_share > AXIS_FUNCTION);
+        same.map(|(_, map)| map.explained_share).max_by(f64::total_cmp)
     }
 
     /// Indicator columns of every bin of an axis in each direction; their sums represent any function of the axis.

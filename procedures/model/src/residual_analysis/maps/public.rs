@@ -53,7 +53,7 @@ impl Maps {
             axis: map.x.name.clone(),
             unit: map.x.unit.clone(),
             bins: map.cells.iter().map(bin).collect(),
-            removable_share: map.removable,
+            removable_share: map.explained_share,
         }
     }
 
@@ -81,7 +81,7 @@ impl Maps {
                     rows: c.rows,
                 })
                 .collect(),
-            removable_share: map.removable,
+            removable_share: map.explained_share,
         }
     }
 }

@@ -56,7 +56,7 @@ struct Stretch<'m> {
 pub fn regions(maps: &Maps, unit: &str, reference: Option<&ReferenceMagnitude>) -> Vec<Region> {
     let mut stretches: Vec<Stretch> = maps.axes.iter().chain(&maps.by_direction).flat_map(|m| join(maps, m)).collect();
     if let Some(best) = unbanded(maps) {
-        stretches.retain(|stretch| stretch.map.removable > AXIS_SHADOW * best.removable);
+        stretches.retain(|stretch| stretch.map.explained_share > AXIS_SHADOW * best.explained_share);
     }
     stretches.sort_by(|a, b| b.weight().total_cmp(&a.weight()));
     // A region over time usually follows from another axis, which is reported first.
@@ -79,7 +79,7 @@ pub fn regions(maps: &Maps, unit: &str, reference: Option<&ReferenceMagnitude>) 
 /// The dominating map, if none of the bins of its axis has enough blocks for a band. Regions over other axes are then
 /// only a consequence of it.
 fn unbanded(maps: &Maps) -> Option<&Map> {
-    let best = maps.best().filter(|best| best.removable > AXIS_DOMINATES)?;
+    let best = maps.best().filter(|best| best.explained_share > AXIS_DOMINATES)?;
     let mut of_axis = maps.axes.iter().chain(&maps.by_direction).filter(|map| map.x.name == best.x.name);
     of_axis.all(|map| map.cells.iter().all(|cell| maps.half_width(cell).is_none())).then_some(best)
 }
@@ -96,7 +96,7 @@ pub fn nowhere(maps: &Maps, unit: &str) -> String {
             ", though a function of {} would remove {} of the squared error: fewer than three independent blocks cover each \
              part of it. The residual is largest where {}",
             spoken_axis(&best.x.name, maps.kind),
-            percent(best.removable),
+            percent(best.explained_share),
             worst.map(|cell| of(best, cell, 0.0).sentence).unwrap_or_default(),
         );
     }

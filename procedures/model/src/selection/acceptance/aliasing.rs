@@ -41,7 +41,7 @@ struct Part {
 impl Part {
     fn of(term: &Term, problem: &Problem, partial: &PartialRegression) -> Self {
         let stretches = stretches(&problem.segment);
-        let coefficients = partial.own(&term.columns).coefficients();
+        let coefficients = partial.orthogonalized(&term.columns).coefficients();
         let mut wave = vec![0.0; problem.rows()];
         for (column, coefficient) in term.columns.iter().zip(&coefficients) {
             wave.iter_mut().zip(partial.basis.rest(column)).for_each(|(w, c)| *w += coefficient * c);

@@ -84,7 +84,7 @@ fn shows_between(
     options: &Options,
 ) -> bool {
     let mut taken = vec![0.0; partial.residual.len()];
-    for (column, coefficient) in own.iter().zip(partial.own(&term.columns).coefficients()) {
+    for (column, coefficient) in own.iter().zip(partial.orthogonalized(&term.columns).coefficients()) {
         taken.iter_mut().zip(column).for_each(|(t, v)| *t += coefficient * v);
     }
     let (sums, squares) = (products(&taken, &partial.residual, legs), products(&taken, &taken, legs));

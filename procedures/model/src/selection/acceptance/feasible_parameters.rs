@@ -7,7 +7,7 @@ use jointbench_instrument::Kind;
 /// short strokes can look like a constant.
 pub(super) fn passes(candidate: &Candidate) -> bool {
     let Candidate { term, now, partial, threshold, .. } = candidate;
-    if !term.allows(&partial.own(&term.columns).coefficients()) {
+    if !term.allows(&partial.orthogonalized(&term.columns).coefficients()) {
         return false;
     }
     if threshold.kind != Kind::Friction {

@@ -22,15 +22,15 @@ fn form_error(kind: Kind) -> f64 {
 
 /// Rejects a candidate that explains no more than the formulas of the other effects may leave.
 pub(super) fn passes(candidate: &Candidate) -> bool {
-    candidate.share >= candidate.threshold.least_share(candidate.partial.energy)
+    candidate.share >= candidate.threshold.least_share(candidate.partial.sse)
 }
 
 impl AcceptanceThreshold<'_> {
-    /// Least partial R² of a candidate for a model with the squared error `energy`. A reduction within the formula
+    /// Least partial R² of a candidate for a model with the squared error `sse`. A reduction within the formula
     /// error of the other effects is no evidence.
-    pub fn least_share(&self, energy: f64) -> f64 {
-        let remainder = form_error(self.kind) * (self.plain - energy).max(0.0);
-        self.options.practical_share.max((remainder / energy).min(UNMISTAKABLE_SHARE))
+    pub fn least_share(&self, sse: f64) -> f64 {
+        let remainder = form_error(self.kind) * (self.plain - sse).max(0.0);
+        self.options.practical_share.max((remainder / sse).min(UNMISTAKABLE_SHARE))
     }
 }
 
@@ -41,7 +41,7 @@ mod tests {
     #[test]
     fn a_candidate_has_to_explain_more_than_the_formula_error_of_the_others() {
         let options = Options::default();
-        let least = |kind, energy| AcceptanceThreshold { plain: 100.0, kind, options: &options }.least_share(energy);
+        let least = |kind, sse| AcceptanceThreshold { plain: 100.0, kind, options: &options }.least_share(sse);
         // Nothing explained yet; 99 explained with an error of 0.2 %; all but nothing explained.
         assert_eq!(least(Kind::Friction, 100.0), options.practical_share);
         assert!((least(Kind::Friction, 1.0) - 0.002 * 99.0).abs() < 1e-12);

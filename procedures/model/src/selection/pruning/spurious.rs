@@ -27,7 +27,7 @@ fn over<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str) -> Option<
         });
         let left = basis.rest(&without.response());
         let partial = PartialRegression::new(basis, left, search.now.problem);
-        let own = partial.own(&term.columns);
+        let own = partial.orthogonalized(&term.columns);
         own.visible > BIAS_TOLERANCE
             && (own.share < options.practical_share || alone(term, &partial, options) > options.alpha)
     };

@@ -5,7 +5,7 @@ use crate::findings::{Hold, Mean, Unusable, holds, interval_of, parameter, quant
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, SeriesRole, Verdict};
 use crate::thresholds::{BETTER_CURVE, LOST_MOTION, SAME_CURVE};
 use jointbench_instrument::RunTable;
-use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit, residuals};
+use jointbench_model::{Definition, Fit, ModelSpec, Options, UserEffect, UserParameter, fit, residuals};
 use std::ops::Range;
 
 /// Steady-state share at the end of a hold, after the wind-up of joint and brake.
@@ -21,9 +21,9 @@ const SHAPES: [&str; 2] = [
 ];
 
 /// `None`: the load is too small.
-fn softening(run: &RunTable, shape: &str) -> Option<OwnEffect> {
+fn softening(run: &RunTable, shape: &str) -> Option<UserEffect> {
     let top = run.column("link_torque_nm")?.iter().fold(0.0f64, |m, t| m.max(t.abs()));
-    let parameter = |name: &str, unit: &str, min: Option<f64>, max: Option<f64>| OwnParameter {
+    let parameter = |name: &str, unit: &str, min: Option<f64>, max: Option<f64>| UserParameter {
         name: name.into(),
         unit: unit.into(),
         min,
@@ -43,7 +43,7 @@ fn softening(run: &RunTable, shape: &str) -> Option<OwnEffect> {
         title: "Soft start".into(),
         sentence: "Stiffness is lower at low torque, until all teeth engage.".into(),
     };
-    OwnEffect::try_from(definition).ok()
+    UserEffect::try_from(definition).ok()
 }
 
 /// Largest numbers of points in figures.
@@ -64,8 +64,8 @@ struct Fits {
 impl Fits {
     /// `settled`: the rows at the ends of the holds.
     fn of(settled: &RunTable) -> Result<Self, Unusable> {
-        let with = |more: &str, own: Vec<OwnEffect>| {
-            let spec = ModelSpec::with_own(settled.kind(), ["offset", "compliance", more], own)?;
+        let with = |more: &str, user_effects: Vec<UserEffect>| {
+            let spec = ModelSpec::with_user_effects(settled.kind(), ["offset", "compliance", more], user_effects)?;
             fit(settled, &spec, &Options::default())
         };
         let line = with("directional_offset", Vec::new())?;

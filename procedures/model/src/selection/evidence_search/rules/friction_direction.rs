@@ -9,7 +9,27 @@ use crate::thresholds::FLOOR_RATIO;
 
 pub(super) fn passes(Refit { now, solution, after, .. }: &Refit) -> bool {
     let Some(form_error) = after.main.problem.form_error.as_deref() else { return true };
-    std::ptr::eq(now.main.problem, after.main.problem)
-        || Solution::weighted(&after.main, form_error, solution.weight.clone(), None).ridge.loss()
-            < FLOOR_RATIO.powi(2) * solution.ridge.loss()
+    if std::ptr::eq(now.main.problem, after.main.problem) {
+        return true;
+    }
+    let candidate = Solution::weighted(&after.main, form_error, solution.weight.clone(), None);
+    explains_as_much(candidate.ridge.loss(), solution.ridge.loss())
+}
+
+/// Whether the squared error with the new direction is near that of the form-error columns.
+fn explains_as_much(candidate: f64, form_error: f64) -> bool {
+    candidate < FLOOR_RATIO.powi(2) * form_error
+}
+
+#[cfg(test)]
+mod tests {
+    use super::explains_as_much;
+    use crate::thresholds::FLOOR_RATIO;
+
+    #[test]
+    fn a_direction_that_leaves_more_than_the_form_error_is_wrong() {
+        let limit = FLOOR_RATIO.powi(2);
+        assert!(explains_as_much(0.5, 1.0) && explains_as_much(0.99 * limit, 1.0));
+        assert!(!explains_as_much(1.01 * limit, 1.0) && !explains_as_much(4.0, 1.0));
+    }
 }

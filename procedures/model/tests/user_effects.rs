@@ -5,7 +5,7 @@ mod common;
 use common::bench::{Moment, Staircase};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{
-    Fit, ModelError, ModelSpec, Options, OwnEffect, Verdict, diagnose, discover, evaluate, fit, residuals,
+    Fit, ModelError, ModelSpec, Options, UserEffect, Verdict, diagnose, discover, evaluate, fit, residuals,
 };
 
 const RUB: &str = "rub: tau = a * sqrt(abs(load) * abs(velocity)) * exp(-abs(velocity) / w0) * direction; \
@@ -20,13 +20,13 @@ fn measured(seed: u64) -> RunTable {
     Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed }.run(truth)
 }
 
-fn own(text: &str) -> Vec<OwnEffect> {
-    vec![OwnEffect::inline(Kind::Friction, text).unwrap()]
+fn own(text: &str) -> Vec<UserEffect> {
+    vec![UserEffect::inline(Kind::Friction, text).unwrap()]
 }
 
 fn spec(run: &RunTable, more: &[&str], text: &str) -> ModelSpec {
     let baseline = run.meta().baseline.iter().map(String::as_str);
-    ModelSpec::with_own(Kind::Friction, baseline.chain(more.iter().copied()), own(text)).unwrap()
+    ModelSpec::with_user_effects(Kind::Friction, baseline.chain(more.iter().copied()), own(text)).unwrap()
 }
 
 fn parameter(fit: &Fit, name: &str) -> f64 {
@@ -78,7 +78,7 @@ fn a_formula_is_a_candidate_like_any_other() {
     assert!(rub.bic_change.unwrap() < -10.0, "{rub:?}");
     let whole = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
     assert_eq!(whole.model.last().map(String::as_str), Some("rub"), "{:?}", whole.model);
-    assert_eq!((whole.verdict, whole.fit.own.len()), (Verdict::Adequate, 1), "{}", whole.summary);
+    assert_eq!((whole.verdict, whole.fit.user_effects.len()), (Verdict::Adequate, 1), "{}", whole.summary);
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn many_formulas_do_not_displace_an_effect_of_the_library() {
     let copy =
         |n: usize| format!("copy_{n}: tau = a * abs(load) * direction + b * sin({n} * link_position); a [1]; b [Nm]");
     let copies = (1..=12).flat_map(|n| own(&copy(n))).collect();
-    let spec = ModelSpec::with_own(Kind::Friction, run.meta().baseline.iter(), copies).unwrap();
+    let spec = ModelSpec::with_user_effects(Kind::Friction, run.meta().baseline.iter(), copies).unwrap();
     let found = diagnose(&run, &spec, &Options::default()).unwrap();
     assert_eq!(found.suggestions.first().map(|s| s.effect.as_str()), Some("load_linear"), "{}", found.summary);
 }
@@ -178,5 +178,8 @@ fn what_cannot_be_is_refused_with_words() {
     let found = fit(&run, &cold, &Options::default()).unwrap();
     assert!(found.notes.iter().any(|n| n.contains("no column temperature_c")), "{:?}", found.notes);
     let twice = [own(RUB), own(RUB)].concat();
-    assert_eq!(ModelSpec::with_own(Kind::Friction, ["coulomb"], twice), Err(ModelError::TwiceNamed("rub".into())));
+    assert_eq!(
+        ModelSpec::with_user_effects(Kind::Friction, ["coulomb"], twice),
+        Err(ModelError::TwiceNamed("rub".into()))
+    );
 }
