@@ -258,6 +258,7 @@ fn a_new_speed_decides_between_two_shapes_of_asymmetry() {
     };
     let found = [0.25, 0.01, 0.08].map(z);
     println!("z at 0.25, 0.01 and 0.08 m/s: {found:.1?}");
-    assert!((12.0..60.0).contains(&found[0]) && (3.0..12.0).contains(&found[1]), "{found:?}");
-    assert!((1.0..8.0).contains(&found[2]), "{found:?}");
+    // Beyond the measured speeds the shapes differ most. A speed among them hardly tells them apart.
+    assert!((5.0..60.0).contains(&found[0]) && (1.0..5.0).contains(&found[1]), "{found:?}");
+    assert!(found[2] < 1.0, "{found:?}");
 }
