@@ -77,17 +77,16 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
 }
 
 /// Coefficients of the effects by two attributions that explain the run equally well, and their standard errors.
-pub struct Estimates {
+struct Estimates {
     /// With all that other forms have in common with the effects, and with only what they have in common with their own
     /// effect.
     coefficients: [Vec<f64>; 2],
     /// The larger one of both attributions.
     errors: Vec<f64>,
-    blocks: usize,
 }
 
 impl Estimates {
-    pub fn of(model: &LinearModel) -> Option<Self> {
+    fn of(model: &LinearModel) -> Option<Self> {
         let solution = Solution::of(model)?;
         let moved = moved(model, &solution);
         let size = solution.coefficients.len();
@@ -102,14 +101,7 @@ impl Estimates {
         };
         let errors = solution.standard_errors().into_iter().enumerate().map(|(k, error)| error.max(error_of(k)));
         let others = (0..size).map(|k| only_own(&solution.coefficients, &solution.relatives, k)).collect();
-        let blocks = replicates.len();
-        Some(Self { errors: errors.collect(), blocks, coefficients: [solution.coefficients.clone(), others] })
-    }
-
-    /// Half widths of the 95 % intervals from the scatter over blocks.
-    pub fn half_widths(&self) -> impl Iterator<Item = f64> {
-        let t = student::half_width_95(self.blocks as f64 - 1.0);
-        self.errors.iter().map(move |error| t * error)
+        Some(Self { errors: errors.collect(), coefficients: [solution.coefficients.clone(), others] })
     }
 }
 

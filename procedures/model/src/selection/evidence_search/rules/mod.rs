@@ -1,6 +1,5 @@
 //! Rules that a candidate of the evidence search has to pass, one file for each rule, and the list in which they run.
 
-pub(crate) mod determined_size;
 pub(crate) mod error_reduction;
 pub(crate) mod friction_direction;
 pub(crate) mod model_size;
@@ -12,7 +11,7 @@ pub(crate) mod whole_error;
 use crate::regression::evidence::Evidence;
 use crate::regression::solution::Solution;
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::reasons::{RejectionReason, RemovalReason};
+use crate::report::reasons::RejectionReason;
 
 /// Figures of a candidate, and the limits of the search.
 #[derive(Clone, Copy)]
@@ -63,20 +62,13 @@ struct Rule {
 }
 
 /// All rules by name, in the order in which they run.
-const RULES: [(&str, Rule); 8] = [
+const RULES: [(&str, Rule); 7] = [
     ("significance", Rule { reason: RejectionReason::NotSignificant, test: Test::Figures(significance::passes) }),
     ("standard error", Rule { reason: RejectionReason::FewBlocks, test: Test::Figures(standard_error::passes) }),
     ("error reduction", Rule { reason: RejectionReason::FormError, test: Test::Figures(error_reduction::passes) }),
     ("model size", Rule { reason: RejectionReason::ModelFull, test: Test::Figures(model_size::passes) }),
     ("friction direction", Rule { reason: RejectionReason::FormError, test: Test::Model(friction_direction::passes) }),
     ("nonzero size", Rule { reason: RejectionReason::FormError, test: Test::Model(nonzero_size::passes) }),
-    (
-        "determined size",
-        Rule {
-            reason: RejectionReason::Removed(RemovalReason::Unidentified),
-            test: Test::Model(determined_size::passes),
-        },
-    ),
     ("whole error", Rule { reason: RejectionReason::NoReduction, test: Test::Model(whole_error::passes) }),
 ];
 
