@@ -258,7 +258,7 @@ fn a_new_speed_decides_between_two_shapes_of_asymmetry() {
     };
     let found = [0.25, 0.01, 0.08].map(z);
     println!("z at 0.25, 0.01 and 0.08 m/s: {found:.1?}");
-    // Beyond the measured speeds the shapes differ most. A speed among them hardly tells them apart.
+    // The two shapes differ most beyond the range of measured speeds. A speed within that range does not distinguish them.
     assert!((5.0..60.0).contains(&found[0]) && (1.0..5.0).contains(&found[1]), "{found:?}");
     assert!(found[2] < 1.0, "{found:?}");
 }

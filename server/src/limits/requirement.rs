@@ -137,16 +137,10 @@ impl Requirement {
         if own < 0.0 {
             let [low, high] = quantity.ci95.unwrap_or([quantity.value; 2]);
             let is_above = self.upper.is_some_and(|upper| quantity.value > upper * factor);
-            // The end of the interval towards the limit that the value exceeds.
-            let (end, crosses) = match is_above {
-                true => (low, self.upper.is_some_and(|upper| low <= upper * factor)),
-                false => (high, self.lower.is_some_and(|lower| high >= lower * factor)),
-            };
-            return match crosses {
-                true => {
-                    let reach = (quantity.value - end).abs();
-                    (LimitOutcome::Marginal, Some(made.narrower_interval(result, -own, reach)))
-                }
+            // Half width of the interval towards the limit that the value exceeds.
+            let reach = if is_above { quantity.value - low } else { high - quantity.value };
+            return match reach >= -own {
+                true => (LimitOutcome::Marginal, Some(made.narrower_interval(result, -own, reach))),
                 false => (LimitOutcome::Fail, None),
             };
         }
