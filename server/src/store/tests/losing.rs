@@ -1,16 +1,15 @@
 //! A removed or truncated write-ahead log, and its detection by the mark.
 
+use super::super::mark::Mark;
 use super::super::values::now;
 use super::super::{Loss, StoreError, verify};
 use super::*;
 use std::fs;
-use std::path::Path;
-use std::time::Duration;
 
 /// A copy of the files on the disk after the mark has reached the last change.
 async fn copy_when_marked(folder: &Path, store: &Store) -> TempDir {
     let changes: i64 = sqlx::query_scalar("SELECT changes FROM store_log").fetch_one(&store.readers).await.unwrap();
-    let is_marked = || super::super::mark::Mark::read(folder).is_some_and(|mark| mark.changes == changes);
+    let is_marked = || Mark::read(folder).is_some_and(|mark| mark.changes == changes);
     for _ in 0..2_000 {
         if is_marked() {
             break;
@@ -66,14 +65,8 @@ fn a_removed_write_ahead_file_is_noticed_and_blocks_the_benches() {
 fn a_cut_write_ahead_file_is_noticed_and_blocks_the_benches() {
     block_on(async {
         let (folder, store, run) = with_run().await;
-        // The end of a run causes a checkpoint: later changes are only in the write-ahead log.
         store.commit(run, RunState::Completed, &[], Trace::default()).await.unwrap();
-        for _ in 0..2_000 {
-            if fs::metadata(folder.path().join("jointbench.db-wal")).unwrap().len() == 0 {
-                break;
-            }
-            tokio::time::sleep(Duration::from_millis(5)).await;
-        }
+        wait_for_checkpoint(folder.path()).await;
         store.acknowledge_bench("joint-a", &now(), "looked", "Anna").await.unwrap();
         store.block_bench("joint-a", None, "smoke again").await.unwrap();
         let copy = copy_when_marked(folder.path(), &store).await;
@@ -97,19 +90,35 @@ fn what_is_whole_raises_no_alarm() {
     block_on(async {
         let (folder, store, _) = with_run().await;
         let copy = copy_when_marked(folder.path(), &store).await;
-        let found = Store::open(copy.path()).await.unwrap();
-        assert_eq!(found.losses().await.unwrap(), []);
+        assert_eq!(Store::open(copy.path()).await.unwrap().losses().await.unwrap(), []);
         store.close().await;
         drop(store);
         assert!(!folder.path().join("jointbench.db-wal").exists(), "an orderly end leaves none");
         assert!(verify(folder.path()).await.unwrap().is_whole());
         assert_eq!(Store::open(folder.path()).await.unwrap().losses().await.unwrap(), []);
-        // A mark that is behind, as after a power failure, or of another store.
-        for mark in ["jointbench.mark", "jointbench.db"] {
-            fs::remove_file(copy.path().join(mark)).unwrap();
-        }
-        found.close().await;
-        drop(found);
+    });
+}
+
+#[test]
+fn a_mark_that_is_behind_or_of_another_store_raises_no_alarm() {
+    block_on(async {
+        let (folder, store, _) = with_run().await;
+        let behind = copy_when_marked(folder.path(), &store).await;
+        store.acknowledge_bench("joint-a", &now(), "looked", "Anna").await.unwrap();
+        let ahead = copy_when_marked(folder.path(), &store).await;
+        let (other_folder, other_store) = fresh().await;
+        other_store.create_run(&new_run()).await.unwrap();
+        let other = copy_when_marked(other_folder.path(), &other_store).await;
+        let marks = [&behind, &ahead, &other].map(|copy| Mark::read(copy.path()).unwrap());
+        assert!(marks[0].store == marks[1].store && marks[0].changes < marks[1].changes);
+        assert!(marks[2].store != marks[1].store && marks[2].changes > 0);
+
+        // As after a power failure: the database is on the disk, the last mark is not.
+        fs::copy(behind.path().join("jointbench.mark"), ahead.path().join("jointbench.mark")).unwrap();
+        assert_eq!(Store::open(ahead.path()).await.unwrap().losses().await.unwrap(), []);
+        // The mark of the longer store beside another database.
+        fs::copy(folder.path().join("jointbench.mark"), other.path().join("jointbench.mark")).unwrap();
+        assert_eq!(Store::open(other.path()).await.unwrap().losses().await.unwrap(), []);
     });
 }
 

@@ -15,16 +15,31 @@ use super::{NewRun, Store, UnitRecord};
 use jointbench_instrument::{Channel, Trace};
 use jointbench_procedure::{Event, EventKind, RunId, RunState};
 use std::future::Future;
+use std::path::Path;
+use std::time::Duration;
 use tempfile::TempDir;
 
 fn block_on<T>(work: impl Future<Output = T>) -> T {
     tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build().unwrap().block_on(work)
 }
 
+/// A new store after its first checkpoint: its later changes are only in the write-ahead log until a run ends.
 async fn fresh() -> (TempDir, Store) {
     let folder = tempfile::tempdir().unwrap();
     let store = Store::open(folder.path()).await.unwrap();
+    wait_for_checkpoint(folder.path()).await;
     (folder, store)
+}
+
+async fn wait_for_checkpoint(folder: &Path) {
+    let length = || std::fs::metadata(folder.join("jointbench.db-wal")).unwrap().len();
+    for _ in 0..2_000 {
+        if length() == 0 {
+            return;
+        }
+        tokio::time::sleep(Duration::from_millis(5)).await;
+    }
+    panic!("no checkpoint within 10 s");
 }
 
 fn new_run() -> NewRun {
