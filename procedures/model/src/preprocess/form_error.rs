@@ -1,14 +1,17 @@
 //! Form error: nuisance columns in every model of a run that is judged sample by sample.
 //!
-//! A formula has an error of a few percent, which depends on known quantities: displacement since a reversal, sensor
-//! delay and torsion of the gear. With these nuisance columns an effect has to explain more than the form error of
-//! the others could.
+//! A formula has an error of a few percent, which depends on known quantities: displacement since a reversal, moment of
+//! the reversal, sensor delay and torsion of the gear. With these nuisance columns an effect has to explain more than
+//! the form error of the others could.
 
 /// The quantity that a form-error column depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FormErrorKind {
     /// Displacement since a reversal: one hysteresis element minus the direction of the model.
     Bristle,
+    /// Rate of change of the direction of friction: a direction that changes earlier or later than the encoder shows, and
+    /// the damping of the bristles (Canudas de Wit et al. 1995).
+    BristleRate,
     /// Rate of change of the jerk: torsion of the gear between motor and link.
     Snap,
     /// Jerk: a time shift between torque and motion.
@@ -21,6 +24,7 @@ impl FormErrorKind {
     pub fn name(self) -> &'static str {
         match self {
             FormErrorKind::Bristle => "bristle",
+            FormErrorKind::BristleRate => "bristle_rate",
             FormErrorKind::Snap => "snap",
             FormErrorKind::Jerk => "jerk",
             FormErrorKind::LoadRate => "load_rate",
@@ -29,7 +33,7 @@ impl FormErrorKind {
 
     /// Whether the ridge penalty shrinks the coefficient: such columns are many and resemble the model.
     pub fn is_penalised(self) -> bool {
-        self == FormErrorKind::Bristle
+        matches!(self, FormErrorKind::Bristle | FormErrorKind::BristleRate)
     }
 }
 

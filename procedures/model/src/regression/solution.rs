@@ -50,7 +50,7 @@ pub fn nuisance<'a>(
     let is_out = |kind: FormErrorKind| match kind {
         FormErrorKind::Jerk => model.contains(DELAY),
         FormErrorKind::LoadRate => !passes_load,
-        FormErrorKind::Bristle | FormErrorKind::Snap => false,
+        FormErrorKind::Bristle | FormErrorKind::BristleRate | FormErrorKind::Snap => false,
     };
     // On one sine the jerk is proportional to the velocity. A column without ridge penalty must not be collinear with
     // the effects.
@@ -116,7 +116,7 @@ impl Solution {
         let response = model.response();
         let nuisance = nuisance(model, form_error, |_| false);
         let mut columns = effect_columns(model);
-        let own = columns.len();
+        let size = columns.len();
         columns.extend(nuisance.columns());
         let nothing = vec![0.0; response.len()];
         let mut bound = Vec::new();
@@ -128,7 +128,7 @@ impl Solution {
         }
         let all = ridge.coefficients();
         let residual = left(&columns, &all, &response);
-        let (coefficients, rest) = all.split_at(own);
+        let (coefficients, rest) = all.split_at(size);
         let (error, relatives) = rest.split_at(nuisance.error.len());
         Self {
             coefficients: coefficients.to_vec(),

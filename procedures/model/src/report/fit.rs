@@ -184,7 +184,7 @@ impl Bristles {
 /// A nuisance column for the form error of a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FormErrorTerm {
-    /// `bristle`, `jerk`, `snap` or `load_rate`, or an effect, for another form of it.
+    /// `bristle`, `bristle_rate`, `jerk`, `snap` or `load_rate`, or an effect, for another form of it.
     pub name: String,
     /// Name of the form if the term is an effect, otherwise empty.
     #[serde(default, skip_serializing_if = "String::is_empty")]

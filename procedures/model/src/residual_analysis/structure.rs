@@ -98,7 +98,7 @@ fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, so
     let nuisance = nuisance(plain, form_error, |kind| match kind {
         FormErrorKind::Jerk => is_added(DELAY),
         FormErrorKind::Bristle => !std::ptr::eq(plain.problem, end.main.problem),
-        FormErrorKind::Snap | FormErrorKind::LoadRate => false,
+        FormErrorKind::BristleRate | FormErrorKind::Snap | FormErrorKind::LoadRate => false,
     });
     columns.extend(nuisance.columns());
     let last = &solution.ridge;
@@ -155,14 +155,14 @@ fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
             })
             .collect();
         let all = sums.iter().fold([0.0; 5], |a, b| std::array::from_fn(|k| a[k] + b[k]));
-        let gains = sums.iter().map(|own| {
-            let rest: [f64; 5] = std::array::from_fn(|k| all[k] - own[k]);
+        let gains = sums.iter().map(|of_block| {
+            let rest: [f64; 5] = std::array::from_fn(|k| all[k] - of_block[k]);
             let coefficients = Cholesky::new(&[rest[0], rest[1], rest[1], rest[2]], 2, 1e-9).solve(&rest[3..]);
             let there = [
-                own[0] * coefficients[0] + own[1] * coefficients[1],
-                own[1] * coefficients[0] + own[2] * coefficients[1],
+                of_block[0] * coefficients[0] + of_block[1] * coefficients[1],
+                of_block[1] * coefficients[0] + of_block[2] * coefficients[1],
             ];
-            2.0 * (coefficients[0] * own[3] + coefficients[1] * own[4]) - dot(&coefficients, &there)
+            2.0 * (coefficients[0] * of_block[3] + coefficients[1] * of_block[4]) - dot(&coefficients, &there)
         });
         reduced(&losses, &gains.collect::<Vec<f64>>())
     });

@@ -69,7 +69,7 @@ impl Layout {
             rows: rows.clone().into(),
             starts: even.starts.clone().into(),
         };
-        let slope = |values: &[f64]| by_recording(values, &even.starts, |range, v| derivative(&even.time_s[range], v));
+        let slope = |values: &[f64]| slope(values, even);
         let of = |signal| work.signals.find(signal).map(<[f64]>::to_vec).unwrap_or_default();
         let snap = slope(&of(Signal::Jerk));
         let mut slopes = vec![of(Signal::Acceleration), of(Signal::Jerk), snap];
@@ -151,9 +151,15 @@ impl Layout {
         let slopes =
             [FormErrorKind::Jerk, FormErrorKind::Snap, FormErrorKind::LoadRate].into_iter().zip(&self.slopes[1..]);
         let slopes = slopes.map(|(kind, values)| ErrorColumn { kind, values: values.clone(), scale: rms(values) });
+        // Without a reversal there are no bristles.
+        let rate = (!self.states.is_empty()).then(|| {
+            let direction = view.samples.find(Signal::Direction).unwrap_or_default();
+            let values = self.reduce.apply(slope(direction, &work.even));
+            ErrorColumn { kind: FormErrorKind::BristleRate, scale: rms(&values), values }
+        });
         let size = |values: &[f64]| values.iter().map(|v| v.abs()).collect();
         FormError {
-            columns: self.states.iter().map(bristle).chain(slopes).collect(),
+            columns: self.states.iter().map(bristle).chain(slopes).chain(rate).collect(),
             turn_s: self.rows.iter().map(|row| work.turn_s(*row)).collect(),
             near_s: 1.0 / self.cutoff_hz,
             fast: [size(&self.slopes[0]), size(&self.slopes[1])],
@@ -161,6 +167,11 @@ impl Layout {
             sample_s: work.even.step_s / work.even.every as f64,
         }
     }
+}
+
+/// Derivative in time, within each recording.
+fn slope(values: &[f64], even: &Even) -> Vec<f64> {
+    by_recording(values, &even.starts, |range, v| derivative(&even.time_s[range], v))
 }
 
 /// Every n-th sample (`every`), at the same phases of each repeat, without the ends of recordings.
