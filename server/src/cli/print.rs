@@ -222,20 +222,23 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         // Effects of reversals and ramps are evaluated there, and do not change the error in steady state.
         let elsewhere = (1.0 - rms / present_rms - share).abs() > 0.01;
         let gain = match elsewhere {
-            true => format!("validation error {:+.1} % in transients, unchanged in steady state", -100.0 * share),
+            true => {
+                format!("validation error {} % in transients, unchanged in steady state", signed(-100.0 * share, 1))
+            }
             false => {
                 let ci95 = suggestion.error_reduction_ci95;
-                let ci95 = ci95.map(|[low, high]| format!(" [{:+.1} … {:+.1}]", -100.0 * high, -100.0 * low));
+                let ci95 =
+                    ci95.map(|[low, high]| format!(" [{} … {}]", signed(-100.0 * high, 1), signed(-100.0 * low, 1)));
                 format!(
-                    "validation error {:+.1} %{}, to {}",
-                    -100.0 * share,
+                    "validation error {} %{}, to {}",
+                    signed(-100.0 * share, 1),
                     ci95.unwrap_or_default(),
                     words::figure(rms, unit)
                 )
             }
         };
         let together = suggestion.error_reduction_together;
-        let jointly = format!("{:+.1} % together with the others", -100.0 * together);
+        let jointly = format!("{} % together with the others", signed(-100.0 * together, 1));
         // An effect that other effects mask shows only together with them.
         let gain = match several {
             true if together > share => format!("{jointly}; alone: {gain}"),
@@ -252,8 +255,14 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     }
 }
 
+/// A number with its sign; zero has none.
+fn signed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:+.decimals$}");
+    if text.parse() == Ok(0.0) { text[1..].to_owned() } else { text }
+}
+
 fn chance(suggestion: &Suggestion) -> String {
-    let bic = suggestion.bic_change.map(|change| format!(", ΔBIC {change:+.0}"));
+    let bic = suggestion.bic_change.map(|change| format!(", ΔBIC {}", signed(change, 0)));
     let sign = if suggestion.p_at_most { '≤' } else { '=' };
     let weak = if suggestion.evidence == Evidence::Weak { ", weak evidence" } else { "" };
     let p_value = match suggestion.p_value {

@@ -284,13 +284,13 @@ fn tie(
     let base = ModelSpec::with_user_effects(spec.kind, others, spec.user_effects.clone())?;
     let prepared = found.start.prepared;
     let without = TwoStageModel::new(prepared, &base, options)?;
-    let own = base.with(id)?;
-    let own = TwoStageModel::new(prepared, &own, options)?;
-    let scale = Scale::of(validation_rms(&own.main), &prepared.unit());
+    let with_effect = base.with(id)?;
+    let with_effect = TwoStageModel::new(prepared, &with_effect, options)?;
+    let scale = Scale::of(validation_rms(&with_effect.main), &prepared.unit());
     let instead = |rival: &String| {
         let other = base.with(rival)?;
         let other = TwoStageModel::new(prepared, &other, options)?;
-        let correlation = evidence::correlation(&without.main, &own.main, &other.main);
+        let correlation = evidence::correlation(&without.main, &with_effect.main, &other.main);
         Ok(format!(
             "{} with {rival} (correlation of the contributions {correlation:.2})",
             scale.figure(validation_rms(&other.main))
@@ -300,7 +300,7 @@ fn tie(
     Ok(format!(
         " Confounded: in its place, the validation error is {} instead of {}.",
         list(&instead),
-        scale.figure(validation_rms(&own.main))
+        scale.figure(validation_rms(&with_effect.main))
     ))
 }
 

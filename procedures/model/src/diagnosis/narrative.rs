@@ -87,11 +87,11 @@ fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion])
         _ => format!("; with all of them it is {with_all}"),
     };
     let alone = match (fit.effects_rms, first.effects_rms) {
-        (Some(before), Some(after)) if after > before => format!(
-            " (the effects alone, without the nuisance terms, predict worse: {} instead of {})",
-            figure(after, &fit.unit),
-            figure(before, &fit.unit)
-        ),
+        (Some(before), Some(after)) if after > before => {
+            let [before, after] = [before, after].map(|rms| figure(rms, &fit.unit));
+            let how = if after == before { "no better".into() } else { format!("worse: {after} instead of {before}") };
+            format!(" (the effects alone, without the nuisance terms, predict {how})")
+        }
         (_, Some(after)) => format!(" ({} without the nuisance terms)", unit.figure(after)),
         _ => String::new(),
     };

@@ -114,8 +114,8 @@ fn moved(model: &LinearModel, solution: &Solution) -> Vec<Vec<f64>> {
         for term in &model.terms {
             if term.id() == relative.effect.info().id {
                 let effects: Vec<&Vec<f64>> = term.columns.iter().collect();
-                let own = projections(std::slice::from_ref(column), &effects).remove(0);
-                moved[first..].iter_mut().zip(own).for_each(|(moved, part)| *moved += part);
+                let projected = projections(std::slice::from_ref(column), &effects).remove(0);
+                moved[first..].iter_mut().zip(projected).for_each(|(moved, part)| *moved += part);
             }
             first += term.columns.len();
         }

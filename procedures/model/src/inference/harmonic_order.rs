@@ -16,8 +16,8 @@ pub fn open(terms: &LinearModel, residual: &[f64], parameters: &mut [Parameter])
         for k in (0..term.shape.len()).filter(|k| term.form.shape[*k].search == ShapeSearch::Whole) {
             let alike = alike(terms, residual, i, k);
             let [Some((first, _)), Some((last, _))] = [alike.first(), alike.last()] else { continue };
-            let own = |p: &&mut Parameter| p.effect == term.id();
-            for p in parameters.iter_mut().filter(own) {
+            let is_of_term = |p: &&mut Parameter| p.effect == term.id();
+            for p in parameters.iter_mut().filter(is_of_term) {
                 if p.name == term.form.shape[k].name {
                     p.ci95 = [first.min(p.value), last.max(p.value)];
                     p.state = ParameterState::Unidentified;

@@ -14,7 +14,7 @@ type Normal = (Vec<f64>, Vec<f64>);
 pub struct Added {
     pub size: usize,
     /// Products of the orthogonalized columns with themselves and with the response.
-    own: Vec<f64>,
+    gram: Vec<f64>,
     side: Vec<f64>,
     /// Tolerance: share of the columns that is orthogonal to the base.
     pub visible: f64,
@@ -39,12 +39,13 @@ impl Added {
             |fold: &Fold, of: &Products| -> Vec<Vec<f64>> { of.jb.iter().map(|jb| times(&fold.inverse, jb)).collect() };
         // In the whole run: from the residual of the columns, because the penalty shrinks only a part of the base.
         let along = solved(&ridge.whole, &all);
-        let (own, side) = all.projected(&along, &ridge.whole.coefficients);
+        let (gram, side) = all.projected(&along, &ridge.whole.coefficients);
         let diagonal: Vec<f64> = (0..k).map(|a| all.jj[a * k + a]).collect();
-        let visible = (0..k).map(|a| own[a * k + a] / diagonal[a].max(f64::MIN_POSITIVE)).fold(f64::INFINITY, f64::min);
+        let visible =
+            (0..k).map(|a| gram[a * k + a] / diagonal[a].max(f64::MIN_POSITIVE)).fold(f64::INFINITY, f64::min);
         let mut out = Self {
             size: k,
-            own,
+            gram,
             side,
             visible,
             without: Vec::with_capacity(sums.len()),
@@ -64,7 +65,7 @@ impl Added {
 
     /// Coefficients in the whole run.
     pub fn coefficients(&self) -> Vec<f64> {
-        Cholesky::new(&self.own, self.size, 1e-12).solve(&self.side)
+        Cholesky::new(&self.gram, self.size, 1e-12).solve(&self.side)
     }
 
     /// Weighted squared error that the columns explain in the whole run.
@@ -74,7 +75,7 @@ impl Added {
 
     /// Squared norm of the orthogonal part of each column.
     pub fn squares(&self) -> impl Iterator<Item = f64> {
-        (0..self.size).map(|a| self.own[a * self.size + a])
+        (0..self.size).map(|a| self.gram[a * self.size + a])
     }
 
     /// Wald statistic of the coefficients, with the scatter of whole blocks under the alternative.
@@ -88,8 +89,8 @@ impl Added {
     pub fn scatter(&self, coefficients: &[f64]) -> Vec<f64> {
         let k = self.size;
         let mut covariance = vec![0.0; k * k];
-        for (own, side) in &self.within {
-            let left: Vec<f64> = side.iter().zip(times(own, coefficients)).map(|(s, t)| s - t).collect();
+        for (gram, side) in &self.within {
+            let left: Vec<f64> = side.iter().zip(times(gram, coefficients)).map(|(s, t)| s - t).collect();
             (0..k * k).for_each(|at| covariance[at] += left[at / k] * left[at % k]);
         }
         let groups = self.within.len() as f64;
@@ -101,10 +102,10 @@ impl Added {
     /// reduction in those. `strength` is a ridge penalty; coefficients that `allows` rejects are zero.
     pub fn gains(&self, strength: f64, allows: impl Fn(&[f64]) -> bool) -> Vec<Gain> {
         let k = self.size;
-        let gain = |((own, side), (there, side_there)): (&Normal, &Normal)| {
-            let mut own = own.clone();
-            (0..k).for_each(|a| own[a * k + a] += (strength + FREE) * self.diagonal[a]);
-            let coefficients = Cholesky::new(&own, k, 1e-12).solve(side);
+        let gain = |((gram, side), (there, side_there)): (&Normal, &Normal)| {
+            let mut gram = gram.clone();
+            (0..k).for_each(|a| gram[a * k + a] += (strength + FREE) * self.diagonal[a]);
+            let coefficients = Cholesky::new(&gram, k, 1e-12).solve(side);
             if !allows(&coefficients) {
                 return Gain { validation_losses: 0.0, fitted: 0.0 };
             }
@@ -171,23 +172,23 @@ impl Products {
     /// for the response.
     fn projected(&self, along: &[Vec<f64>], coefficients: &[f64]) -> Normal {
         let k = along.len();
-        let own = (0..k * k).map(|at| self.jj[at] - dot(&self.jb[at / k], &along[at % k])).collect();
+        let gram = (0..k * k).map(|at| self.jj[at] - dot(&self.jb[at / k], &along[at % k])).collect();
         let side = (0..k).map(|a| self.jy[a] - dot(&self.jb[a], coefficients)).collect();
-        (own, side)
+        (gram, side)
     }
 
     /// The same over rows that were left out of the fit of these coefficients.
     fn left(&self, base: &Sums, along: &[Vec<f64>], coefficients: &[f64]) -> Normal {
         let k = along.len();
         let inner: Vec<Vec<f64>> = along.iter().map(|a| times(&base.bb, a)).collect();
-        let own = (0..k * k).map(|at| {
+        let gram = (0..k * k).map(|at| {
             let (a, b) = (at / k, at % k);
             self.jj[at] - dot(&along[a], &self.jb[b]) - dot(&self.jb[a], &along[b]) + dot(&inner[a], &along[b])
         });
         let side = (0..k).map(|a| {
             self.jy[a] - dot(&along[a], &base.by) - dot(&self.jb[a], coefficients) + dot(&inner[a], coefficients)
         });
-        (own.collect(), side.collect())
+        (gram.collect(), side.collect())
     }
 }
 

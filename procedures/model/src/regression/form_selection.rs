@@ -119,9 +119,11 @@ fn two_parts<'p>(same: &[&Regressor<'p>], partial: &PartialRegression, problem: 
     let mut best: Option<(f64, Vec<f64>)> = None;
     for (i, one) in parts.iter().enumerate() {
         for other in &parts[..i] {
-            let own = partial.orthogonalized(&[&other.columns[..], &one.columns].concat());
-            if best.as_ref().is_none_or(|b| own.share > b.0) && allows(one.effect, &form, &own.coefficients()) {
-                best = Some((own.share, [&other.shape[..], &one.shape].concat()));
+            let orthogonalized = partial.orthogonalized(&[&other.columns[..], &one.columns].concat());
+            if best.as_ref().is_none_or(|b| orthogonalized.share > b.0)
+                && allows(one.effect, &form, &orthogonalized.coefficients())
+            {
+                best = Some((orthogonalized.share, [&other.shape[..], &one.shape].concat()));
             }
         }
     }

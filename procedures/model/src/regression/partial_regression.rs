@@ -94,15 +94,15 @@ impl PartialRegression {
     }
 
     /// Products of the orthogonal part of each kept column with the residual, for each group.
-    pub fn sums<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], own: &Orthogonalized) -> Vec<Vec<f64>> {
+    pub fn sums<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], orthogonalized: &Orthogonalized) -> Vec<Vec<f64>> {
         let of = |a: &usize| {
             let mut sums = products(&columns[*a], &self.residual, &self.groups);
-            for (shared, along) in self.shared.iter().zip(&own.along[*a]) {
+            for (shared, along) in self.shared.iter().zip(&orthogonalized.along[*a]) {
                 sums.iter_mut().zip(shared).for_each(|(s, q)| *s -= along * q);
             }
             sums
         };
-        own.kept.iter().map(of).collect()
+        orthogonalized.kept.iter().map(of).collect()
     }
 
     /// The coefficient of a single column in jackknife standard errors over the groups, converted to a standard
@@ -130,8 +130,8 @@ impl PartialRegression {
         columns.iter().map(squares).map(of).reduce(f64::min).filter(|groups| *groups > 1.0)
     }
 
-    pub fn score<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], own: &Orthogonalized) -> Score {
-        Score::new(&self.sums(columns, own))
+    pub fn score<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], orthogonalized: &Orthogonalized) -> Score {
+        Score::new(&self.sums(columns, orthogonalized))
     }
 }
 

@@ -29,8 +29,8 @@ pub fn family_wise(
     partial: &PartialRegression,
     options: &Options,
 ) -> f64 {
-    let own = partial.score(columns, &partial.orthogonalized(columns));
-    let z = own.z().max(partial.jackknife_z(columns).unwrap_or(f64::NEG_INFINITY));
-    scores.push(own);
+    let score = partial.score(columns, &partial.orthogonalized(columns));
+    let z = score.z().max(partial.jackknife_z(columns).unwrap_or(f64::NEG_INFINITY));
+    scores.push(score);
     MaxTNull::new(&scores, options.flips, options.seed).p_value(z)
 }

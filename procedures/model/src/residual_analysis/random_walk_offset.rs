@@ -168,8 +168,8 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
             let taken = |figure: &[f64], place: usize| {
                 let step_column: Vec<f64> =
                     (0..figure.len()).map(|i| if i < place { 0.0 } else { figure[i] }).collect();
-                let own = basis.rest(&filter.innovations(&step_column));
-                dot(&own, &left).powi(2) / dot(&own, &own).max(f64::MIN_POSITIVE)
+                let rest = basis.rest(&filter.innovations(&step_column));
+                dot(&rest, &left).powi(2) / dot(&rest, &rest).max(f64::MIN_POSITIVE)
             };
             let all = figures.iter().flat_map(|figure| places.iter().map(|place| taken(figure, *place)));
             let rest = dot(&left, &left) - all.fold(0.0, f64::max);

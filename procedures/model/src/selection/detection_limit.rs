@@ -70,10 +70,14 @@ struct Tested<'a, 'p> {
 
 impl<'a, 'p> Tested<'a, 'p> {
     fn new(candidate: &'a Regressor<'p>, partial: &PartialRegression) -> Option<Self> {
-        let own = partial.orthogonalized(&candidate.columns);
-        let sums = partial.sums(&candidate.columns, &own);
-        let noise = sums.iter().zip(own.squares()).map(|(s, square)| (dot(s, s) / square).sqrt()).reduce(f64::max)?;
-        Some(Self { candidate, score: Score::new(&sums), noise, visible: own.visible })
+        let orthogonalized = partial.orthogonalized(&candidate.columns);
+        let sums = partial.sums(&candidate.columns, &orthogonalized);
+        let noise = sums
+            .iter()
+            .zip(orthogonalized.squares())
+            .map(|(s, square)| (dot(s, s) / square).sqrt())
+            .reduce(f64::max)?;
+        Some(Self { candidate, score: Score::new(&sums), noise, visible: orthogonalized.visible })
     }
 
     fn is_formed_as(&self, other: &Self) -> bool {

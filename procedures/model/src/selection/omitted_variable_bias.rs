@@ -37,12 +37,12 @@ impl<'p> FloatingSearch<'_, 'p> {
         let mut alike: Vec<(f64, &Regressor<'p>)> = Vec::new();
         let is_open = |id| !self.now.contains(id) && !self.withdrawn.contains(&id);
         for candidate in self.library.candidates.iter().filter(|c| is_open(c.id())) {
-            let own = partial.orthogonalized(&candidate.columns);
+            let orthogonalized = partial.orthogonalized(&candidate.columns);
             match alike.iter_mut().find(|known| known.1.id() == candidate.id()) {
-                _ if own.visible > BIAS_TOLERANCE => {}
-                Some(known) if own.share > known.0 => *known = (own.share, candidate),
+                _ if orthogonalized.visible > BIAS_TOLERANCE => {}
+                Some(known) if orthogonalized.share > known.0 => *known = (orthogonalized.share, candidate),
                 Some(_) => {}
-                None => alike.push((own.share, candidate)),
+                None => alike.push((orthogonalized.share, candidate)),
             }
         }
         let (present, sse) = (validation_losses(&self.now), self.now.linear().sse);

@@ -119,10 +119,10 @@ pub fn states(position: &[f64], starts: &[usize], reaches: &[f64]) -> Vec<Vec<f6
 /// the rows.
 pub fn weights(elements: &[Vec<f64>], free: &[Vec<f64>], torque: &[f64]) -> Vec<f64> {
     let basis = Basis::of(free);
-    let own: Vec<Vec<f64>> = elements.iter().map(|state| basis.rest(state)).collect();
-    let gram: Vec<f64> = own.iter().flat_map(|a| own.iter().map(|b| dot(a, b))).collect();
+    let orthogonalized: Vec<Vec<f64>> = elements.iter().map(|state| basis.rest(state)).collect();
+    let gram: Vec<f64> = orthogonalized.iter().flat_map(|a| orthogonalized.iter().map(|b| dot(a, b))).collect();
     let left = basis.rest(torque);
-    let side: Vec<f64> = own.iter().map(|a| dot(a, &left)).collect();
+    let side: Vec<f64> = orthogonalized.iter().map(|a| dot(a, &left)).collect();
     let mut weights = non_negative(&gram, &side);
     let all: f64 = weights.iter().sum();
     match all > 0.0 {

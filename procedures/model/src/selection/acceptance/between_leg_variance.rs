@@ -32,20 +32,20 @@ pub(super) fn passes(candidate: &Candidate) -> bool {
     }
     let legs = stretches(&legs(now.problem));
     let steps = term.form.shape.iter().any(|shape| shape.search == ShapeSearch::Jump);
-    let own: Vec<Vec<f64>> = term.columns.iter().map(|column| partial.basis.rest(column)).collect();
-    if !steps && !own.iter().all(|column| is_between(column, &legs)) {
-        return shows_within(&own, &legs, partial, now.problem, options)
-            || shows_between(&own, term, &legs, partial, options);
+    let orthogonalized: Vec<Vec<f64>> = term.columns.iter().map(|column| partial.basis.rest(column)).collect();
+    if !steps && !orthogonalized.iter().all(|column| is_between(column, &legs)) {
+        return shows_within(&orthogonalized, &legs, partial, now.problem, options)
+            || shows_between(&orthogonalized, term, &legs, partial, options);
     }
     // The leg-constant columns of the model use degrees of freedom of the leg means.
     let taken = now.columns().into_iter().filter(|column| is_between(column, &legs)).count() as f64;
-    let explained = own.len() as f64;
+    let explained = orthogonalized.len() as f64;
     let free = legs.len() as f64 - taken - explained;
     if free < 1.0 {
-        return !(steps && own.iter().all(|column| is_small(column, &partial.residual)));
+        return !(steps && orthogonalized.iter().all(|column| is_small(column, &partial.residual)));
     }
     let plain = means(&partial.residual, &legs);
-    let left = Basis::of(&own.iter().map(|column| means(column, &legs)).collect::<Vec<_>>()).rest(&plain);
+    let left = Basis::of(&orthogonalized.iter().map(|column| means(column, &legs)).collect::<Vec<_>>()).rest(&plain);
     let (before, after) = (dot(&plain, &plain), dot(&left, &left));
     let f = (before - after) / explained / (after / free).max(f64::MIN_POSITIVE);
     let places = if steps { legs.len() as f64 - 1.0 } else { 1.0 };
@@ -56,13 +56,13 @@ pub(super) fn passes(candidate: &Candidate) -> bool {
 pub fn shows_within_blocks(term: &Term, now: &LinearModel, options: &Options) -> bool {
     let without = now.without(term.id());
     let partial = PartialRegression::of(&without);
-    let own: Vec<Vec<f64>> = term.columns.iter().map(|column| partial.basis.rest(column)).collect();
-    shows_within(&own, &stretches(&without.problem.block), &partial, without.problem, options)
+    let orthogonalized: Vec<Vec<f64>> = term.columns.iter().map(|column| partial.basis.rest(column)).collect();
+    shows_within(&orthogonalized, &stretches(&without.problem.block), &partial, without.problem, options)
 }
 
 /// Whether the effect is significant within legs, with a separate offset for each leg.
 fn shows_within(
-    own: &[Vec<f64>],
+    orthogonalized: &[Vec<f64>],
     legs: &[Range<usize>],
     partial: &PartialRegression,
     problem: &Problem,
@@ -71,20 +71,20 @@ fn shows_within(
     let within = |column: &Vec<f64>| within(column, legs);
     let basis = Basis::of(&partial.basis.vectors().iter().map(within).collect::<Vec<_>>());
     let residual = basis.rest(&within(&partial.residual));
-    let columns: Vec<Vec<f64>> = own.iter().map(within).collect();
+    let columns: Vec<Vec<f64>> = orthogonalized.iter().map(within).collect();
     chance(&columns, &PartialRegression::new(basis, residual, problem), options) <= options.alpha
 }
 
 /// Whether the coefficient of the effect is significant in a delete-one-leg jackknife.
 fn shows_between(
-    own: &[Vec<f64>],
+    orthogonalized: &[Vec<f64>],
     term: &Term,
     legs: &[Range<usize>],
     partial: &PartialRegression,
     options: &Options,
 ) -> bool {
     let mut taken = vec![0.0; partial.residual.len()];
-    for (column, coefficient) in own.iter().zip(partial.orthogonalized(&term.columns).coefficients()) {
+    for (column, coefficient) in orthogonalized.iter().zip(partial.orthogonalized(&term.columns).coefficients()) {
         taken.iter_mut().zip(column).for_each(|(t, v)| *t += coefficient * v);
     }
     let (sums, squares) = (products(&taken, &partial.residual, legs), products(&taken, &taken, legs));

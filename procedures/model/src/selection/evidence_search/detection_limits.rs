@@ -66,9 +66,9 @@ fn smallest(
     };
     let bound = if form.id() == DELAY { delay()? } else { 0.0 };
     let k = added.size;
-    let of_column = |(at, own): (usize, f64)| {
-        let error = scatter[at * k + at].sqrt() / own;
-        let coefficient = (critical * error).max((least / own).sqrt()).max(bound) + DETECTION_POWER * error;
+    let of_column = |(at, square): (usize, f64)| {
+        let error = scatter[at * k + at].sqrt() / square;
+        let coefficient = (critical * error).max((least / square).sqrt()).max(bound) + DETECTION_POWER * error;
         let column = &form.columns[at];
         let square = column.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>() / column.len().max(1) as f64;
         coefficient * square.sqrt()

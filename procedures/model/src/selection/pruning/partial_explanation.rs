@@ -33,10 +33,10 @@ pub(super) fn least_whole<'s, 'p: 's>(
             contribution.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
         }
         let residual = search.now.without(term.id()).linear().residual;
-        let own = 1.0 - full / dot(&residual, &residual);
+        let explained = 1.0 - full / dot(&residual, &residual);
         let any =
             Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options), axis)?;
-        Some((term.id(), own / any / least_share(term, now.problem)))
+        Some((term.id(), explained / any / least_share(term, now.problem)))
     };
     let least = terms.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1))?;
     (least.1 < 1.0).then_some(least.0)

@@ -27,9 +27,9 @@ fn over<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str) -> Option<
         });
         let left = basis.rest(&without.response());
         let partial = PartialRegression::new(basis, left, search.now.problem);
-        let own = partial.orthogonalized(&term.columns);
-        own.visible > BIAS_TOLERANCE
-            && (own.share < options.practical_share || alone(term, &partial, options) > options.alpha)
+        let orthogonalized = partial.orthogonalized(&term.columns);
+        orthogonalized.visible > BIAS_TOLERANCE
+            && (orthogonalized.share < options.practical_share || alone(term, &partial, options) > options.alpha)
     };
     search.added().filter(|term| term.effect.traits().regime != Regime::Hysteresis).find(is_spurious).map(Term::id)
 }

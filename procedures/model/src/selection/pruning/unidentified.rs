@@ -22,13 +22,13 @@ pub struct Undetermined {
 
 impl Undetermined {
     pub fn of(term: &Term, terms: &LinearModel, parameters: &[Parameter], prepared: &Prepared) -> Self {
-        let own = |p: &&Parameter| p.effect == term.id();
+        let is_of_term = |p: &&Parameter| p.effect == term.id();
         let sudden = term.effect.traits().exponent_parameter;
-        let mut others = parameters.iter().filter(own).filter(|p| sudden != Some(p.name.as_str()));
+        let mut others = parameters.iter().filter(is_of_term).filter(|p| sudden != Some(p.name.as_str()));
         // One of the two coefficients of a wave may be zero.
         let any = |parameters: &[Parameter]| {
             let mut coefficients =
-                parameters.iter().filter(own).filter(|p| term.form.linear.contains(&p.name.as_str()));
+                parameters.iter().filter(is_of_term).filter(|p| term.form.linear.contains(&p.name.as_str()));
             coefficients.any(|p| p.state != ParameterState::Unidentified)
         };
         let held = || intervals(&terms.held(term.id()), prepared.motion).parameters;

@@ -16,18 +16,18 @@ pub(in crate::selection::evidence_search) fn has_size(id: &str, model: &LinearMo
     let Some(solution) = Solution::of(model) else { return true };
     let mut first = 0;
     for term in &model.terms {
-        let own = first..first + term.columns.len();
-        first = own.end;
+        let range = first..first + term.columns.len();
+        first = range.end;
         if term.id() == id {
-            return !is_held(own, &solution.bound);
+            return !is_held(range, &solution.bound);
         }
     }
     true
 }
 
 /// Whether all coefficients at these places are held at zero.
-fn is_held(mut own: Range<usize>, bound: &[(usize, f64)]) -> bool {
-    own.all(|at| bound.iter().any(|(held, _)| *held == at))
+fn is_held(mut range: Range<usize>, bound: &[(usize, f64)]) -> bool {
+    range.all(|at| bound.iter().any(|(held, _)| *held == at))
 }
 
 #[cfg(test)]
