@@ -34,7 +34,7 @@ fn wanted(step: usize) -> f64 {
 struct Contacts {
     /// Presliding displacement [rad].
     reach: f64,
-    /// How many steps late their friction is in the current.
+    /// Delay of their friction in the current [steps].
     late: usize,
 }
 

@@ -116,7 +116,7 @@ fn a_mark_that_is_behind_or_of_another_store_raises_no_alarm() {
         // As after a power failure: the database is on the disk, the last mark is not.
         fs::copy(behind.path().join("jointbench.mark"), ahead.path().join("jointbench.mark")).unwrap();
         assert_eq!(Store::open(ahead.path()).await.unwrap().losses().await.unwrap(), []);
-        // The mark of the longer store beside another database.
+        // A mark with more changes, which belongs to another store.
         fs::copy(folder.path().join("jointbench.mark"), other.path().join("jointbench.mark")).unwrap();
         assert_eq!(Store::open(other.path()).await.unwrap().losses().await.unwrap(), []);
     });
