@@ -29,23 +29,15 @@ fn wanted(step: usize) -> f64 {
     40.0 * (wave(2.0, 0.4) + 0.7 * wave(5.0, 1.9) + 0.6 * wave(11.0, 4.0) + 0.5 * wave(17.0, 2.5))
 }
 
-/// Contacts of a joint.
-#[derive(Clone, Copy, Default)]
-struct Contacts {
-    /// Presliding displacement [rad].
-    reach: f64,
-    /// Delay of their friction in the current [steps].
-    late: usize,
-}
-
-/// Four repeats of one motion under a speed controller. The current is read with a delay of `delayed` steps.
-fn moving(delayed: usize, Contacts { reach, late }: Contacts) -> RunTable {
+/// Four repeats of one motion under a speed controller. The current is read with a delay of `delayed` steps, and the
+/// presliding displacement is `reach` [rad].
+fn moving(delayed: usize, reach: f64) -> RunTable {
     let names = "time_s motor_position_rad motor_velocity_rad_s motor_current_a repeat";
     let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());
     let gain = INERTIA * TAU * 18.0;
     let (mut speed, mut estimate) = (wanted(0), wanted(0));
     let (mut position, mut sum, mut bent) = (0.0, 0.0, 1.0f64);
-    let (mut torques, mut frictions) = (vec![0.0; delayed + 1], Vec::new());
+    let mut torques = vec![0.0; delayed + 1];
     for i in 0..4 * PERIOD {
         let wanted = wanted(i);
         let error = wanted - estimate;
@@ -60,8 +52,7 @@ fn moving(delayed: usize, Contacts { reach, late }: Contacts) -> RunTable {
         bent = (bent + speed * STEP_S / reach.max(1e-9)).clamp(-1.0, 1.0);
         position += speed * STEP_S;
         estimate += (speed - estimate) * STEP_S / ESTIMATE_S;
-        frictions.push(friction);
-        torques.push(torque - friction + frictions[i.saturating_sub(late)]);
+        torques.push(torque);
         if i % EVERY == 0 {
             let read = torques[torques.len() - 1 - delayed] + 1e-3 * scatter(i, 5);
             let velocity = estimate + 0.05 * scatter(i, 7);
@@ -72,15 +63,15 @@ fn moving(delayed: usize, Contacts { reach, late }: Contacts) -> RunTable {
     RunTable::new(Meta { gear_ratio: Some(1.0), baseline, ..meta(Kind::Friction) }, trace).unwrap()
 }
 
-fn diagnosed(delayed: usize, contacts: Contacts) -> (Vec<String>, Diagnosis) {
-    let run = moving(delayed, contacts);
+fn diagnosed(delayed: usize, reach: f64) -> (Vec<String>, Diagnosis) {
+    let run = moving(delayed, reach);
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     (found.suggestions.iter().map(|s| s.effect.clone()).collect(), found)
 }
 
 #[test]
 fn a_joint_that_sticks_hides_nothing() {
-    let (named, found) = diagnosed(0, Contacts::default());
+    let (named, found) = diagnosed(0, 0.0);
     assert!(named.is_empty(), "{}", found.summary);
     // 2.0 mNm if the reversals count. The residual with nuisance columns still exceeds the noise.
     assert!(found.fit.validation_rms < 5e-4, "{}", found.summary);
@@ -94,28 +85,19 @@ fn a_joint_that_sticks_hides_nothing() {
 
 #[test]
 fn a_delayed_current_is_named_alone() {
-    let (named, found) = diagnosed(16, Contacts::default());
+    let (named, found) = diagnosed(16, 0.0);
     assert_eq!(named, ["signal_delay"], "{}", found.summary);
 }
 
 /// Which of two possible moments the torque of a row belongs to is unknown.
 #[test]
 fn a_current_between_position_and_velocity_has_no_delay() {
-    let (named, found) = diagnosed(2, Contacts::default());
+    let (named, found) = diagnosed(2, 0.0);
     assert!(named.is_empty(), "{}", found.summary);
 }
 
 #[test]
 fn contacts_that_bend_are_seen_at_reversals() {
-    let (named, found) = diagnosed(0, Contacts { reach: 0.4, late: 0 });
+    let (named, found) = diagnosed(0, 0.4);
     assert_eq!(named, ["presliding"], "{}", found.summary);
-}
-
-#[test]
-fn friction_that_changes_its_direction_late_is_no_inertia() {
-    let run = moving(0, Contacts { reach: 0.02, late: 8 });
-    let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
-    let inertia = found.fit.parameters.iter().find(|p| p.effect == "inertia").unwrap();
-    let [low, high] = inertia.ci95;
-    assert!(low < INERTIA && INERTIA < high && high - low < 0.01 * INERTIA, "{inertia:?}");
 }
