@@ -293,7 +293,10 @@ pub trait Effect: Sync {
             ));
         }
         if self.forms(view).is_empty() {
-            Some(format!("this data cannot show it: {}", self.traits().unseen.unwrap_or(info.looks)))
+            Some(match self.traits().unseen {
+                Some(unseen) => format!("this data cannot show it: {unseen}"),
+                None => format!("this data cannot show its signature: {}", info.looks),
+            })
         } else {
             None
         }

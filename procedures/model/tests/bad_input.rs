@@ -216,7 +216,10 @@ fn no_effect_is_forgotten() {
     let found = diagnose(&run, &spec, &Options::default()).unwrap();
     assert_each_reported_once(&found, &spec);
     let reported = found.not_visible.iter().find(|n| n.effect == "direction_hysteresis");
-    assert!(reported.is_some_and(|n| n.why.contains("has the shape of effects of the model")), "{reported:?}");
+    assert!(
+        reported.is_some_and(|n| n.why.contains("indistinguishable in this data from effects of the model")),
+        "{reported:?}"
+    );
 
     for kind in Kind::ALL {
         let run = common::tables::table(kind, &Shape { segment: 300, repeats: 3, ..Shape::default() });

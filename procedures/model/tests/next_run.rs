@@ -81,11 +81,15 @@ fn a_third_load_distinguishes_a_line_from_a_square_and_the_same_load_does_not() 
     let other = strokes("other", &SPEEDS, 12.0, 1.5);
     assert_eq!(ask(std::slice::from_ref(&same)).map(|e| e.expected_z), None, "nothing new is measured there");
     let vain = next_run(&first, &open, std::slice::from_ref(&same), &Options::default()).unwrap().in_vain.unwrap();
-    assert!(vain.starts_with("No run within these limits is expected to distinguish load_"), "{vain}");
+    assert!(vain.starts_with("No run within the given limits is expected to distinguish load_"), "{vain}");
     let without_floor = Open { has_noise_floor: false, ..open.clone() };
     let repeats =
         next_run(&first, &without_floor, std::slice::from_ref(&same), &Options::default()).unwrap().experiment.unwrap();
-    assert!(repeats.why.contains("; no run within these limits is expected to distinguish load_"), "{}", repeats.why);
+    assert!(
+        repeats.why.contains("; no run within the given limits is expected to distinguish load_"),
+        "{}",
+        repeats.why
+    );
     let menu = [same, other];
     let decided = next_run(&first, &open, &menu, &Options::default()).unwrap();
     assert_eq!(decided.in_vain, None, "a run does");

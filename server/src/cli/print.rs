@@ -118,12 +118,12 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     println!();
     println!("{}", diagnosis.summary);
     regions(&diagnosis.regions, &diagnosis.fit.unit);
+    suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
     if advice::is_any(diagnosis.undecided.as_ref(), diagnosis.verdict) {
         // A missing effect of the library is tried first.
         if diagnosis.suggestions.is_empty() {
             advice::user_formula(&diagnosis.shows_over, &diagnosis.fit);
         }
-        suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
         advice::next_run(diagnosis.experiment.as_ref());
     }
     excluded::print(&diagnosis.silent, &diagnosis.not_visible, &diagnosis.left_out, &diagnosis.fit.unit);
@@ -216,7 +216,7 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     println!();
     let several = suggestions.len() > 1;
     let with_all = if several { " (parameters with all of these in the model)" } else { "" };
-    println!("missing effects{with_all}; ΔBIC below 0 favours the effect:");
+    println!("missing effects{with_all}; ΔBIC of each effect alone, below 0 favours it:");
     for (i, suggestion) in suggestions.iter().enumerate() {
         let (share, rms) = (suggestion.error_reduction, suggestion.validation_rms);
         // Effects of reversals and ramps are evaluated there, and do not change the error in steady state.
@@ -264,12 +264,16 @@ fn signed(value: f64, decimals: usize) -> String {
 fn chance(suggestion: &Suggestion) -> String {
     let bic = suggestion.bic_change.map(|change| format!(", ΔBIC {}", signed(change, 0)));
     let sign = if suggestion.p_at_most { '≤' } else { '=' };
-    let weak = if suggestion.evidence == Evidence::Weak { ", weak evidence" } else { "" };
+    let class = match suggestion.evidence {
+        Evidence::Strong => "",
+        Evidence::Small => ", small effect",
+        Evidence::Weak => ", weak evidence",
+    };
     let p_value = match suggestion.p_value {
         p if p < 0.001 => "p < 0.001".to_owned(),
         p => format!("p {sign} {p:.3}"),
     };
-    format!("{p_value}{}{weak}", bic.unwrap_or_default())
+    format!("{p_value}{}{class}", bic.unwrap_or_default())
 }
 
 fn floor(floor: &NoiseFloor, unit: &str) {
@@ -277,7 +281,7 @@ fn floor(floor: &NoiseFloor, unit: &str) {
         Some(rms) => {
             let interval = match floor.ci95.map(|ends| ends.map(|edge| words::figure(edge, unit))) {
                 Some([low, high]) => format!("[{low} … {high}]"),
-                None => "(no interval: too few blocks)".into(),
+                None => "(no interval: a few blocks contain most of the scatter)".into(),
             };
             println!("noise     floor {} {interval}: {}", words::figure(rms, unit), floor.source);
         }

@@ -84,7 +84,7 @@ fn sought(effect: &dyn Effect, end: &TwoStageModel) -> Option<String> {
 }
 
 /// Excitation of a run that would distinguish the effect from others.
-fn excitation(effect: &dyn Effect) -> &'static str {
+pub fn excitation(effect: &dyn Effect) -> &'static str {
     let needs = |column: &str| effect.info().needs.contains(&column);
     match effect.traits().regime {
         Regime::Hysteresis => "slow reversals over many steps of the encoder",
@@ -104,7 +104,7 @@ fn alike(effect: &dyn Effect, end: &TwoStageModel) -> (InvisibleReason, String) 
     let with = if added.is_empty() { String::new() } else { format!(" with {}", list(&added)) };
     let with = with + if end.main.problem.form_error.is_some() { " or of its nuisance terms" } else { "" };
     let why = format!(
-        "in this data it has the shape of effects of the model{with}; to distinguish them, measure {}",
+        "indistinguishable in this data from effects of the model{with}; to distinguish them, measure {}",
         excitation(effect)
     );
     (InvisibleReason::Confounded, why)

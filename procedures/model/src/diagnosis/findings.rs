@@ -1,6 +1,5 @@
 //! Findings of a selection: the evidence for each effect, the effects that were not found, and the verdict.
 
-use crate::Options;
 use crate::diagnosis::excluded_effects::ExcludedEffects;
 use crate::effects::brake::hysteresis;
 use crate::preprocess::Prepared;
@@ -17,6 +16,7 @@ use crate::selection::model_selection::ModelSelection;
 use crate::selection::refused::EvidenceResult;
 use crate::selection::removal::Withdrawn;
 use crate::thresholds::{FLOOR_RATIO, REPEATABLE_SHARE, STRUCTURE_SHARE};
+use crate::{ModelError, ModelSpec, Options};
 use jointbench_instrument::Kind;
 
 pub struct Findings<'p> {
@@ -172,18 +172,32 @@ impl<'p> Findings<'p> {
 }
 
 impl Findings<'_> {
-    /// Reduction of the squared validation error at the last addition of an effect, relative to the model before.
-    pub fn reduction_when_added(&self, id: &str) -> f64 {
+    /// Reduction of the squared validation error at the last addition of an effect, relative to the model before, and
+    /// that model in words.
+    pub fn reduction_when_added(&self, id: &str) -> (f64, &'static str) {
         let is_meant = |step: &SelectionStep| step.added.as_ref().is_some_and(|scored| scored.term.id() == id);
-        let Some(at) = self.advances.iter().rposition(is_meant) else { return 0.0 };
-        let before = at.checked_sub(1).map_or(&self.start, |at| &self.advances[at].after);
-        1.0 - (validation_rms(&self.advances[at].after.main) / validation_rms(&before.main)).powi(2)
+        let Some(at) = self.advances.iter().rposition(is_meant) else { return (0.0, "the model") };
+        let (before, words) = match at.checked_sub(1) {
+            None => (&self.start, "the model"),
+            Some(at) => (&self.advances[at].after, "the effects before it"),
+        };
+        let ratio = validation_rms(&self.advances[at].after.main) / validation_rms(&before.main);
+        (1.0 - ratio.powi(2), words)
     }
 
     /// Relative reduction of the validation error by an effect of the last model.
-    pub fn lost_without(&self, id: &str) -> f64 {
-        let parts = parts_without(self.end(), id);
-        parts.first().map_or(0.0, |(part, without)| 1.0 - validation_rms(part) / validation_rms(without))
+    ///
+    /// # Errors
+    /// As [`crate::fit()`].
+    pub fn lost_without(&self, id: &str, options: &Options) -> Result<f64, ModelError> {
+        let end = self.end();
+        if let Some((part, without)) = parts_without(end, id).first() {
+            return Ok(1.0 - validation_rms(part) / validation_rms(without));
+        }
+        // Presliding is the friction direction of its model, not a term of it.
+        let others = ModelSpec { effects: end.effects.clone(), ..end.spec.clone() }.without(id);
+        let without = TwoStageModel::new(end.prepared, &others, options)?;
+        Ok(1.0 - self.end_validation_rms / validation_rms(&without.main))
     }
 }
 

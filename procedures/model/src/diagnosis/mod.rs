@@ -216,7 +216,12 @@ fn suggestions(
         let also: String = written.into_iter().chain(instead).map(|text| format!(" {text}.")).collect();
         let reasons = format!("{evidence}{tie}{also}");
         let reduction_ci95 = (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten();
-        let together = found.lost_without(id);
+        let together = found.lost_without(id, options)?;
+        let figures = match (scored.is_without_form_error, fit.effects_rms, with.effects_rms) {
+            // The nuisance terms hide what the effect does.
+            (true, Some(before), Some(after)) => (1.0 - after / before, None),
+            _ => (reduction, reduction_ci95),
+        };
         out.push(Suggestion {
             effect: id.into(),
             validation_rms: with.validation_rms,
@@ -225,7 +230,7 @@ fn suggestions(
             error_reduction_ci95: reduction_ci95,
             bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),
             p_value: scored.p_value,
-            evidence: Evidence::of(scored.p_value, reduction, reduction_ci95, together),
+            evidence: Evidence::of(scored.p_value, figures.0, figures.1, together, has_size(complete, found, id)),
             p_at_most: found.decided.is_none() && scored.p_value * (options.flips + 1) as f64 <= 1.001,
             error_reduction_together: together,
             parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),
@@ -237,6 +242,14 @@ fn suggestions(
     Ok(out)
 }
 
+/// Whether the interval of one of the coefficients of an effect excludes zero.
+fn has_size(complete: &Fit, found: &Findings, id: &str) -> bool {
+    let Some(term) = found.end().main.terms.iter().find(|term| term.id() == id) else { return true };
+    let is_coefficient = |p: &&Parameter| p.effect == id && term.form.linear.contains(&p.name.as_str());
+    let mut coefficients = complete.parameters.iter().filter(is_coefficient).peekable();
+    coefficients.peek().is_none() || coefficients.any(|p| p.ci95[0] > 0.0 || p.ci95[1] < 0.0)
+}
+
 /// What speaks for an added effect, in a sentence.
 fn evidence_sentence(found: &Findings, scored: &ScoredCandidate, importance: f64, apart: bool) -> String {
     if apart {
@@ -244,15 +257,17 @@ fn evidence_sentence(found: &Findings, scored: &ScoredCandidate, importance: f64
     } else if let Some(retained) = found.retained.iter().find(|u| u.effect == scored.term.id()) {
         format!("Removing it hardly changes the error, but without it {}.", narrative::elsewhere(retained, false))
     } else if found.decided.is_some() {
-        let over_all = found.reduction_when_added(scored.term.id());
-        let weighted = percent(importance);
-        match over_all > 0.0 {
-            true => format!(
-                "Added to the effects before it, it reduces the squared validation error by {} ({weighted} with less weight on \
-                 reversals and rest).",
-                percent(over_all)
+        let (over_all, to) = found.reduction_when_added(scored.term.id());
+        let (weighted, over_all_text) = (percent(importance), percent(over_all));
+        match (scored.is_without_form_error, over_all > 0.0) {
+            (true, _) => format!(
+                "Without the nuisance terms that imitate it, it reduces the squared validation error by {weighted}."
             ),
-            false => {
+            (false, true) => format!(
+                "Added to {to}, it reduces the squared validation error by {over_all_text} ({weighted} with less weight on \
+                 reversals and rest)."
+            ),
+            (false, false) => {
                 format!(
                     "With less weight on reversals and rest, it reduces the squared validation error by {weighted}."
                 )

@@ -10,7 +10,7 @@ use crate::report::text::{all_marked, marked};
 use crate::residual_analysis::events::Events;
 use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
-use crate::residual_analysis::structure::Unexplained;
+use crate::residual_analysis::structure::{MEANS_S, Shape, Unexplained};
 use crate::selection::removal::Withdrawn;
 use crate::thresholds::{LISTED_LOSS, NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, SMALL_REDUCTION};
 use crate::words::{Scale, figure, list, percent, spoken_axis};
@@ -19,9 +19,15 @@ use crate::{Fit, Options};
 /// The missing effects, and the structure that remains with them. `fit` is the given model, `complete` the one with
 /// all suggestions.
 pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
-    let named: Vec<String> = suggestions.iter().map(with_confounded).collect();
+    let is_weak = |suggestion: &Suggestion| suggestion.evidence == Evidence::Weak;
+    let all_weak = suggestions.iter().all(is_weak);
+    let name = |suggestion: &Suggestion| {
+        let weak = if is_weak(suggestion) && !all_weak { " (weak evidence)" } else { "" };
+        with_confounded(suggestion) + weak
+    };
+    let named: Vec<String> = suggestions.iter().map(name).collect();
     let plural = if named.len() > 1 { "s" } else { "" };
-    let head = match suggestions.iter().all(|s| s.evidence == Evidence::Weak) {
+    let head = match all_weak {
         true => format!("Possibly missing effect{plural} (weak evidence)"),
         false => format!("Missing effect{plural}"),
     };
@@ -59,16 +65,16 @@ fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion])
     let is_apart = regime != Regime::SteadyState && first.validation_rms > (1.0 - SMALL_REDUCTION) * fit.validation_rms;
     if let (true, Some(without), Some(alone)) = (is_apart, fit.effects_rms, first.effects_rms) {
         return format!(
-            "It acts {place}: adding it reduces the error of the effects alone from {} to {}. The nuisance terms of the fit \
-             hide this: with them, the validation error is {with} with {effect} and {error} without it; {floor}.",
+            "{effect} acts {place}: adding it reduces the error of the effects alone from {} to {}. The nuisance terms of \
+             the fit hide this: with them, the validation error is {with} with {effect} and {error} without it; {floor}.",
             unit.figure(without),
             unit.figure(alone)
         );
     }
     if is_apart {
         return format!(
-            "It acts {place}, where it reduces the error by {}; at steady state the validation error is {with} with it and \
-             {error} without it; {floor}.",
+            "{effect} acts {place}, where it reduces the error by {}; at steady state the validation error is {with} with it \
+             and {error} without it; {floor}.",
             percent(first.error_reduction)
         );
     }
@@ -92,7 +98,9 @@ fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion])
             let how = if after == before { "no better".into() } else { format!("worse: {after} instead of {before}") };
             format!(" (the effects alone, without the nuisance terms, predict {how})")
         }
-        (_, Some(after)) => format!(" ({} without the nuisance terms)", unit.figure(after)),
+        (Some(before), Some(after)) => {
+            format!(" (without the nuisance terms from {} to {})", figure(before, &fit.unit), figure(after, &fit.unit))
+        }
         _ => String::new(),
     };
     format!("Adding {effect} reduces the validation error from {error} to {with}{alone}{all}; {floor}.")
@@ -270,23 +278,43 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
             figure(event.mean.abs(), &end.unit)
         );
     }
+    if let Some(text) = found.decided.as_ref().and_then(|decided| over_time(decided.left.as_ref()?)) {
+        return format!("{text} (now {error} RMS{repeats})");
+    }
     match shown_over(found, shown) {
         Some((axes, share)) => format!(
             "it is largest over {}, and a function of that would remove {} of the remaining squared error (now {error} RMS{repeats})",
             list(&axes.iter().map(|axis| spoken_axis(axis, found.start.prepared.kind)).collect::<Vec<_>>()),
             percent(share),
         ),
-        None => format!("no axis of this run shows its origin (remaining error {error}{repeats})"),
+        None => format!(
+            "no function of one axis removes {} of the squared error (remaining error {error}{repeats})",
+            percent(PRACTICAL_SHARE)
+        ),
     }
 }
 
-/// The columns with most structure, and the cross-validated R² of a function of them. `None` without structure.
+/// Structure in time, which is no function of an axis.
+fn over_time(left: &Unexplained) -> Option<String> {
+    let share = percent(left.share);
+    match &left.shape {
+        Shape::Function(_) => None,
+        Shape::Wave(hz) => Some(format!("{share} of the squared residual is a wave of {}", figure(*hz, "Hz"))),
+        Shape::Correlation => Some(format!(
+            "neighbouring means of the residual over {} are correlated, and their covariance is {share} of its variance: \
+             something changes slowly, or a quantity was not recorded",
+            figure(MEANS_S, "s")
+        )),
+    }
+}
+
+/// The columns with most structure, and the cross-validated R² of a function of them. `None` without such a function.
 pub fn shown_over(found: &Findings, shown: Option<&PairMap>) -> Option<(Vec<String>, f64)> {
     if let Some(decided) = &found.decided {
         let prepared = found.start.prepared;
-        let named =
-            |left: &Unexplained| left.over.iter().map(|signal| prepared.column_name(*signal).to_owned()).collect();
-        return decided.left.as_ref().map(|left| (named(left), left.share));
+        let left = decided.left.as_ref()?;
+        let Shape::Function(signals) = &left.shape else { return None };
+        return Some((signals.iter().map(|signal| prepared.column_name(*signal).to_owned()).collect(), left.share));
     }
     let pair = shown.map(|s| (vec![s.x.clone(), s.y.clone()], s.removable_share));
     let axis = found.maps.shows_over();
@@ -302,6 +330,12 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
     match verdict {
         Verdict::Adequate => String::new(),
         _ if !regions.is_empty() => String::new(),
+        Verdict::MissingEffect => {
+            format!(
+                " In the residual of the given model, no part of an axis is significant{}.",
+                maps.nowhere(&fit.unit)
+            )
+        }
         _ => format!(" No part of an axis is significant{}.", maps.nowhere(&fit.unit)),
     }
 }
@@ -341,7 +375,8 @@ fn above_floor(found: &Findings) -> (UndecidedReason, String) {
         return (UndecidedReason::NoNoiseFloor, UNKNOWN.into());
     };
     let times = found.end_validation_rms / floor;
-    let why = format!("the error is {times:.1} times the noise floor, and no test shows its origin");
+    let why =
+        format!("the error is {times:.1} times the noise floor, and no effect and no function of one axis explains it");
     (UndecidedReason::AboveNoiseFloor, why)
 }
 

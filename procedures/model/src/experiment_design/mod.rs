@@ -12,12 +12,12 @@ use crate::experiment_design::simulate::simulate;
 use crate::inference::confounding;
 use crate::preprocess::{Prepared, Problem, prepare};
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::report::diagnosis::{Diagnosis, Discovery, Experiment, Verdict};
+use crate::report::diagnosis::{Diagnosis, Discovery, Experiment, Silent, Verdict};
 use crate::signal::Signal;
 use crate::stats::summary::peak;
-use crate::thresholds::{NEARLY_COVERED, SEPARATED_Z, USELESS_Z};
+use crate::thresholds::{NEARLY_COVERED, SEPARATED_Z, USELESS_Z, WORTH_SEEING};
 use crate::words::list;
-use crate::{ModelError, ModelSpec, Options, UserEffect};
+use crate::{Fit, ModelError, ModelSpec, Options, UserEffect};
 use jointbench_instrument::{Motion, RunTable};
 use serde_json::{Map, Value};
 use std::cmp::Ordering;
@@ -81,6 +81,8 @@ pub struct Open {
     pub has_noise_floor: bool,
     /// Unexplained structure remains in this data; a run for effects that it cannot show would not explain that.
     pub has_structure: bool,
+    /// Effects that this data would have shown at a size that is worth a run.
+    pub tested: Vec<String>,
     /// User effects that the model or its alternatives contain.
     pub user_effects: Vec<UserEffect>,
 }
@@ -95,6 +97,7 @@ impl From<&Diagnosis> for Open {
             imitated: diagnosis.imitated.as_ref().map(|open| open.effect.clone()),
             has_noise_floor: diagnosis.noise_floor_rms.is_some(),
             has_structure: diagnosis.structure_remains,
+            tested: tested(&diagnosis.silent, &diagnosis.fit),
             user_effects: Vec::new(),
         }
     }
@@ -110,6 +113,7 @@ impl From<&Discovery> for Open {
             imitated: discovery.imitated.as_ref().map(|open| open.effect.clone()),
             has_noise_floor: discovery.noise_floor_rms.is_some(),
             has_structure: discovery.verdict == Verdict::UnexplainedStructure,
+            tested: tested(&discovery.silent, &discovery.fit),
             user_effects: Vec::new(),
         }
     }
@@ -122,6 +126,13 @@ pub struct Next {
     pub experiment: Option<Experiment>,
     /// Confounded pairs that no run of the menu separates, in a sentence.
     pub in_vain: Option<String>,
+}
+
+/// Effects that were not found, although this data shows a size of [`WORTH_SEEING`].
+fn tested(silent: &[Silent], fit: &Fit) -> Vec<String> {
+    let least = WORTH_SEEING * fit.rms / fit.relative_error;
+    let shown = silent.iter().filter(|one| one.minimum_detectable_rms <= least);
+    shown.map(|one| one.effect.clone()).collect()
 }
 
 /// The recommended next run. None is recommended for contradicting columns, which have to be corrected first.
@@ -153,7 +164,8 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     for (effect, alternatives) in &open.ties {
         let (experiment, vain) = offer.distinguish(effect, alternatives, open)?;
         if let Some(mut next) = experiment {
-            next.why.extend(vain.map(|vain| format!("; no run within these limits is expected to distinguish {vain}")));
+            next.why
+                .extend(vain.map(|vain| format!("; no run within the given limits is expected to distinguish {vain}")));
             return Ok(next.into());
         }
         in_vain.extend(vain);
@@ -161,7 +173,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let next = offer.without_ties(open)?;
     let in_vain = (!in_vain.is_empty()).then(|| {
         let ties = list(&in_vain);
-        format!("run within these limits is expected to distinguish {ties}: use another speed, load or temperature")
+        format!("run within the given limits is expected to distinguish {ties}")
     });
     Ok(match (next, in_vain) {
         (Some(next), Some(vain)) => Experiment { why: format!("{}; no {vain}", next.why), ..next }.into(),
@@ -253,7 +265,7 @@ impl<'a> RunPlanner<'a> {
             Ok(None)
         } else {
             self.simulated.retain(|(choice, _)| !choice.powers_anew());
-            Ok(unobserved::unseen(self.model, &self.noise, &self.simulated))
+            Ok(unobserved::unseen(self.model, &self.noise, &self.simulated, &open.tested))
         }
     }
 }

@@ -15,8 +15,14 @@ use jointbench_instrument::Kind;
 /// Below this an effect is not found reliably: z₀.₉₇₅ + z₀.₈.
 const FOUND_Z: f64 = 2.8;
 
-/// The run that makes most undetectable effects detectable, among equals the shortest.
-pub fn unseen(model: &TwoStageModel, noise: &Noise, simulated: &[(&Choice, Problem)]) -> Option<Experiment> {
+/// The run that makes most undetectable effects detectable, among equals the shortest. `tested` are the effects that the
+/// measured run would have shown.
+pub fn unseen(
+    model: &TwoStageModel,
+    noise: &Noise,
+    simulated: &[(&Choice, Problem)],
+    tested: &[String],
+) -> Option<Experiment> {
     let is_friction = model.spec.kind == Kind::Friction;
     let side = Side::new(&model.main, noise);
     let mut best: Option<(ScoredRun, Vec<&str>)> = None;
@@ -27,7 +33,7 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, simulated: &[(&Choice, Probl
         };
         let own = side.at(run, noise);
         let mut seen: Vec<(&str, f64)> = Vec::new();
-        for effect in model.spec.known() {
+        for effect in model.spec.known().filter(|effect| !tested.iter().any(|id| id == effect.info().id)) {
             let Some((now, then)) = columns_of(effect, model, run, worth) else { continue };
             let (now, then) = (noise.whiten(&now, model.main.problem), noise.whiten(&then, run));
             let (before, after) = side.information(&now, &then, &own);
@@ -77,15 +83,14 @@ fn columns_of(effect: &dyn Effect, model: &TwoStageModel, run: &Problem, worth: 
 
 fn experiment(bid: ScoredRun, effects: &[&str], is_friction: bool) -> Experiment {
     let worth = match is_friction {
-        true => format!("{} % of the torque there", 100.0 * WORTH_SEEING),
-        false => "what is as large as the scatter of one reading".to_owned(),
+        true => format!("{} % of the torque", 100.0 * WORTH_SEEING),
+        false => "the size of the scatter of one reading".to_owned(),
     };
     Experiment {
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "it would make {} detectable at a size at which the data so far does not show it: {worth} would be {} standard \
-             deviations{}",
+            "this run cannot show {}; in the proposed run, an effect of {worth} would be {} standard deviations{}",
             list(effects),
             if bid.z > 100.0 { "more than 100".to_owned() } else { format!("at least {:.1}", bid.z) },
             bid.choice.provided(),

@@ -3,6 +3,7 @@
 use crate::effect::{Effect, Form};
 use crate::effects;
 use crate::effects::friction::coulomb;
+use crate::inference::parameter_state;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::solution::{PRESLIDING, Solution};
 use crate::regression::two_stage_model::TwoStageModel;
@@ -20,16 +21,22 @@ pub fn presliding(model: &TwoStageModel, parameters: &[Parameter]) -> Option<(Te
     let dry = parameters.iter().find(|p| p.effect == coulomb::ID);
     let (value, ci95) = dry.map_or((0.0, [0.0, 0.0]), |dry| (dry.value, dry.ci95));
     let info = effects::find(Kind::Friction, PRESLIDING).ok()?.info();
-    let parameter = |name: &'static str, value, ci95, state| Parameter {
+    let unit = |name| model.prepared.motion.label(info.unit(name));
+    let parameter = |name: &'static str, value, ci95, (state, note)| Parameter {
         effect: PRESLIDING.into(),
         name: name.into(),
         value,
-        unit: model.prepared.motion.label(info.unit(name)),
+        unit: unit(name),
         ci95,
         state,
-        note: None,
+        note,
     };
     let state = if dry.is_some() { ParameterState::Ok } else { ParameterState::Unidentified };
+    let searched = [*bristles.reaches_rad.first()?, *bristles.reaches_rad.last()?];
+    let of_reach = match searched.contains(&reach) {
+        true => parameter_state::at_end(searched, &unit("theta_p")),
+        false => (ParameterState::Ok, None),
+    };
     let term = Term {
         effect: PRESLIDING.into(),
         form: form.into(),
@@ -37,7 +44,7 @@ pub fn presliding(model: &TwoStageModel, parameters: &[Parameter]) -> Option<(Te
         linear: vec![value],
         names: vec!["tau_p".into(), "theta_p".into()],
     };
-    let all = vec![parameter("tau_p", value, ci95, state), parameter("theta_p", reach, ends, ParameterState::Ok)];
+    let all = vec![parameter("tau_p", value, ci95, (state, None)), parameter("theta_p", reach, ends, of_reach)];
     Some((term, all))
 }
 

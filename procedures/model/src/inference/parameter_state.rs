@@ -41,6 +41,12 @@ pub fn know_the_small(parameters: &mut [Parameter]) {
     }
 }
 
+/// State of a nonlinear parameter at an end of its searched range.
+pub fn at_end(range: [f64; 2], unit: &str) -> (ParameterState, Option<String>) {
+    let [min, max] = range.map(|end| figure(end, unit));
+    (ParameterState::AtBound, Some(format!("at the end of the searched range, {min} to {max}")))
+}
+
 /// State of a parameter, with a note if it is not well determined.
 pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option<String>) {
     let nothing =
@@ -67,8 +73,7 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
     };
     let (min, max) = (shape.min, shape.max);
     if shape.is_edge(slot.value) {
-        let words = format!("at the end of the searched range, {} to {}", say(min), say(max));
-        return (ParameterState::AtBound, Some(words));
+        return at_end([min, max], &slot.unit);
     }
     if dead {
         return nothing();

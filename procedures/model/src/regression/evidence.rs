@@ -27,6 +27,8 @@ pub struct Evidence<'l, 'p> {
     /// Form error of the model could explain the same: it is left out of the base for this candidate, or the candidate
     /// shows only at reversals, where form error lives.
     pub form_error_imitates: bool,
+    /// It was compared with a base without the form error that represents the same effect.
+    pub is_without_form_error: bool,
 }
 
 impl Evidence<'_, '_> {
@@ -127,6 +129,7 @@ fn of_effect<'l, 'p>(ridge: &BlockedRidge, trials: &[Trial<'l, 'p>], forms: usiz
         p_value: (best.chance * forms as f64).min(1.0),
         losses: ridge.losses.iter().zip(&gains).map(|(loss, gain)| loss - gain).collect(),
         form_error_imitates: !best.shows_outside,
+        is_without_form_error: false,
     })
 }
 

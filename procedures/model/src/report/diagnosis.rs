@@ -126,19 +126,20 @@ pub enum Evidence {
     Strong,
     /// Significant, but less than [`SMALL_REDUCTION`] of the validation error.
     Small,
-    /// Possibly missing: its p-value exceeds [`STRONG_P_VALUE`], or the interval of its reduction of the validation
-    /// error includes zero.
+    /// Possibly missing: its p-value exceeds [`STRONG_P_VALUE`], the interval of its reduction of the validation error
+    /// includes zero, the error is not smaller with it, or the intervals of all its coefficients include zero.
     Weak,
 }
 
 impl Evidence {
     /// From the figures of a suggestion.
-    pub fn of(p_value: f64, alone: f64, ci95: Option<[f64; 2]>, together: f64) -> Self {
+    pub fn of(p_value: f64, alone: f64, ci95: Option<[f64; 2]>, together: f64, has_size: bool) -> Self {
         // Effects that mask each other have a small individual reduction.
         let may_be_nothing = together <= MASKED_RATIO * alone && ci95.is_some_and(|[low, _]| low <= 0.0);
+        let most = alone.max(together);
         match () {
-            () if p_value > STRONG_P_VALUE || may_be_nothing => Self::Weak,
-            () if alone.max(together) < SMALL_REDUCTION => Self::Small,
+            () if p_value > STRONG_P_VALUE || may_be_nothing || most <= 0.0 || !has_size => Self::Weak,
+            () if most < SMALL_REDUCTION => Self::Small,
             () => Self::Strong,
         }
     }
@@ -319,11 +320,13 @@ mod tests {
 
     #[test]
     fn evidence_is_as_strong_as_its_figures() {
-        assert_eq!(Evidence::of(0.002, 0.3, Some([0.2, 0.4]), 0.3), Evidence::Strong);
-        assert_eq!(Evidence::of(0.03, 0.3, Some([0.2, 0.4]), 0.3), Evidence::Weak);
-        assert_eq!(Evidence::of(0.002, 0.15, Some([-0.01, 0.3]), 0.16), Evidence::Weak);
-        assert_eq!(Evidence::of(0.002, 0.01, Some([-0.01, 0.03]), 0.3), Evidence::Strong, "masked by another");
-        assert_eq!(Evidence::of(0.002, 0.02, Some([0.01, 0.03]), 0.02), Evidence::Small);
-        assert_eq!(Evidence::of(0.002, 0.3, None, 0.0), Evidence::Strong, "where the RMS does not look");
+        assert_eq!(Evidence::of(0.002, 0.3, Some([0.2, 0.4]), 0.3, true), Evidence::Strong);
+        assert_eq!(Evidence::of(0.03, 0.3, Some([0.2, 0.4]), 0.3, true), Evidence::Weak);
+        assert_eq!(Evidence::of(0.002, 0.15, Some([-0.01, 0.3]), 0.16, true), Evidence::Weak);
+        assert_eq!(Evidence::of(0.002, 0.01, Some([-0.01, 0.03]), 0.3, true), Evidence::Strong, "masked by another");
+        assert_eq!(Evidence::of(0.002, 0.02, Some([0.01, 0.03]), 0.02, true), Evidence::Small);
+        assert_eq!(Evidence::of(0.002, 0.3, None, 0.0, true), Evidence::Strong, "where the RMS does not look");
+        assert_eq!(Evidence::of(0.002, -0.04, Some([-0.07, -0.01]), -0.03, true), Evidence::Weak, "a larger error");
+        assert_eq!(Evidence::of(0.002, 0.3, Some([0.2, 0.4]), 0.3, false), Evidence::Weak, "no coefficient has a sign");
     }
 }

@@ -1,5 +1,7 @@
 //! Upper limits of effects that were not found, and effects that a run could hardly show.
 
+use crate::diagnosis::excluded_effects::excitation;
+use crate::effects;
 use crate::report::diagnosis::{Diagnosis, Discovery, Silent};
 use crate::report::fit::Fit;
 use crate::report::reasons::{Invisible, InvisibleReason};
@@ -41,12 +43,16 @@ fn bounded(fit: &Fit, silent: Vec<Silent>, mut not_visible: Vec<Invisible>) -> (
         one.upper_rms = Some(UPPER_LIMIT * one.minimum_detectable_rms);
     }
     not_visible.extend(hidden.into_iter().map(|one| {
-        let share = one.minimum_detectable_rms / signal_rms;
-        let why = format!(
-            "its detection limit is {} of the measured signal, and less than {} is required; measure more repeats, or a wider range",
-            percent(share),
-            percent(WORTH_SEEING)
-        );
+        let [limit, bound] = [one.minimum_detectable_rms / signal_rms, WORTH_SEEING].map(percent);
+        // Noise cannot hide what is larger than the residual; effects of the model can.
+        let cure = match effects::find(fit.kind, &one.effect).ok().filter(|_| one.minimum_detectable_rms > fit.rms) {
+            Some(effect) => format!(
+                "this data hardly distinguishes it from the effects of the model; to distinguish them, measure {}",
+                excitation(effect)
+            ),
+            None => "measure more repeats, or a wider range".to_owned(),
+        };
+        let why = format!("the detection limit is {limit} of the measured signal, above the bound of {bound}; {cure}");
         Invisible { effect: one.effect, reason: InvisibleReason::DetectionLimit, why }
     }));
     (tested, not_visible)

@@ -126,7 +126,7 @@ fn unknown(prepared: &Prepared) -> String {
             "no noise floor, because the repeats share no condition and phase; use the same steps in every repeat, in any order"
         }
         false => {
-            "no noise floor, because no repeats were found: the run has no column for them, and its motion no clear period"
+            "no noise floor, because no repeats were found: no column numbers them, and the motion has no clear period"
         }
     };
     source.to_owned()

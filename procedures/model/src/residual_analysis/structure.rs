@@ -25,16 +25,27 @@ const MOST_DEVIATIONS: f64 = 6.0;
 const FASTEST_LINE_HZ: f64 = 2.0;
 const LINE_STEPS: i32 = 4;
 /// Averaging time of neighbouring means [s]. Events of a second leave no correlation between longer means.
-const MEANS_S: f64 = 0.5;
+pub const MEANS_S: f64 = 0.5;
+
+/// Shape of the structure that remains.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A function of these signals.
+    Function(Vec<Signal>),
+    /// A wave in time, with its frequency [Hz].
+    Wave(f64),
+    /// Correlation of neighbouring means over [`MEANS_S`].
+    Correlation,
+}
 
 /// Structure that remains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unexplained {
-    /// Signals over which it shows.
-    pub over: Vec<Signal>,
-    /// Share of the squared validation error that a function of these signals explains.
+    pub shape: Shape,
+    /// Share of the squared validation error that a function explains, of the squared residual that a wave explains, or
+    /// covariance of neighbouring means as a share of the variance.
     pub share: f64,
-    /// Whether a function of these signals explains more than all added effects together.
+    /// Whether a function of an axis explains more than all added effects together.
     pub is_all: bool,
 }
 
@@ -46,19 +57,20 @@ pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> 
     let judged: Vec<(f64, f64)> = all.par_iter().map(|axis| reduction(ridge, axis)).collect();
     let shows = |share: f64, errors: f64| share > LEFT_SHARE && errors > CLEAR_ERRORS;
     let axes = all.iter().zip(&judged).filter(|(_, (share, errors))| shows(*share, *errors));
-    let mut found: Vec<(Option<&Functions>, Vec<Signal>, f64)> =
-        axes.map(|(axis, (share, _))| (Some(axis), axis.over.clone(), *share)).collect();
+    let mut found: Vec<(Option<&Functions>, Shape, f64)> =
+        axes.map(|(axis, (share, _))| (Some(axis), Shape::Function(axis.over.clone()), *share)).collect();
     let weighted = clipped(&solution.residual, &solution.weight);
     let row_s = model.problem.form_error.as_deref().map_or(1.0, |e| e.row_s);
     let direction = model.problem.reduce.apply(model.problem.view.get(Signal::Direction).to_vec());
     let [plain, turned] = neighbours(&weighted, &direction, row_s);
-    let over_time = [line(&weighted, model.problem, row_s), plain, turned];
-    let over_time = over_time.iter().filter(|(share, errors)| shows(*share, *errors));
-    found.extend(over_time.map(|(share, _)| (None, vec![Signal::Time], *share)));
-    let (axis, over, share) = found.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let (hz, wave) = line(&weighted, model.problem, row_s);
+    let over_time = [(Shape::Wave(hz), wave), (Shape::Correlation, plain), (Shape::Correlation, turned)];
+    let over_time = over_time.into_iter().filter(|(_, (share, errors))| shows(*share, *errors));
+    found.extend(over_time.map(|(shape, (share, _))| (None, shape, share)));
+    let (axis, shape, share) = found.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
     let grew = start.effects.len() < end.effects.len();
     let is_all = axis.filter(|_| grew).is_some_and(|axis| explains_all(axis, start, end, solution));
-    Some(Unexplained { over, share, is_all })
+    Some(Unexplained { shape, share, is_all })
 }
 
 fn taken(ridge: &BlockedRidge, axis: &Functions) -> Vec<f64> {
@@ -117,9 +129,9 @@ fn clipped(residual: &[f64], weight: &[f64]) -> Vec<f64> {
     weighted.into_iter().map(|e| e.clamp(-most, most)).collect()
 }
 
-/// Cross-validated error reduction by the strongest spectral line in time, as a share of the squared residual and in
-/// standard errors.
-fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
+/// Frequency [Hz] of the strongest spectral line in time, and its cross-validated error reduction as a share of the
+/// squared residual and in standard errors.
+fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, (f64, f64)) {
     let blocks = ranges(&problem.block);
     let whole_s = values.len() as f64 * row_s;
     let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -138,7 +150,9 @@ fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
     };
     let highest = (FASTEST_LINE_HZ.min(0.5 / row_s) * whole_s) as usize;
     let powers: Vec<f64> = (2..highest.max(2)).into_par_iter().map(|k| power(k as f64 / whole_s)).collect();
-    let Some(strongest) = (0..powers.len()).max_by(|a, b| powers[*a].total_cmp(&powers[*b])) else { return (0.0, 0.0) };
+    let Some(strongest) = (0..powers.len()).max_by(|a, b| powers[*a].total_cmp(&powers[*b])) else {
+        return (0.0, (0.0, 0.0));
+    };
     let losses: Vec<f64> = blocks.iter().map(|rows| dot(&values[rows.clone()], &values[rows.clone()])).collect();
     let tried = (-LINE_STEPS..=LINE_STEPS).map(|step| {
         let hz = ((strongest + 2) as f64 + 0.5 * f64::from(step) / f64::from(LINE_STEPS)) / whole_s;
@@ -164,9 +178,9 @@ fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
             ];
             2.0 * (coefficients[0] * of_block[3] + coefficients[1] * of_block[4]) - dot(&coefficients, &there)
         });
-        reduced(&losses, &gains.collect::<Vec<f64>>())
+        (hz, reduced(&losses, &gains.collect::<Vec<f64>>()))
     });
-    tried.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
+    tried.max_by(|a, b| a.1.0.total_cmp(&b.1.0)).unwrap_or_default()
 }
 
 /// Covariance of neighbouring means as a share of the variance, and in standard errors: for the residual, and for the

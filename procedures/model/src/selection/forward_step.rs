@@ -27,6 +27,8 @@ pub struct ScoredCandidate<'p> {
     pub validation_losses: f64,
     pub p_value: f64,
     pub reason: AdditionReason,
+    /// `share` is relative to a model without the nuisance terms that imitate the effect.
+    pub is_without_form_error: bool,
     /// Squared validation error of each fold.
     pub(crate) losses: Vec<f64>,
 }
@@ -34,7 +36,15 @@ pub struct ScoredCandidate<'p> {
 impl<'p> ScoredCandidate<'p> {
     /// A candidate that was tested alone, without folds.
     pub fn alone(term: Term<'p>, share: f64, p_value: f64, reason: AdditionReason) -> Self {
-        Self { term, share, validation_losses: f64::NAN, p_value, reason, losses: Vec::new() }
+        Self {
+            term,
+            share,
+            validation_losses: f64::NAN,
+            p_value,
+            reason,
+            is_without_form_error: false,
+            losses: Vec::new(),
+        }
     }
 }
 
@@ -131,6 +141,7 @@ fn cross_validated<'p>(
                 validation_losses: losses.iter().sum(),
                 p_value: 1.0,
                 reason: AdditionReason::ErrorReduction,
+                is_without_form_error: false,
                 losses,
             }
         })

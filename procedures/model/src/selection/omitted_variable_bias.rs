@@ -76,7 +76,15 @@ impl<'p> FloatingSearch<'_, 'p> {
             let validation_losses = losses.iter().sum();
             let is_clear = validation_losses < present.iter().sum() && !is_tie(&losses, &present);
             let reason = AdditionReason::OmittedVariableBias;
-            let scored = ScoredCandidate { term, share, validation_losses, p_value, reason, losses };
+            let scored = ScoredCandidate {
+                term,
+                share,
+                validation_losses,
+                p_value,
+                reason,
+                is_without_form_error: false,
+                losses,
+            };
             (p_value <= self.options.alpha).then_some(Imitated { scored, with, is_clear })
         });
         let better = |a: &Imitated, b: &Imitated| a.scored.validation_losses.total_cmp(&b.scored.validation_losses);

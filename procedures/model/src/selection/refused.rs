@@ -18,6 +18,8 @@ pub struct Refused<'p> {
     pub p_value: f64,
     /// Error reduction that would be required.
     pub least: f64,
+    /// `gain` is relative to a model without the nuisance terms that imitate the effect.
+    pub is_without_form_error: bool,
     pub reason: RejectionReason,
 }
 
@@ -31,10 +33,11 @@ impl Refused<'_> {
             RejectionReason::ModelFull => "but the largest number of added effects is reached".into(),
             _ if self.gain <= self.least => {
                 let required = percent(self.least);
-                format!("but form error of the model could explain the same; at least {required} is required")
+                format!("but the nuisance terms of the model could explain the same; at least {required} is required")
             }
-            _ => "but form error of the model explains as much".into(),
+            _ => "but the nuisance terms of the model explain as much".into(),
         };
-        format!("it would reduce the squared validation error by {}, {but}", percent(self.gain))
+        let base = if self.is_without_form_error { "without the nuisance terms that imitate it, " } else { "" };
+        format!("{base}it would reduce the squared validation error by {}, {but}", percent(self.gain))
     }
 }

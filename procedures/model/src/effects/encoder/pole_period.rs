@@ -1,6 +1,6 @@
 //! Pole period error.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, waves};
 use crate::view::View;
@@ -40,8 +40,10 @@ impl Effect for PolePeriod {
     /// second harmonic of half as many, whose own fundamental would be absent.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let both = |orders| crate::effects::whole_orders(orders, f64::INFINITY, "pole_pairs", &["a", "b", "c", "d"]);
-        if let Some(p) = view.constants.pole_pairs {
-            return both(p..=p);
+        match view.constants.pole_pairs {
+            Some(1) => return Vec::new(),
+            Some(p) => return both(p..=p),
+            None => {}
         }
         let one = crate::effects::whole_orders(16..=128, f64::INFINITY, "pole_pairs", &["a", "b"]);
         one.into_iter().map(|form| Form { name: FUNDAMENTAL, ..form }).chain(both(16..=128)).collect()
@@ -53,6 +55,11 @@ impl Effect for PolePeriod {
             columns.extend(view.harmonic(Signal::Position, 2.0 * shape[0]));
         }
         columns
+    }
+
+    fn traits(&self) -> Traits {
+        let unseen = Some("with one pole pair it is the sum of harmonic_1 and harmonic_2, which represent it");
+        Traits { unseen, ..Traits::default() }
     }
 
     fn symbolic(&self, form: &FittedForm) -> Symbolic {

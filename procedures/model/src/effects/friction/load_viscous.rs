@@ -13,7 +13,7 @@ static INFO: EffectInfo = EffectInfo {
     id: "load_viscous",
     kind: Kind::Friction,
     title: "Load-dependent viscous friction",
-    sentence: "Viscous friction increases with the load.",
+    sentence: "Viscous friction changes with the load.",
     formula: "c_l·|τ_link/N|·ω",
     source: "Bittencourt et al. 2010",
     looks: "a line over speed whose slope grows with the load",

@@ -96,7 +96,8 @@ pub fn spikes(run: &RunTable) -> Option<String> {
         let every = values.len().div_ceil(crate::preprocess::INFORMATIVE_ROWS);
         let usual = crate::preprocess::median(values.windows(2).step_by(every).map(|pair| (pair[1] - pair[0]).abs()));
         let (low, high) = middle_of(values.iter().step_by(every).copied().collect());
-        let least = (SPIKE_CHANGES * usual).max(SPIKE_RANGE * (high - low));
+        // A reading that flickers by one count of its resolution is no outlier.
+        let least = (SPIKE_CHANGES * usual).max(SPIKE_RANGE * (high - low)).max(1.5 * count(values).unwrap_or(0.0));
         let is_alone = |w: &[f64]| {
             let (before, after) = (w[1] - w[0], w[1] - w[2]);
             let off = before.abs().min(after.abs());
@@ -117,11 +118,17 @@ pub fn spikes(run: &RunTable) -> Option<String> {
             count => (format!("{count} samples that stand alone, the first"), "them"),
         };
         Some(format!(
-            "{name} has {samples} at {:.3} s with {}: what is fitted bends towards {them}; check the cable, or leave {them} out",
+            "{name} has {samples} at {:.3} s with {}: the fit bends towards {them}; check the cable, or leave {them} out",
             time_s[first],
             figure(values[first], &unit)
         ))
     })
+}
+
+/// Smallest change after which a reading stays for a sample, as a coarse reading does. `None` for readings that never stay.
+fn count(values: &[f64]) -> Option<f64> {
+    let stays = values.windows(3).filter(|w| w[0] != w[1] && w[1] == w[2]);
+    stays.map(|w| (w[1] - w[0]).abs()).min_by(f64::total_cmp)
 }
 
 /// The range of all values but 1 % at each end.
@@ -183,6 +190,23 @@ mod tests {
         };
         assert_eq!(reported(3.0, 25.0), None);
         assert!(reported(3.0, 1e30).is_some_and(|reported| reported.starts_with("temperature_c has one sample")));
+    }
+
+    #[test]
+    fn a_reading_that_flickers_by_one_count_has_no_outlier() {
+        let names = ["time_s", "motor_position_rad", "motor_current_a", "temperature_c"];
+        let warming = |warmest: f64| {
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            for i in 0..4000 {
+                let t = 0.004 * f64::from(i);
+                let count = f64::from(i / 2000) + f64::from(u8::from(i % 150 == 20));
+                let warm = if i == 1234 { warmest } else { 25.0 + 0.05 * count };
+                trace.push_row(&[t, 30.0 * (0.5 * t).sin(), 0.4 * (0.5 * t).cos(), warm]);
+            }
+            spikes(&RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap())
+        };
+        assert_eq!(warming(25.0), None);
+        assert!(warming(27.0).is_some_and(|reported| reported.starts_with("temperature_c has one sample")));
     }
 
     #[test]

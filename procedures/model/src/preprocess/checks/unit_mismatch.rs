@@ -140,7 +140,8 @@ fn clash(run: &RunTable, blocks: &[Block], one: &str, other: &str, ratio: f64) -
             .map(|text| Contradiction { is_fatal: false, text });
     }
     let what = if ratio == 1.0 { String::new() } else { format!(" with the gear ratio of {ratio}") };
-    let text = format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign");
+    let text =
+        format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit, sign or scale");
     Some(Contradiction::fatal(text))
 }
 

@@ -2,7 +2,7 @@
 
 use crate::effects::friction::coulomb;
 use crate::report::diagnosis::NoiseFloor;
-use crate::report::fit::Fit;
+use crate::report::fit::{Fit, ParameterState};
 use crate::report::maps::Region;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::maps::binned_axis::BinnedAxis;
@@ -32,9 +32,10 @@ impl ReferenceMagnitude {
     }
 }
 
-/// Coulomb friction if the model has it, otherwise the noise floor.
+/// Coulomb friction if the run identifies it, otherwise the noise floor.
 pub fn reference(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<ReferenceMagnitude> {
-    let coulomb = fit.parameters.iter().find(|p| p.effect == coulomb::ID && p.value > 0.0);
+    let coulomb =
+        fit.parameters.iter().find(|p| p.effect == coulomb::ID && p.value > 0.0 && p.state == ParameterState::Ok);
     let coulomb = coulomb.map(|p| ReferenceMagnitude { value: p.value, what: "the Coulomb friction" });
     coulomb.or_else(|| {
         let value = floor?.rms.filter(|rms| *rms > 0.0)?;

@@ -38,7 +38,8 @@ pub fn candidates<'l, 'p>(
     let mut judge_without = |kind: FormErrorKind, of: &[&'l Regressor<'p>]| {
         if !of.is_empty() {
             let (found, _) = evidence(&without(&now.main, solution, kind), of, &near, forms);
-            all.extend(found.into_iter().map(|found| Evidence { form_error_imitates: true, ..found }));
+            let imitated = |found| Evidence { form_error_imitates: true, is_without_form_error: true, ..found };
+            all.extend(found.into_iter().map(imitated));
         }
     };
     if is_delayed(now, solution) {

@@ -30,7 +30,7 @@ use crate::selection::evidence_search::rules::{Figures, Refit};
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::refused::{EvidenceResult, Refused};
-use crate::thresholds::{LEFT_SHARE, MOST_NAMED};
+use crate::thresholds::{LEFT_SHARE, MOST_NAMED, SIMPLER_GAIN};
 use crate::{ModelError, ModelSpec, Options};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -190,11 +190,26 @@ impl<'p> Search<'_, 'p> {
         let mut open = Vec::new();
         for (id, rival) in named.flat_map(|(id, rivals)| rivals.iter().map(move |rival| (id, *rival))) {
             let in_place = || end.effects.iter().map(|e| if e == id { rival.to_owned() } else { e.clone() }).collect();
-            if is_in(id) && !is_in(rival) && self.fits_alike(end, in_place())? {
+            if is_in(id) && !is_in(rival) && self.is_interchangeable(id, in_place())? {
                 open.push((id, rival));
             }
         }
         Ok(open)
+    }
+
+    /// Whether a model of these `effects`, with a rival in the place of an effect of the last model, is as good as the
+    /// last model: it has most of the error reduction, and neither predicts left-out blocks significantly better.
+    fn is_interchangeable(&self, id: &str, effects: Vec<String>) -> Result<bool, ModelError> {
+        let end = self.path.end();
+        let others = end.effects.iter().filter(|effect| *effect != id).cloned().collect();
+        let without = TwoStageModel::from_candidates(&self.sets, others)?;
+        let instead = TwoStageModel::from_candidates(&self.sets, effects)?;
+        let losses = |model: &TwoStageModel| {
+            Solution::of(&model.main).map_or_else(Vec::new, |solution| solution.validation_losses(&model.main))
+        };
+        let [without, named, rival] = [&without, end, &instead].map(losses);
+        let gain = |of: &[f64]| without.iter().sum::<f64>() - of.iter().sum::<f64>();
+        Ok(gain(&rival) >= SIMPLER_GAIN * gain(&named) && is_tie(&named, &rival) && is_tie(&rival, &named))
     }
 
     fn finish(self, left: Option<Unexplained>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
@@ -234,7 +249,8 @@ fn large_refused<'p>(
             && !large.iter().any(|other| other.effect == effect)
         {
             let least = least_share(found.form_error_imitates);
-            large.push(Refused { effect, gain: found.gain, p_value: found.p_value, least, reason });
+            let Evidence { gain, p_value, is_without_form_error, .. } = *found;
+            large.push(Refused { effect, gain, p_value, least, is_without_form_error, reason });
         }
     }
     large
@@ -248,6 +264,7 @@ fn scored<'p>(found: &Evidence<'_, 'p>, now: &TwoStageModel<'p>, reason: Additio
         validation_losses: found.losses.iter().sum(),
         p_value: found.p_value,
         reason,
+        is_without_form_error: found.is_without_form_error,
         losses: found.losses.clone(),
     }
 }

@@ -36,6 +36,14 @@ pub fn power_balance<'p>(
     }
     let validation_losses = is.iter().sum();
     let reason = AdditionReason::KnownSize;
-    let scored = ScoredCandidate { term, share: gain, validation_losses, p_value, reason, losses: is };
+    let scored = ScoredCandidate {
+        term,
+        share: gain,
+        validation_losses,
+        p_value,
+        reason,
+        is_without_form_error: false,
+        losses: is,
+    };
     Some(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after })
 }
