@@ -59,7 +59,7 @@ fn a_delayed_torque_is_named_with_its_delay() {
     let found = diagnosed(&run);
     let named: Vec<&str> = found.suggestions.iter().map(|s| s.effect.as_str()).collect();
     assert_eq!(named, ["signal_delay"], "{}", found.summary);
-    assert!(found.summary.contains("It acts on ramps"), "{}", found.summary);
+    assert!(found.summary.contains("signal_delay acts on ramps"), "{}", found.summary);
     let spec = ModelSpec::parse(Kind::Friction, "inertia,coulomb,viscous").unwrap();
     let end = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
     let of = |effect: &str| end.fit.parameters.iter().find(|p| p.effect == effect).unwrap();

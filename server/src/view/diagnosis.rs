@@ -115,7 +115,7 @@ pub enum UndecidedReason {
     TooFewBlocks,
     /// The repeatability of the run is not known.
     NoNoiseFloor,
-    /// The validation error is far above the noise floor, and no test shows its origin.
+    /// The validation error is far above the noise floor, and no effect or function of one axis explains it.
     AboveNoiseFloor,
     /// A parameter contradicts physics in every model.
     ImpossibleParameter,
@@ -281,7 +281,7 @@ pub struct Invisible {
 pub enum InvisibleReason {
     /// The run lacks a signal or an excitation that the effect needs.
     NotExcited,
-    /// In this data it has the shape of effects of the model.
+    /// In this data it is indistinguishable from effects of the model.
     Confounded,
     /// It acts on ramps only, which are tested for a delay only.
     RampsOnly,

@@ -19,7 +19,7 @@ pub enum UndecidedReason {
     TooFewBlocks,
     /// The noise floor is not known.
     NoNoiseFloor,
-    /// The validation error is far above the noise floor, and no test shows its origin.
+    /// The validation error is far above the noise floor, and no effect or function of one axis explains it.
     AboveNoiseFloor,
     /// A parameter is physically impossible in every model.
     ImpossibleParameter,

@@ -125,10 +125,10 @@ pub fn spikes(run: &RunTable) -> Option<String> {
     })
 }
 
-/// Smallest change after which a reading stays for a sample, as a coarse reading does. `None` for readings that never stay.
+/// Smallest change between readings that stay, as coarse readings do. `None` for readings that never stay.
 fn count(values: &[f64]) -> Option<f64> {
-    let stays = values.windows(3).filter(|w| w[0] != w[1] && w[1] == w[2]);
-    stays.map(|w| (w[1] - w[0]).abs()).min_by(f64::total_cmp)
+    let stays = values.windows(4).filter(|w| w[0] == w[1] && w[1] != w[2] && w[2] == w[3]);
+    stays.map(|w| (w[2] - w[1]).abs()).min_by(f64::total_cmp)
 }
 
 /// The range of all values but 1 % at each end.

@@ -7,7 +7,7 @@ use crate::report::maps::Region;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::maps::binned_axis::BinnedAxis;
 use crate::residual_analysis::maps::map::{Cell, Map};
-use crate::thresholds::{AXIS_DOMINATES, AXIS_SHADOW, REGION_OVERLAP, REGION_WORSE};
+use crate::thresholds::{AT_REST, AXIS_DOMINATES, AXIS_SHADOW, REGION_OVERLAP, REGION_WORSE};
 use crate::words::{direction_text, figure, percent, spoken_axis};
 use jointbench_instrument::Kind;
 
@@ -184,7 +184,7 @@ impl Stretch<'_> {
         }
     }
 
-    /// `below 9.0 rad/s`, `near 2.4 Nm`, `between a link position of 1.1 rad and 1.3 rad`.
+    /// `at rest`, `below 9.0 rad/s`, `near 2.4 Nm`, `between a link position of 1.1 rad and 1.3 rad`.
     fn place(&self, kind: Kind, x: &BinnedAxis) -> String {
         if x.name == "direction" {
             return direction_text(kind, x.bins[self.first].centre > 0.0).into();
@@ -197,6 +197,9 @@ impl Stretch<'_> {
         }
         // Rounding of a computed signal is zero.
         let widest = x.bins.iter().flat_map(|bin| [bin.from.abs(), bin.to.abs()]).fold(0.0, f64::max);
+        if x.name.ends_with("velocity_rad_s") && from.abs().max(to.abs()) < AT_REST * widest {
+            return "at rest".into();
+        }
         let say = |value: f64| figure(if value.abs() < f64::EPSILON * widest { 0.0 } else { value }, &x.unit);
         let quantity = spoken_axis(&x.name, kind);
         let article = if quantity.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" };
