@@ -69,8 +69,8 @@ levels! {
 }
 
 thresholds! {
-    /// Thresholds of the decision, in the order of the documents.
-    ALL:
+    /// Thresholds of the decision, in the order of the documents: which effects are named, and the verdict.
+    DECISION:
     ALPHA = 0.05, "probability", "family-wise error of everything that is named or shown (`Options::alpha`)", "convention; `evaluate --part null` measures 0.4 %";
     PRACTICAL_SHARE = 0.02, "fraction of squared error", "smallest fraction of the remaining error that is worth a name (`Options::practical_share`), or shows in a map", "`evaluate --part power`";
     FLIPS = 499.0, "sign flips", "permutations of the max-T test (`Options::flips`)", "smallest p-value 0.002";
@@ -113,25 +113,34 @@ thresholds! {
     FLOOR_INTERVAL_RATIO = 3.0, "ratio", "a noise floor with a wider interval is only about", "`--test repeats`";
     SCATTER_BAND = 0.3, "fraction of alpha", "error probability of a band that calls scatter structure", "220 null runs with coloured noise";
     AXIS_FUNCTION = NEARLY_ALL, "fraction of squared contribution", "a contribution that its map reproduces to this fraction is a function of the axis", "`--test humps`";
-    REGION_OVERLAP = MOST, "fraction of region", "regions that overlap this much are one failure", "presentation";
-    REGION_WORSE = 1.5, "ratio", "unless one is this much worse", "presentation";
-    AXIS_DOMINATES = HALF, "fraction of squared error", "an axis whose function removes this fraction is where the model fails", "presentation";
-    AXIS_SHADOW = NEARLY_ALL, "fraction of that", "an axis that removes less than this fraction of it is only its shadow", "presentation";
     OWN_SCATTER_SHARE = TENTH, "fraction of variance", "least fraction of the scatter of a score that counts as noise", "`evaluate --part detectable`";
     FOLD_COVERAGE = 0.05, "fraction of squared column", "folds without a fold that hold less do not decide its coefficient", "`--test loops`";
     COMPONENT_OWN_SHARE = NEARLY_ALL, "fraction of gain", "a component that keeps this fraction together with another effect explains something else", "`evaluate --part hidden,null`";
     BETTER_FORM = 0.01, "fraction of squared error a parameter", "another form must take this fraction for each parameter more", "`evaluate --part hidden,null`";
+    WIDE_INTERVAL = 10.0, "ratio", "a nonlinear parameter with a wider interval is not identified", "`--example coverage`";
+    RANGE_MARGIN = 0.02, "fraction of range", "so far beyond the fitted range is not beyond", "presentation";
+}
+
+thresholds! {
+    /// Thresholds of the report and of the next run, in the order of the documents: they change what is said of an effect
+    /// or a region, never which effect is named.
+    REPORT:
+    REGION_OVERLAP = MOST, "fraction of region", "regions that overlap this much are one failure", "presentation";
+    REGION_WORSE = 1.5, "ratio", "unless one is this much worse", "presentation";
+    AXIS_DOMINATES = HALF, "fraction of squared error", "an axis whose function removes this fraction is where the model fails", "presentation";
+    AXIS_SHADOW = NEARLY_ALL, "fraction of that", "an axis that removes less than this fraction of it is only its shadow", "presentation";
     SECOND_AXIS_GAIN = 1.1, "ratio", "a second axis is named where both show this much more", "presentation";
     NOTHING_IN_COMMON = 0.01, "fraction of squared error", "less in common to all repeats is nothing", "presentation";
     LISTED_LOSS = 0.99, "ratio of validation RMS", "a rejected effect is listed where it would lower the error to this ratio", "presentation";
-    STRONG_P_VALUE = 0.01, "probability", "a larger p-value is weak evidence", "convention";
     SMALL_REDUCTION = 0.05, "fraction of validation RMS", "a smaller reduction is small", "presentation";
+    STRONG_P_VALUE = 0.01, "probability", "a larger p-value is weak evidence", "convention";
     MASKED_RATIO = 2.0, "ratio", "effects whose joint gain exceeds this multiple of the single one mask each other", "`evaluate --part hidden,null`";
     TRADE_OFF_CORRELATION = 0.95, "correlation", "parameters that are correlated more trade off, and time that moves so with the temperature is confounded with it", "presentation";
-    WIDE_INTERVAL = 10.0, "ratio", "a nonlinear parameter with a wider interval is not identified", "`--example coverage`";
     COLUMN_CORRELATION = NEARLY_ALL, "correlation", "a column that moves with the temperature may be the cause as well", "presentation";
-    RANGE_MARGIN = 0.02, "fraction of range", "so far beyond the fitted range is not beyond", "presentation";
     BEYOND_SHARE = 0.01, "fraction of points", "fewer points beyond are not listed", "presentation";
+    ELEMENT_WEIGHT = 0.05, "fraction of Coulomb friction", "a bristle with less weight is not stated", "presentation";
+    WIDER_INTERVAL = 1.5, "ratio", "an interval that is so much wider in a comparison is stated", "presentation";
+    FEWER_ROWS = 0.8, "ratio", "and fewer rows, or a smaller error, are the reason", "presentation";
     SEPARATED_Z = 4.0, "standard deviations", "models are separated where their predictions lie this far apart", "`--test next_run`";
     USELESS_Z = 1.0, "standard deviations", "a run that separates less is not recommended", "`--test next_run`";
     NEARLY_COVERED = NEARLY_ALL, "fraction of speed or load", "so much of a speed or load is as good as all of it", "presentation";
@@ -180,11 +189,8 @@ thresholds! {
     SEVERAL_SPEEDS = 1.2, "ratio", "speeds of a brake with a smaller ratio are one", "`evaluate --part hidden`";
     KURTOSIS_ERRORS = 4.0, "standard errors", "changes of an offset with a larger excess kurtosis are events and no random walk", "`--test repeats`";
     NO_CURRENT = 0.02, "fraction of largest current", "a smaller current of a brake is zero", "`--test iron`";
-    ELEMENT_WEIGHT = 0.05, "fraction of Coulomb friction", "a bristle with less weight is not stated", "presentation";
     DRIVE_AXIS = NEARLY_ALL, "fraction", "the map over the motor torque, which follows from the motion, is ranked by this fraction of what it removes", "presentation";
     TIME_AXIS = NEARLY_ALL, "correlation", "an axis that correlates more with time is time", "presentation";
-    WIDER_INTERVAL = 1.5, "ratio", "an interval that is so much wider in a comparison is stated", "presentation";
-    FEWER_ROWS = 0.8, "ratio", "and fewer rows, or a smaller error, are the reason", "presentation";
 }
 
 thresholds! {
@@ -225,11 +231,18 @@ thresholds! {
     HELD_IN_COMMON = HALF, "fraction of variance", "the twist of a clamped joint has so much in common with the torque", "`field-cases`";
 }
 
-/// The tables of docs/diagnosis.md: levels, thresholds of the decision, of the signals, and of the data checks.
-pub fn tables() -> [String; 4] {
+/// The tables of docs/diagnosis.md: levels, thresholds of the decision, of the report, of the signals, and of the data
+/// checks.
+pub fn tables() -> [String; 5] {
     let level = |l: &Level| format!("| {} | {} | {} |\n", l.name, l.value, l.meaning);
     let levels: String = LEVELS.iter().map(level).collect();
-    [format!("| level | value | means |\n| --- | --- | --- |\n{levels}"), table(ALL), table(SIGNALS), table(CHECKS)]
+    [
+        format!("| level | value | means |\n| --- | --- | --- |\n{levels}"),
+        table(DECISION),
+        table(REPORT),
+        table(SIGNALS),
+        table(CHECKS),
+    ]
 }
 
 /// One list as the documents show it.
@@ -258,8 +271,14 @@ mod tests {
 
     #[test]
     fn no_two_thresholds_share_a_name() {
-        let mut names: Vec<&str> =
-            ALL.iter().chain(SIGNALS).chain(CHECKS).map(|t| t.name).chain(LEVELS.iter().map(|l| l.name)).collect();
+        let mut names: Vec<&str> = DECISION
+            .iter()
+            .chain(REPORT)
+            .chain(SIGNALS)
+            .chain(CHECKS)
+            .map(|t| t.name)
+            .chain(LEVELS.iter().map(|l| l.name))
+            .collect();
         names.sort_unstable();
         assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
     }

@@ -171,5 +171,5 @@ fn advice_names_the_axis_of_the_summary_as_a_formula_does() {
     assert!(text.contains("it is largest over motor velocity and link torque, and a function"), "{text}");
     assert!(text.contains("as a formula of velocity and load with --own"), "{text}");
     let text = stdout(&run_in(folder.path(), &["diagnose", "run.csv"]));
-    assert!(text.contains("ΔBIC below 0") && !text.contains("as a formula of"), "{text}");
+    assert!(text.contains("ΔBIC of each effect alone") && !text.contains("as a formula of"), "{text}");
 }

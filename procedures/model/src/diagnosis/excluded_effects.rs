@@ -2,6 +2,7 @@
 //! omitted.
 
 use crate::effect::{Effect, Form, Regime, ShapeSearch};
+use crate::effects::excitation;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::Silent;
 use crate::report::reasons::{Invisible, InvisibleReason, LeftOut, RejectionReason};
@@ -80,22 +81,6 @@ fn sought(effect: &dyn Effect, end: &TwoStageModel) -> Option<String> {
     match least < most {
         true => Some(format!("{least} to {most} {waves} a turn")),
         false => least.is_finite().then(|| format!("{least} {waves} a turn")),
-    }
-}
-
-/// Excitation of a run that would distinguish the effect from others.
-pub fn excitation(effect: &dyn Effect) -> &'static str {
-    let needs = |column: &str| effect.info().needs.contains(&column);
-    match effect.traits().regime {
-        Regime::Hysteresis => "slow reversals over many steps of the encoder",
-        Regime::Transient => "faster changes of the speed",
-        Regime::SteadyState if effect.traits().wave.is_some() => {
-            "more of a turn of that angle, slowly, in both directions"
-        }
-        Regime::SteadyState if needs("temperature_c") => "the same motion at another temperature",
-        Regime::SteadyState if needs("link_torque_nm") => "the same speeds under other loads",
-        Regime::SteadyState if needs("link_position_rad") => "more of a turn of the link",
-        Regime::SteadyState => "more speeds, in both directions, repeated at other times",
     }
 }
 

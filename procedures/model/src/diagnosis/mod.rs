@@ -5,6 +5,7 @@ pub(crate) mod excluded_effects;
 pub(crate) mod findings;
 pub(crate) mod narrative;
 pub(crate) mod rejected;
+pub(crate) mod remaining;
 pub(crate) mod reversals;
 
 use crate::diagnosis::findings::Findings;
@@ -349,7 +350,7 @@ fn shows_over(found: &Findings) -> Vec<String> {
         return Vec::new();
     }
     let shown = found.maps.structure(&found.start.prepared.main);
-    narrative::shown_over(found, shown.as_ref()).unwrap_or_default().0
+    remaining::shown_over(found, shown.as_ref()).unwrap_or_default().0
 }
 
 /// The recommended next run.

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::findings::Findings;
 use crate::report::reasons::RemovalReason;
-use crate::report::text::{all_marked, marked};
+use crate::report::text::all_marked;
 use crate::selection::removal::Withdrawn;
 use crate::thresholds::LISTED_LOSS;
 use crate::words::{Scale, list};
@@ -39,6 +39,8 @@ pub fn rejected(found: &Findings, unit: &str) -> String {
         (!effects.is_empty()).then(|| format!(" Rejected: {} ({}).", list(&all_marked(&effects)), why.words()))
     });
     let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_confounded(r.effect));
-    let refused = refused.map(|refused| format!(" Rejected: {} ({}).", marked(refused.effect), refused.words()));
+    let refused: Vec<&str> = refused.map(|refused| refused.effect).collect();
+    let refused =
+        (!refused.is_empty()).then(|| format!(" Rejected (reasons in the list): {}.", list(&all_marked(&refused))));
     open.into_iter().chain(for_reason).chain(refused).collect()
 }

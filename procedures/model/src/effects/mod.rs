@@ -8,7 +8,7 @@ pub(crate) mod stiffness;
 pub use crate::effects::friction::teeth::{ONLY_WEIGHT, WITH_WEIGHT};
 
 use crate::ModelError;
-use crate::effect::{Effect, Form, Shape, ShapeSearch};
+use crate::effect::{Effect, Form, Regime, Shape, ShapeSearch};
 use crate::signal::Signal;
 use crate::thresholds::{FOLLOWED_ROWS, PERIODS_SEEN, WHOLE_TURN};
 use crate::view::View;
@@ -152,6 +152,22 @@ pub(crate) fn one_more_harmonic(form: &Form) -> Option<(&'static str, Form<'stat
     let shape = SHAPE.get(..count)?.iter().map(shape).collect();
     let form = Form { name: SEVERAL_HARMONICS, linear: LINEAR[..2 * count].to_vec(), shape, grid: Vec::new() };
     Some((SEVERAL_HARMONICS, form))
+}
+
+/// Excitation of a run that would distinguish the effect from others.
+pub(crate) fn excitation(effect: &dyn Effect) -> &'static str {
+    let needs = |column: &str| effect.info().needs.contains(&column);
+    match effect.traits().regime {
+        Regime::Hysteresis => "slow reversals over many steps of the encoder",
+        Regime::Transient => "faster changes of the speed",
+        Regime::SteadyState if effect.traits().wave.is_some() => {
+            "more of a turn of that angle, slowly, in both directions"
+        }
+        Regime::SteadyState if needs("temperature_c") => "the same motion at another temperature",
+        Regime::SteadyState if needs("link_torque_nm") => "the same speeds under other loads",
+        Regime::SteadyState if needs("link_position_rad") => "more of a turn of the link",
+        Regime::SteadyState => "more speeds, in both directions, repeated at other times",
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Upper limits of effects that were not found, and effects that a run could hardly show.
 
-use crate::diagnosis::excluded_effects::excitation;
-use crate::effects;
+use crate::effects::{self, excitation};
 use crate::report::diagnosis::{Diagnosis, Discovery, Silent};
 use crate::report::fit::Fit;
 use crate::report::reasons::{Invisible, InvisibleReason};

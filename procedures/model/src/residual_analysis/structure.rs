@@ -27,9 +27,9 @@ const LINE_STEPS: i32 = 4;
 /// Averaging time of neighbouring means [s]. Events of a second leave no correlation between longer means.
 pub const MEANS_S: f64 = 0.5;
 
-/// Shape of the structure that remains.
+/// Pattern of the structure that remains.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
+pub enum Pattern {
     /// A function of these signals.
     Function(Vec<Signal>),
     /// A wave in time, with its frequency [Hz].
@@ -41,7 +41,7 @@ pub enum Shape {
 /// Structure that remains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unexplained {
-    pub shape: Shape,
+    pub pattern: Pattern,
     /// Share of the squared validation error that a function explains, of the squared residual that a wave explains, or
     /// covariance of neighbouring means as a share of the variance.
     pub share: f64,
@@ -57,20 +57,20 @@ pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> 
     let judged: Vec<(f64, f64)> = all.par_iter().map(|axis| reduction(ridge, axis)).collect();
     let shows = |share: f64, errors: f64| share > LEFT_SHARE && errors > CLEAR_ERRORS;
     let axes = all.iter().zip(&judged).filter(|(_, (share, errors))| shows(*share, *errors));
-    let mut found: Vec<(Option<&Functions>, Shape, f64)> =
-        axes.map(|(axis, (share, _))| (Some(axis), Shape::Function(axis.over.clone()), *share)).collect();
+    let mut found: Vec<(Option<&Functions>, Pattern, f64)> =
+        axes.map(|(axis, (share, _))| (Some(axis), Pattern::Function(axis.over.clone()), *share)).collect();
     let weighted = clipped(&solution.residual, &solution.weight);
     let row_s = model.problem.form_error.as_deref().map_or(1.0, |e| e.row_s);
     let direction = model.problem.reduce.apply(model.problem.view.get(Signal::Direction).to_vec());
     let [plain, turned] = neighbours(&weighted, &direction, row_s);
     let (hz, wave) = line(&weighted, model.problem, row_s);
-    let over_time = [(Shape::Wave(hz), wave), (Shape::Correlation, plain), (Shape::Correlation, turned)];
+    let over_time = [(Pattern::Wave(hz), wave), (Pattern::Correlation, plain), (Pattern::Correlation, turned)];
     let over_time = over_time.into_iter().filter(|(_, (share, errors))| shows(*share, *errors));
-    found.extend(over_time.map(|(shape, (share, _))| (None, shape, share)));
-    let (axis, shape, share) = found.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
+    found.extend(over_time.map(|(pattern, (share, _))| (None, pattern, share)));
+    let (axis, pattern, share) = found.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
     let grew = start.effects.len() < end.effects.len();
     let is_all = axis.filter(|_| grew).is_some_and(|axis| explains_all(axis, start, end, solution));
-    Some(Unexplained { shape, share, is_all })
+    Some(Unexplained { pattern, share, is_all })
 }
 
 fn taken(ridge: &BlockedRidge, axis: &Functions) -> Vec<f64> {
