@@ -100,4 +100,9 @@ fn a_current_between_position_and_velocity_has_no_delay() {
 fn contacts_that_bend_are_seen_at_reversals() {
     let (named, found) = diagnosed(0, 0.4);
     assert_eq!(named, ["presliding"], "{}", found.summary);
+    // Presliding is the direction of its model, not a term of it: without it, the last model is the given one.
+    let one = &found.suggestions[0];
+    let (alone, together) = (one.error_reduction, one.error_reduction_together);
+    assert!(alone != 0.0 && (together - alone).abs() < 1e-9, "{alone} alone, {together} together");
+    assert!(one.reasons.starts_with("Without the nuisance terms that imitate it, "), "{}", one.reasons);
 }

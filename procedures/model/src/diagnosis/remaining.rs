@@ -85,3 +85,18 @@ pub fn shown_over(found: &Findings, shown: Option<&PairMap>) -> Option<(Vec<Stri
     let most = pair.or(axis);
     most.filter(|(_, share)| *share > PRACTICAL_SHARE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::Signal;
+
+    #[test]
+    fn a_wave_and_slow_changes_are_no_functions_of_time() {
+        let text = |pattern| over_time(&Unexplained { pattern, share: 0.34, is_all: false });
+        assert_eq!(text(Pattern::Function(vec![Signal::Velocity])), None);
+        assert_eq!(text(Pattern::Wave(0.7)).as_deref(), Some("34 % of the squared residual is a wave of 0.70 Hz"));
+        let slow = text(Pattern::Correlation).unwrap_or_default();
+        assert!(slow.starts_with("neighbouring means of the residual over 0.50 s are correlated"), "{slow}");
+    }
+}
