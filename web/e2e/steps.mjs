@@ -212,7 +212,7 @@ export async function firstUse(page, base) {
 	expect(await started.then(() => false, () => true), 'Enter in a field starts the bench, which only its button may');
 	// A slow line: the button is there before the procedures.
 	const procedures = '**/api/v1/procedures?*';
-	await page.route(procedures, (route) => void setTimeout(() => route.continue(), 1500));
+	await page.route(procedures, (route) => void setTimeout(() => route.continue().catch(() => undefined), 1500));
 	await page.goto(`${base}/live`);
 	await page.getByRole('link', { name: 'Start a demo run' }).click();
 	await page.getByRole('button', { name: 'Start a demo run' }).click();
