@@ -5,7 +5,7 @@ use super::error::BenchError;
 use super::item::Item;
 use super::keeper::{Keeper, NEVER_BEGAN};
 use super::shared::{Shared, blocked, lock};
-use super::status::{ActiveRun, Status};
+use super::status::Status;
 use super::supervisor::Supervisor;
 use super::wire::{MemoryRead, Order};
 use crate::config::BenchDescription;
@@ -255,8 +255,9 @@ impl Claim {
         let bench = &self.bench;
         let display = Display::new(bench.alongside(run, &plan).await, plan.rate_hz);
         *lock(&bench.display) = Some(display);
-        bench.shared.status.send_modify(|status| drop(status.runs.insert(run, ActiveRun::queued())));
+        bench.shared.change(|status| status.begin(run));
         bench.shared.order(&Order::Run { run, plan: Box::new(plan) }).map_err(|_| {
+            bench.shared.change(Status::set_idle);
             let item = Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN };
             if bench.shared.to_keep.send(item).is_err() {
                 tracing::error!(run.id = run, "the storage thread has ended");

@@ -101,6 +101,13 @@ impl Status {
         }
     }
 
+    /// The bench belongs to a run from now on, although its worker has not begun it yet.
+    pub(super) fn begin(&mut self, run: RunId) {
+        self.runs.insert(run, ActiveRun::queued());
+        self.run = Some(run);
+        self.state = BenchState::Running;
+    }
+
     /// Sets the state of an idle bench from its block and its instruments.
     pub(super) fn set_idle(&mut self) {
         self.state = match &self.blocked {

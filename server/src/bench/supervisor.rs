@@ -5,7 +5,7 @@ use super::instruments::unreached;
 use super::item::Item;
 use super::keeper::NEVER_BEGAN;
 use super::shared::{Shared, lock};
-use super::status::{ActiveRun, FAULTS, NewFault, RunFault};
+use super::status::{ActiveRun, FAULTS, NewFault, RunFault, Status};
 use super::wire::{self, Entry, Order, Report, Setup};
 use crate::store::SafetyRecord;
 use crate::view::{self, BenchState, InstrumentFault, LiveMessage, state_view};
@@ -136,6 +136,7 @@ impl Supervisor {
             }
             Report::Ended { run, end } => self.ended(run, &end),
             Report::NotBegun { run } => {
+                shared.change(Status::set_idle);
                 self.enqueue(Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN });
             }
             Report::DiskFull(full) => {
