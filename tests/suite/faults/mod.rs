@@ -1,11 +1,14 @@
 //! The short fault suite: the scenarios of `cargo run -p jointbench-tests --bin faults` with fixed seeds. The time
 //! limits are for a busy machine.
 
+use jointbench_tests::lab::{BENCH, Lab};
 use jointbench_tests::outcome::{Outcome, table};
 use jointbench_tests::trouble::Trouble;
 use jointbench_tests::{deaths, history, presses, stops};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use rustix::process::{Signal, kill_process};
+use serde_json::Value;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -91,4 +94,28 @@ fn after_any_crash_the_bench_is_secured_and_no_acknowledged_data_is_lost() {
 fn a_history_of_concurrent_clients_holds() {
     let _alone = alone();
     check(&[history::histories(OPERATIONS, SEED, &say)]);
+}
+
+/// A worker under load begins a run later than the daemon acknowledges it. Stopped, it does not begin at all.
+#[test]
+fn an_acknowledged_run_has_its_bench_before_the_worker_begins_it() {
+    let _alone = alone();
+    let mut lab = Lab::new(None);
+    lab.start();
+    for end in [Signal::CONT, Signal::KILL] {
+        lab.reset();
+        let worker = lab.worker().expect("a worker");
+        kill_process(worker, Signal::STOP).expect("the worker runs");
+        let run = lab.start_run("friction");
+        let bench = lab.bench();
+        lab.client().post(&format!("/bench/{BENCH}/stop"), &Value::Null);
+        kill_process(worker, end).expect("the worker exists");
+        assert_eq!((&bench["state"], &bench["run"]), (&"running".into(), &run.into()), "{bench}");
+        lab.wait(Duration::from_secs(60), "the run to end", || !lab.run(run)["safe"].is_null());
+        let ended = lab.run(run);
+        assert!(ended["rows"] == 0 && ended["state"] != "completed", "{ended}");
+        lab.wait(Duration::from_secs(60), "the bench", || lab.bench()["state"] == "stopped");
+        assert!(lab.bench()["run"].is_null(), "{}", lab.bench());
+    }
+    lab.reset();
 }
