@@ -71,7 +71,7 @@ fn a_temperature_that_only_rose_with_time_is_no_drift_until_a_run_decides() {
     let found = diagnosed(&run);
     let why = &found.suggestions[0].why;
     assert!(
-        why.contains("temperature_c moves with time in this data (r = 1.00): it is confounded with a drift over time"),
+        why.contains("temperature_c moves with time in this data (r = 1.00): a drift over time looks almost the same"),
         "{why}"
     );
     let ask = |run: &RunTable, found: &Diagnosis, menu: &[Choice]| -> Next {

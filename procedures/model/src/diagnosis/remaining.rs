@@ -13,7 +13,9 @@ use crate::words::{figure, list, percent, spoken_axis};
 pub fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
     let error = figure(end.validation_rms, &end.unit);
     let repeats = match found.floor.repeatable_share {
-        Some(share) if share < NOTHING_IN_COMMON => ", none of it repeatable".to_owned(),
+        Some(share) if share < NOTHING_IN_COMMON => {
+            format!(", less than {} of it repeatable", percent(NOTHING_IN_COMMON))
+        }
         Some(share) => format!(", {} of it repeatable", percent(share)),
         None => String::new(),
     };

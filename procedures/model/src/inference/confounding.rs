@@ -21,7 +21,7 @@ pub fn instead(effect: &dyn Effect, prepared: &Prepared) -> Vec<String> {
         format!("{column} moves with {TEMPERATURE} in this data (r = {r:.2}), and may be the cause as well")
     });
     let time = drift(prepared).map(|r| {
-        format!("{TEMPERATURE} moves with time in this data (r = {r:.2}): it is confounded with a drift over time")
+        format!("{TEMPERATURE} moves with time in this data (r = {r:.2}): a drift over time looks almost the same")
     });
     columns.chain(time).collect()
 }

@@ -36,14 +36,14 @@ pub(super) fn least_whole<'s, 'p: 's>(
         let explained = 1.0 - full / dot(&residual, &residual);
         let any =
             Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options), axis)?;
-        Some((term.id(), explained / any / least_share(term, now.problem)))
+        Some((term.id(), explained / any / share_of_whole(term, now.problem)))
     };
     let least = terms.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1))?;
     (least.1 < 1.0).then_some(least.0)
 }
 
 /// Least share of a free function of its axis that an effect has to explain.
-fn least_share(term: &Term, problem: &Problem) -> f64 {
+fn share_of_whole(term: &Term, problem: &Problem) -> f64 {
     let wave = term.effect.traits().wave.zip(term.shape.first());
     match wave.is_some_and(|(angle, order)| order * problem.view.turns(angle) < PERIODS_SEEN) {
         true => WHOLE_CURVE,
