@@ -32,10 +32,7 @@ fn one_daemon_has_the_folder_until_its_terminal_is_closed() {
     // Only an orderly end removes the write-ahead log.
     let until = Instant::now() + Duration::from_secs(30);
     while data.join("jointbench.db-wal").exists() {
-        assert!(
-            Instant::now() < until,
-            "the daemon ends when its terminal does (under nohup it does not, nor does this test pass)"
-        );
+        assert!(Instant::now() < until, "the daemon ends when its terminal does; this test cannot run under nohup");
         std::thread::sleep(Duration::from_millis(50));
     }
     assert_eq!(verify(&data).0, Some(0));
