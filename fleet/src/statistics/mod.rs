@@ -8,8 +8,7 @@ pub mod shift;
 
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-/// Half width of a 95 % interval of a normal estimate, in standard errors.
-pub const Z95: f64 = 1.959_963_984_540_054;
+pub use jointbench_model::stats::proportion::Z95;
 
 /// Two-sided p-value of a standard normal statistic.
 pub fn normal_p_value(z: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! A share with its interval.
 
-use super::Z95;
+use jointbench_model::stats::proportion::wilson_interval;
 use serde::Serialize;
 
 /// Number of units with a property.
@@ -19,19 +19,15 @@ pub struct Share {
 impl Share {
     /// The score interval: it contains only possible shares, also for a count of 0.
     pub fn new(count: usize, of: usize) -> Self {
-        if of == 0 {
-            return Self { count, of, share: 0.0, ci95: [0.0, 1.0] };
-        }
-        let (n, share, square) = (of as f64, count as f64 / of as f64, Z95 * Z95);
-        let middle = (share + square / (2.0 * n)) / (1.0 + square / n);
-        let half = Z95 / (1.0 + square / n) * (share * (1.0 - share) / n + square / (4.0 * n * n)).sqrt();
-        Self { count, of, share, ci95: [(middle - half).max(0.0), (middle + half).min(1.0)] }
+        let share = if of == 0 { 0.0 } else { count as f64 / of as f64 };
+        Self { count, of, share, ci95: wilson_interval(count as u64, of as u64) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::Z95;
 
     #[test]
     fn the_interval_solves_the_score_equation() {

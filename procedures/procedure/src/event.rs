@@ -5,9 +5,10 @@ use jointbench_instrument::roles::Identity;
 use jointbench_instrument::{Breach, Fault};
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use utoipa::ToSchema;
 
 /// Result of securing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Safe {
     /// Commanded and verified: drive disarmed, shaft at rest, no brake current.

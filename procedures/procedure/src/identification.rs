@@ -3,8 +3,9 @@
 
 use crate::recorder::RunId;
 use crate::state::RunState;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+use utoipa::ToSchema;
 
 /// Whether the run has reached its purpose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -28,7 +29,7 @@ pub struct Identification {
     /// number of the run, which [`Self::of_run`] inserts.
     pub summary: String,
     /// The summary without the outcome against a data sheet and without the lines of the parts, which `passes` and
-    /// `parts` state separately. `None`: the summary contains neither.
+    /// `parts` state separately. Absent: the summary contains neither.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lead: Option<String>,
     /// What to measure or correct next, with commands in the same form.
@@ -135,18 +136,19 @@ fn signed(text: &str) -> String {
 }
 
 /// A run whose parameters were determined by this one.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FollowUp {
     /// Id of the procedure.
-    pub procedure: &'static str,
+    pub procedure: String,
     /// Its parameters; the others keep their defaults.
+    #[schema(value_type = Object)]
     pub parameters: Map<String, Value>,
     /// Its purpose, in a few words.
-    pub why: &'static str,
+    pub why: String,
 }
 
 /// One figure of a result, in SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Quantity {
     /// Stable and unique in its identification: `tau_c_positive`. Scripts and limits depend on it.
     pub name: String,
@@ -154,18 +156,19 @@ pub struct Quantity {
     pub symbol: String,
     /// In words: "Coulomb friction, positive direction".
     pub title: String,
-    /// The title without the part of a campaign and without the configuration: "Coulomb friction". `None`: the title
+    /// The title without the part of a campaign and without the configuration: "Coulomb friction". Absent: the title
     /// contains neither.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base_title: Option<String>,
     /// The direction or method for which it holds: "positive direction".
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub configuration: Option<String>,
     /// SI symbol; empty for a share or a count.
     pub unit: String,
     /// Estimate, in the unit of the quantity.
     pub value: f64,
     /// 95 % interval, if the run determines one.
+    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
     pub ci95: Option<[f64; 2]>,
 }
 
@@ -184,7 +187,7 @@ impl Quantity {
 }
 
 /// A plot of a result.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Figure {
     /// Stable and unique in its identification.
     pub name: String,
@@ -201,8 +204,9 @@ pub struct Figure {
 }
 
 /// Coordinates of a figure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
+#[schema(as = FigureForm)]
 pub enum Form {
     /// x to the right, y upwards.
     Cartesian,
@@ -211,14 +215,15 @@ pub enum Form {
 }
 
 /// An axis of a figure.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = FigureAxis)]
 pub struct Axis {
     /// The quantity, in words.
     pub label: String,
     /// SI symbol; empty for a share or a count.
     pub unit: String,
     /// Names of the items if the axis counts items instead of a quantity: 0 is the first.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub names: Vec<String>,
 }
 
@@ -235,7 +240,7 @@ impl Axis {
 }
 
 /// How a series is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Mark {
     /// Separate points.
@@ -247,7 +252,7 @@ pub enum Mark {
 }
 
 /// What a series means in its figure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SeriesRole {
     /// An error before it is compensated.
@@ -259,15 +264,16 @@ pub enum SeriesRole {
 }
 
 /// One data set of a figure.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = FigureSeries)]
 pub struct Series {
     /// Its name in the legend.
     pub label: String,
-    /// Series that belong together, such as points and their model, have the same group. `None`: its label.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Series that belong together, such as points and their model, have the same group. Absent: its label.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// Its meaning, if the figure or its page depends on it.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub role: Option<SeriesRole>,
     /// How it is drawn.
     pub mark: Mark,
@@ -276,7 +282,8 @@ pub struct Series {
     /// Values on the y axis, in its unit; as many as x.
     pub y: Vec<f64>,
     /// Lower and upper end of the 95 % band at each point; empty without a band.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<Vec<f64>>)]
     pub band: Vec<[f64; 2]>,
 }
 

@@ -5,7 +5,8 @@ use crate::catalogue::procedure;
 use crate::parameter::{Parameter, ParameterKind};
 use crate::plan::{BrakeControl, Drive, Plan, Step};
 use jointbench_instrument::limits::Limited;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Preview of a run before its start.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -30,7 +31,8 @@ impl Preview {
 }
 
 /// One step of a previewed plan.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = PlannedStep)]
 pub struct StepPreview {
     /// The label of the step in the plan.
     pub label: String,
@@ -39,22 +41,22 @@ pub struct StepPreview {
 }
 
 /// The largest value that a plan commands, or is estimated to cause.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Extreme {
     /// The quantity, in words.
-    pub quantity: &'static str,
+    pub quantity: String,
     /// Its unit, as SI symbol.
-    pub unit: &'static str,
+    pub unit: String,
     /// Largest absolute value over the plan.
     pub value: f64,
-    /// `None`: the bench has no such limit.
+    /// Absent: the bench has no such limit.
     pub limit: Option<f64>,
     /// Within its limit.
     pub ok: bool,
 }
 
 /// The set-points as piecewise linear functions, exact.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Setpoints {
     /// Times of the knots, the same for both courses (s).
     pub time_s: Vec<f64>,
@@ -67,7 +69,7 @@ pub struct Setpoints {
 impl Extreme {
     /// Within its limit, with what friction and overshoot take.
     fn leaves_room(&self) -> bool {
-        let taken = match self.quantity {
+        let taken = match self.quantity.as_str() {
             BEFORE_FRICTION => FOR_FRICTION,
             TRAVEL => FOR_OVERSHOOT,
             _ => 0.0,
@@ -84,10 +86,10 @@ impl Extreme {
 }
 
 /// One condition of the start.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Check {
     /// The condition, in words.
-    pub name: &'static str,
+    pub name: String,
     /// The condition is met.
     pub ok: bool,
     /// What was compared, with values.
@@ -140,8 +142,8 @@ impl Plan {
     pub fn extremes(&self, facts: &BenchFacts) -> Vec<Extreme> {
         let constants = &facts.constants;
         let limited = |quantity: Limited, value: f64| Extreme {
-            quantity: quantity.name(),
-            unit: quantity.unit(),
+            quantity: quantity.name().to_owned(),
+            unit: quantity.unit().to_owned(),
             value,
             limit: Some(facts.limits.of(quantity)),
             ok: facts.limits.check(quantity, value).is_ok(),
@@ -164,7 +166,7 @@ impl Plan {
             limited(Limited::LinkTorque, torque_nm),
             limited(Limited::BrakePower, power_w),
             Extreme {
-                quantity: BEFORE_FRICTION,
+                quantity: BEFORE_FRICTION.to_owned(),
                 ..limited(Limited::MotorCurrent, motor_nm / constants.torque_constant_nm_per_a)
             },
         ];
@@ -172,8 +174,8 @@ impl Plan {
             extremes.push(limited(Limited::MotorCurrent, self.top_motor_current_a()));
         }
         extremes.push(Extreme {
-            quantity: TRAVEL,
-            unit: "rad",
+            quantity: TRAVEL.to_owned(),
+            unit: "rad".to_owned(),
             value: travel_rad,
             limit: constants.link_range_rad,
             ok: constants.link_range_rad.is_none_or(|range_rad| travel_rad <= range_rad),
@@ -191,7 +193,7 @@ impl Plan {
         let cannot_feed = feeds && !facts.feeds_forward;
         let mut checks = vec![
             Check {
-                name: "limits",
+                name: "limits".to_owned(),
                 ok: broken.is_empty(),
                 detail: if broken.is_empty() {
                     "all values are within the limits of the bench".into()
@@ -201,7 +203,7 @@ impl Plan {
                 cure: (!broken.is_empty()).then(|| self.within_limits(facts)),
             },
             Check {
-                name: "brake",
+                name: "brake".to_owned(),
                 ok: facts.has_brake || !needs_brake,
                 detail: match (needs_brake, facts.has_brake) {
                     (false, _) => "not needed",
@@ -212,7 +214,7 @@ impl Plan {
                 cure: (needs_brake && !facts.has_brake).then(|| "connect a brake, or plan without load".into()),
             },
             Check {
-                name: "Feed-forward",
+                name: "Feed-forward".to_owned(),
                 ok: !cannot_feed,
                 detail: match (feeds, cannot_feed) {
                     (false, _) => "not needed",
@@ -223,7 +225,7 @@ impl Plan {
                 cure: cannot_feed.then(|| "select a bench with feed-forward, or another procedure".into()),
             },
             Check {
-                name: "rest",
+                name: "rest".to_owned(),
                 ok: self.steps.iter().all(|step| step.velocity.at(0.0) == 0.0 && step.velocity.end() == 0.0),
                 detail: format!("{} steps, each starts and ends at rest", self.steps.len()),
                 cure: None,
@@ -244,7 +246,7 @@ impl Plan {
         let ok = self.steps[at + 1..].iter().any(demagnetises);
         let after = if ok { "demagnetised while turning afterwards" } else { "not demagnetised afterwards" };
         Some(Check {
-            name: "magnetisation",
+            name: "magnetisation".to_owned(),
             ok,
             detail: format!("the brake is magnetised at standstill with {top_a:.3} A and {after}"),
             cure: (!ok).then(|| "end the plan with the steps of demagnetise".into()),
@@ -259,7 +261,7 @@ impl Plan {
             format!("set sample_rate_hz = {rate_hz} or more, or a larger ninter in the bench description")
         };
         Check {
-            name: "set-point interval",
+            name: "set-point interval".to_owned(),
             ok,
             detail: format!(
                 "a command every {:.3} ms, and set-points that are reached in {:.3} ms",

@@ -262,8 +262,8 @@ fn the_dry_run_says_nothing_of_a_brake_where_there_is_none() {
     let (_, _mock, bench) = open(1, false);
     let facts = BenchFacts::of(&bench);
     let preview = procedure("encoder_offset").unwrap().plan(&Default::default(), &facts).unwrap().preview(&facts);
-    let reported: Vec<_> =
-        preview.extremes.iter().map(|one| one.quantity).chain(preview.checks.iter().map(|one| one.name)).collect();
+    let extremes = preview.extremes.iter().map(|one| one.quantity.as_str());
+    let reported: Vec<_> = extremes.chain(preview.checks.iter().map(|one| one.name.as_str())).collect();
     assert!(reported.contains(&"motor velocity") && reported.contains(&"limits"), "{reported:?}");
     assert!(!reported.iter().any(|name| name.contains("brake") || name.contains("torque")), "{reported:?}");
 }
@@ -391,9 +391,9 @@ fn every_edge_is_within_a_step_of_the_stage_and_the_best_place_is_found() {
     let at_m = bench.stage.as_mut().unwrap().pose().unwrap().shift_m[0];
     assert!(at_m.abs() < 1e-6, "{at_m} m");
     let next = procedure("encoder_alignment").unwrap().follow_up(&found).unwrap();
-    let best = run(&mut bench, next.procedure, next.parameters.into());
+    let best = run(&mut bench, &next.procedure, next.parameters.into());
     assert!(best.quantity("harmonic_1").unwrap().value < 0.05 * truth.eccentricity_rad);
-    run(&mut bench, next.procedure, json!({"turns": 4.0}));
+    run(&mut bench, &next.procedure, json!({"turns": 4.0}));
     let back_m = bench.stage.as_mut().unwrap().pose().unwrap().shift_m[0];
     assert!(back_m.abs() < 1e-6, "the sensor was taken back to 0, not to {back_m} m");
     drop(mock);

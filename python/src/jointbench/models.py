@@ -114,6 +114,22 @@ class Blocked(BaseModel):
     """If false, the block is active and is stored as soon as possible."""
 
 
+class Bristles(BaseModel):
+    """
+    A direction that changes over a displacement: weighted stop operators, which slip at ±1, and Dahl elements with
+    exponential approach.
+    """
+
+    band_rad_s: float
+    """Without presliding the direction changes within this speed [rad/s]."""
+
+    reaches_rad: list[float]
+    """Reaches of the stop operators, the shortest first; the Dahl elements have the same without the shortest [rad]."""
+
+    weights: list[float]
+    """Weights of the stop operators, then of the Dahl elements."""
+
+
 class Calibration(BaseModel):
     """Subsequent runs of a bench use the result of this run."""
 
@@ -206,10 +222,19 @@ class ChannelStatistics(BaseModel):
 
 
 class Check(BaseModel):
+    """One condition of the start."""
+
     cure: str | None = None
+    """Advice if the condition is not met."""
+
     detail: str
+    """What was compared, with values."""
+
     name: str
+    """The condition, in words."""
+
     ok: bool
+    """The condition is met."""
 
 
 class Constants(BaseModel):
@@ -250,45 +275,56 @@ DecidedBy = TypeAliasType("DecidedBy", Literal['longer_run', 'too_many_repeats',
 
 
 class DefinedParameter(BaseModel):
-    """A linear parameter is solved for; a nonlinear parameter is searched in its range."""
+    """A parameter of a user effect. Linear parameters are solved for; nonlinear ones are searched for in their range."""
 
     model_config = ConfigDict(
         extra='forbid',
     )
     max: float | None = None
+    """Largest possible value. Absent: as for `min`."""
+
     min: float | None = None
+    """Smallest possible value. Absent: unbounded, for a nonlinear parameter a bound that follows from the data."""
+
     name: str
+    """Name in the formula: a letter, then letters, digits and underscores; not a signal, constant or function."""
+
     start: tuple[float, float] | None = None
-    """Start values of the search, inside the bounds."""
+    """Range of the starting points, inside the bounds."""
 
     unit: str | None = None
-    """`1` if omitted."""
+    """Unit in results, `1` if not given; contradictions with the formula are warnings."""
 
     whole: bool | None = None
-    """A whole number: all values of the range are tested."""
+    """An integer parameter, such as waves in a turn: every value of the range is tested."""
 
 
 class EffectDefinition(BaseModel):
-    """A user-defined effect."""
+    """A user effect as written, not yet checked."""
 
     model_config = ConfigDict(
         extra='forbid',
     )
     formula: str
     """
-    `tau = …` for friction and brake, `error = …` for encoder, `torsion = …` for stiffness; the right-hand side is
-    sufficient.
+    `tau = …` for friction and brake, `error = …` for encoder, `torsion = …` for stiffness, over signals and
+    parameters; the right-hand side alone is sufficient.
     """
 
     id: str
-    """Lower-case letters, digits and underscores; must differ from library ids."""
+    """Lower case letters, digits and underscores; not an id of the library."""
 
     kind: str
+    """Kind of run whose response the formula is a part of."""
+
     parameters: list[DefinedParameter]
+    """Parameters of the formula, at most eight; each must occur in it."""
+
     sentence: str | None = None
-    """One sentence for a technician."""
+    """One sentence for users."""
 
     title: str | None = None
+    """Name for users; may be empty."""
 
 
 class EffectParameter(BaseModel):
@@ -303,7 +339,7 @@ EmptyChart = TypeAliasType("EmptyChart", Literal['no_run', 'no_quantity'])
 
 
 Evidence = TypeAliasType("Evidence", Literal['strong', 'small', 'weak'])
-"""Evidence that an effect is missing, and its significance."""
+"""How significant and how relevant a missing effect is."""
 
 
 class Exclusion(BaseModel):
@@ -322,40 +358,61 @@ class Exclusion(BaseModel):
 
 
 class Experiment(BaseModel):
+    """A run that would answer the questions that this run cannot answer."""
+
     expected_duration_s: float | None = None
-    """Maximum bench time."""
+    """Longest duration."""
 
     expected_z: float | None = None
-    """Expected separation of the candidate effects, in standard deviations."""
+    """Expected separation of the alternatives in standard deviations."""
 
     parameters: dict[str, Any]
+    """Parameters of the procedure by name; empty if the defaults apply."""
+
     procedure: str
+    """Name of the procedure."""
+
     separates: list[str] | None = None
-    """Effects that the run distinguishes or makes testable."""
+    """Effects that it distinguishes, or makes detectable."""
 
     why: str
+    """The question that the run answers, in words."""
 
 
 class Extreme(BaseModel):
+    """The largest value that a plan commands, or is estimated to cause."""
+
     limit: float | None = None
-    """`null` without a limit."""
+    """Absent: the bench has no such limit."""
 
     ok: bool
+    """Within its limit."""
+
     quantity: str
+    """The quantity, in words."""
+
     unit: str
+    """Its unit, as SI symbol."""
+
     value: float
+    """Largest absolute value over the plan."""
 
 
 class FigureAxis(BaseModel):
+    """An axis of a figure."""
+
     label: str
+    """The quantity, in words."""
+
     names: list[str] | None = None
-    """Names of the categories, if the axis is not a quantity; 0 is the first."""
+    """Names of the items if the axis counts items instead of a quantity: 0 is the first."""
 
     unit: str
-    """SI symbol; empty for a fraction or a count."""
+    """SI symbol; empty for a share or a count."""
 
 
 FigureForm = TypeAliasType("FigureForm", Literal['cartesian', 'polar'])
+"""Coordinates of a figure."""
 
 
 File = TypeAliasType("File", bytes)
@@ -363,12 +420,32 @@ File = TypeAliasType("File", bytes)
 
 
 class FollowUp(BaseModel):
-    """A run with parameters from the result of this one."""
+    """A run whose parameters were determined by this one."""
 
     parameters: dict[str, Any]
+    """Its parameters; the others keep their defaults."""
+
     procedure: str
+    """Id of the procedure."""
+
     why: str
-    """Purpose, in a few words."""
+    """Its purpose, in a few words."""
+
+
+class FormErrorTerm(BaseModel):
+    """A nuisance column for the form error of a model."""
+
+    form: str | None = None
+    """Name of the form if the term is an effect, otherwise empty."""
+
+    linear: list[float]
+    """Coefficients of the columns."""
+
+    name: str
+    """`bristle`, `bristle_rate`, `jerk`, `snap` or `load_rate`, or an effect, for another form of it."""
+
+    shape: list[float]
+    """Nonlinear parameters for another form, otherwise the place of the column."""
 
 
 class FormulaSignal(BaseModel):
@@ -379,7 +456,36 @@ class FormulaSignal(BaseModel):
     unit: str
 
 
+class GivenConstant(BaseModel):
+    """A constant of the set-up, by its name in the meta file."""
+
+    name: str
+    """Name in the meta file, with its unit: `torque_constant_nm_per_a`."""
+
+    value: float
+    """Value in the unit of the name."""
+
+
 Identified = TypeAliasType("Identified", Literal['identified', 'identified_with_warning', 'inconclusive', 'failed'])
+
+
+class Imitated(BaseModel):
+    """An effect that another one imitates: its absence hardly changes the error, but biases a parameter."""
+
+    effect: str
+    """Id of the effect that may be present."""
+
+    parameter: str
+    """The biased parameter of the given model, as `effect.parameter`."""
+
+    unit: str
+    """Unit of `without` and `with`."""
+
+    with_: Annotated[float, Field(alias='with')]
+    """Its value with the effect."""
+
+    without: float
+    """Its value without the effect, and with it."""
 
 
 class ImportColumn(BaseModel):
@@ -655,7 +761,46 @@ class Loss(BaseModel):
     """Time of detection; `null` before the next start of the daemon."""
 
 
+class MapCell(BaseModel):
+    """One cell, with its place in `x_bins` and `y_bins`."""
+
+    half_width: float | None = None
+    """Half width of the simultaneous band. Absent with fewer than three independent blocks."""
+
+    mean: float
+    """Mean residual (measured − predicted) of the rows in the cell."""
+
+    rows: Annotated[int, Field(ge=0)]
+    """Number of rows in the cell."""
+
+    x: Annotated[int, Field(ge=0)]
+    """Index of the bin in `x_bins`."""
+
+    y: Annotated[int, Field(ge=0)]
+    """Index of the bin in `y_bins`."""
+
+
 Mark = TypeAliasType("Mark", Literal['points', 'line', 'bars'])
+"""How a series is drawn."""
+
+
+class MeanCurve(BaseModel):
+    """The mean curve of a hysteresis effect over its signal, fitted to the run."""
+
+    at: list[float]
+    """Values of the signal at the supporting points, ascending."""
+
+    effect: str
+    """Id of the hysteresis effect."""
+
+    mean: list[float]
+    """Mean contribution of the effect at these points, in the unit of the fit; as many as `at`."""
+
+    off_rms: float
+    """RMS difference between the effect and the curve."""
+
+    signal: str
+    """Formula name of the signal."""
 
 
 Byte = TypeAliasType("Byte", Annotated[int, Field(ge=0)])
@@ -782,15 +927,22 @@ class NewToken(BaseModel):
 
 
 class NoiseFloor(BaseModel):
-    """Repeatability of the measurement (noise floor)."""
+    """Noise floor: the repeatability of the measurement."""
 
     ci95: tuple[float, float] | None = None
+    """95 % interval of `rms`, jackknife over blocks. Absent if a few blocks contain all the noise."""
+
+    repeatable_ci95: tuple[float, float] | None = None
+    """95 % interval of that fraction. If it includes zero, the fraction is not significant."""
+
     repeatable_share: float | None = None
-    """Fraction of the remaining squared error that is equal in all repeats."""
+    """Fraction of the remaining squared error that is repeatable."""
 
     rms: float | None = None
+    """RMS of the pure error, in the unit of the fit. Absent if fewer than eight pairs of rows are replicates."""
+
     source: str
-    """Origin of the figure."""
+    """Source of the figure, in words."""
 
 
 class Note(BaseModel):
@@ -818,14 +970,45 @@ NotifyEvent = TypeAliasType("NotifyEvent", Literal['finished', 'failed', 'unsafe
 """What a person or a script may want to know."""
 
 
+class PairMap(BaseModel):
+    """Mean residual over two quantities: a heat map without empty cells."""
+
+    cells: list[MapCell]
+    """Cells with rows, in the order of x, then y."""
+
+    removable_share: float
+    """
+    Cross-validated R²: fraction of the squared residual that a function of both quantities removes on data that was
+    not used for it.
+    """
+
+    x: str
+    """Name of the horizontal axis, as in the map of one axis."""
+
+    x_bins: list[list[float]]
+    """Smallest and largest value in each bin of the horizontal axis."""
+
+    x_unit: str
+    """Unit of the horizontal axis."""
+
+    y: str
+    """Name of the vertical axis."""
+
+    y_bins: list[list[float]]
+    """Smallest and largest value in each bin of the vertical axis."""
+
+    y_unit: str
+    """Unit of the vertical axis."""
+
+
 class ParameterSetting(BaseModel):
-    """What is set for one parameter, in the unit of the parameter. At least one of the values is given."""
+    """A fixed value, bounds or a start value of one parameter, in the unit of the parameter."""
 
     model_config = ConfigDict(
         extra='forbid',
     )
     effect: str
-    """Effect of the model."""
+    """Id of an effect of the model."""
 
     fixed: float | None = None
     """The value, which is not fitted."""
@@ -837,14 +1020,14 @@ class ParameterSetting(BaseModel):
     """Smallest value that the fit may find."""
 
     name: str
+    """Name within the effect: `tau_c`."""
+
     start: float | None = None
-    """
-    Start value of the search for a nonlinear parameter. Refused for a linear one: least squares finds it without a
-    search.
-    """
+    """Start value of the search for a nonlinear parameter."""
 
 
 ParameterState = TypeAliasType("ParameterState", Literal['ok', 'at_bound', 'fixed', 'impossible', 'unidentified'])
+"""How well a run determines a parameter."""
 
 
 ParameterType = TypeAliasType("ParameterType", Literal['number', 'integer', 'curve'])
@@ -869,8 +1052,13 @@ class Place(BaseModel):
 
 
 class PlannedStep(BaseModel):
+    """One step of a previewed plan."""
+
     duration_s: float
+    """Duration without pauses."""
+
     label: str
+    """The label of the step in the plan."""
 
 
 class PreviewRequest(BaseModel):
@@ -960,25 +1148,31 @@ class Quantity(BaseModel):
     """One figure of a result, in SI units."""
 
     base_title: str | None = None
-    """The title without the part of a campaign and without the configuration; absent if the title contains neither."""
+    """
+    The title without the part of a campaign and without the configuration: "Coulomb friction". Absent: the title
+    contains neither.
+    """
 
     ci95: tuple[float, float] | None = None
-    """95 % interval, if determined by the run."""
+    """95 % interval, if the run determines one."""
 
     configuration: str | None = None
-    """The direction or method for which it holds."""
+    """The direction or method for which it holds: "positive direction"."""
 
     name: str
-    """Stable and unique in its result, for scripts and limits."""
+    """Stable and unique in its identification: `tau_c_positive`. Scripts and limits depend on it."""
 
     symbol: str
-    """As in the literature: `τ_c⁺`."""
+    """As in the source document: `τ_c⁺`."""
 
     title: str
+    """In words: "Coulomb friction, positive direction"."""
+
     unit: str
-    """SI symbol; empty for a fraction or a count."""
+    """SI symbol; empty for a share or a count."""
 
     value: float
+    """Estimate, in the unit of the quantity."""
 
 
 class QuantityChange(BaseModel):
@@ -1024,24 +1218,39 @@ RefusalReason = TypeAliasType("RefusalReason", Literal['missing_instrument', 'pa
 
 
 class Region(BaseModel):
+    """A range of an axis (and a direction or a second axis) with a significant residual."""
+
     axis: str
+    """Column name of the run table, or `direction`, `time_since_reversal_s`, `motor_torque_nm`."""
+
     ci95: tuple[float, float]
     """Simultaneous over all regions of all maps."""
 
     direction: str | None = None
-    """`positive` or `negative` motion; absent for both."""
+    """`positive` or `negative` motion, or both if empty."""
 
     from_: Annotated[float, Field(alias='from')]
+    """Smallest value of the axis in the region."""
+
     mean_residual: float
+    """Mean of measured − predicted: positive where the model is too low."""
+
     samples: Annotated[int, Field(ge=0)]
+    """Number of rows in the region."""
+
     sentence: str
-    """The same as one sentence."""
+    """The same in one sentence with figures."""
 
     to: float
+    """Largest value of the axis in the region."""
 
 
-RejectionReason = TypeAliasType("RejectionReason", Literal['confounded', 'not_significant', 'few_blocks', 'form_error', 'model_full', 'no_reduction', 'redundant', 'infeasible', 'mutually_cancelling', 'insignificant', 'swapped', 'random_walk', 'unidentified', 'partial_explanation', 'spurious'])
-"""Why an effect was tested and rejected."""
+RejectionReason = TypeAliasType("RejectionReason", Literal['confounded', 'not_significant', 'few_blocks', 'form_error', 'model_full', 'no_reduction'])
+"""Why an effect was not added."""
+
+
+RemovalReason = TypeAliasType("RemovalReason", Literal['redundant', 'infeasible', 'mutually_cancelling', 'insignificant', 'swapped', 'random_walk', 'unidentified', 'partial_explanation', 'spurious'])
+"""Why an added effect was removed again."""
 
 
 class ResidualAxis(BaseModel):
@@ -1054,7 +1263,7 @@ class ResidualAxis(BaseModel):
 
 
 ResidualKind = TypeAliasType("ResidualKind", Literal['raw', 'plateau_mean'])
-"""Basis of RMS figures and residuals."""
+"""The data of RMS figures and residuals."""
 
 
 PieceItem = TypeAliasType("PieceItem", Annotated[int, Field(ge=0)])
@@ -1107,10 +1316,11 @@ class RunEvent(BaseModel):
 
 
 RunState = TypeAliasType("RunState", Literal['queued', 'arming', 'running', 'paused', 'securing', 'completed', 'stopped', 'aborted', 'failed', 'interrupted'])
+"""State of a run. The last five are final."""
 
 
 Safe = TypeAliasType("Safe", Literal['safe_verified', 'safe_commanded', 'unsafe_unknown'])
-"""Safe state reached at the end."""
+"""Result of securing."""
 
 
 class SafetyEntry(BaseModel):
@@ -1151,7 +1361,7 @@ class Samples(BaseModel):
 
 
 SeriesRole = TypeAliasType("SeriesRole", Literal['before', 'after', 'loop'])
-"""Meaning of a series in its figure."""
+"""What a series means in its figure."""
 
 
 class ServoMemory(BaseModel):
@@ -1161,11 +1371,16 @@ class ServoMemory(BaseModel):
 
 
 class Setpoints(BaseModel):
-    """The commanded profile, as corner points."""
+    """The set-points as piecewise linear functions, exact."""
 
     brake_current_a: list[float]
+    """Brake current at each knot."""
+
     motor_velocity_rad_s: list[float]
+    """Motor-side velocity at each knot."""
+
     time_s: list[float]
+    """Times of the knots, the same for both courses (s)."""
 
 
 class SettingChange(BaseModel):
@@ -1174,16 +1389,39 @@ class SettingChange(BaseModel):
     previous: Any
 
 
+class SignalRange(BaseModel):
+    """Smallest and largest value of a signal at the points of a fit."""
+
+    max: float
+    """Largest value."""
+
+    min: float
+    """Smallest value."""
+
+    name: str
+    """Name of the signal in formulas."""
+
+    noise: float | None = None
+    """RMS of the noise that the fit removed from the signal."""
+
+    unit: str
+    """Unit of the range and the noise."""
+
+
 class Silent(BaseModel):
+    """An effect that was tested and not found."""
+
     effect: str
+    """Id of the effect."""
+
     minimum_detectable_rms: float
-    """Detection limit: RMS of the smallest effect that is found with 80 % power."""
+    """Detection limit: RMS of the smallest effect that is found with 80 % power, in the unit of the fit."""
 
     sought: str | None = None
-    """Search range, if limited."""
+    """Tested range, if it is limited: `1 to 60 waves a turn`."""
 
     upper_rms: float
-    """The effect is smaller than this RMS (95 %)."""
+    """The effect is smaller than this RMS (95 %), in the unit of the fit; set by `bounded`."""
 
 
 class SpectrumView(BaseModel):
@@ -1241,18 +1479,26 @@ class Term(BaseModel):
     """One effect of the model, as numbers."""
 
     effect: str
+    """Id of the effect."""
+
     form: str
+    """The best form of the effect."""
+
     linear: list[float]
+    """Coefficients of the effect's columns."""
+
     names: list[str] | None = None
     """Names of the coefficients, then of the nonlinear parameters."""
 
     shape: list[float]
+    """Nonlinear parameters."""
 
 
 class TextPart1(BaseModel):
-    """A part of a text."""
+    """Words."""
 
     text: str
+    """Words."""
 
 
 class TextPart2(BaseModel):
@@ -1291,10 +1537,13 @@ class TradeOff(BaseModel):
     """Two parameters of which the data determines only a combination."""
 
     correlation: float
+    """Correlation of both estimates, −1 to 1; reported if its absolute value exceeds 0.95."""
+
     first: str
     """`effect.parameter`."""
 
     second: str
+    """The other parameter, as `effect.parameter`."""
 
 
 class TrendRun(BaseModel):
@@ -1336,7 +1585,7 @@ class TrialError(BaseModel):
 
 
 UndecidedReason = TypeAliasType("UndecidedReason", Literal['contradictory_columns', 'too_few_blocks', 'no_noise_floor', 'above_noise_floor', 'impossible_parameter'])
-"""Why no verdict is possible."""
+"""Why a verdict is undecided."""
 
 
 class Unit(BaseModel):
@@ -1418,16 +1667,20 @@ class Unstored(BaseModel):
 
 
 Verdict = TypeAliasType("Verdict", Literal['adequate', 'missing_effect', 'unexplained_structure'])
+"""Conclusion of a diagnosis."""
 
 
 class Wider(BaseModel):
-    """Why the interval of a parameter is much wider in one of two versions."""
+    """Why a parameter is less certain in one of two models."""
 
     second: bool
-    """In the second, or in the first."""
+    """Whether the second model has the wider interval."""
 
     times: float
+    """Ratio of the wider interval to the narrower one, above 1."""
+
     why: str
+    """The reason in words: a trade-off, fewer rows, a larger residual or more parameters."""
 
 
 class Worth(BaseModel):
@@ -1570,42 +1823,60 @@ class EffectTrial(BaseModel):
 
 
 class Evaluation(BaseModel):
-    """A model on a run."""
+    """A fit on a run that was not used for it."""
 
     effects_rms: float | None = None
-    """RMS error of the effects alone; absent for a fit without nuisance terms."""
+    """RMS error of the effects alone. Absent for a fit without nuisance terms."""
 
     notes: list[str]
     """
-    Limitations of the evaluation: missing columns, metadata that differ from the fit, signals outside the range of
-    the fit.
+    Limitations of the error, in plain sentences: missing columns, constants that differ from those of the fit,
+    signals outside its ranges.
     """
 
     relative_error: float
     """‖residual‖ / ‖measured‖."""
 
     residual: ResidualKind
+    """Data that the residual refers to, as in the fit."""
+
     rms: float
+    """RMS of the residual on the evaluated run, in `unit`."""
+
     rows: Annotated[int, Field(ge=0)]
+    """Rows that were predicted: chunks or decimated samples."""
+
     samples: Annotated[int, Field(ge=0)]
+    """Samples of the evaluated run."""
+
     settled_share: float | None = None
-    """Fraction of the samples in steady state, if only steady state is evaluated."""
+    """Fraction of the samples at steady state, if only these are judged."""
 
     unit: str
+    """Unit of both RMS figures."""
 
 
 class FigureSeries(BaseModel):
+    """One data set of a figure."""
+
     band: list[list[float]] | None = None
     """Lower and upper end of the 95 % band at each point; empty without a band."""
 
     group: str | None = None
-    """Series that belong together, such as points and their model, have the same group; its label if absent."""
+    """Series that belong together, such as points and their model, have the same group. Absent: its label."""
 
     label: str
+    """Its name in the legend."""
+
     mark: Mark
+    """How it is drawn."""
+
     role: SeriesRole | None = None
     x: list[float]
+    """Values on the x axis, in its unit."""
+
     y: list[float]
+    """Values on the y axis, in its unit; as many as x."""
 
 
 class FirstPassYield(BaseModel):
@@ -1637,20 +1908,31 @@ class FirstPassYield(BaseModel):
 
 
 class FittedParameter(BaseModel):
+    """One number of the model."""
+
     ci95: tuple[float | None, float | None]
-    """
-    95 % confidence interval over segments or repeats; `null` without a bound. Both ends of a fixed parameter are its
-    value.
-    """
+    """95 % interval over segments or repeats (delete-group jackknife, t with G − 1 degrees of freedom)."""
 
     effect: str
+    """Id of the effect that the parameter belongs to."""
+
     name: str
+    """Name within the effect: `tau_c`."""
+
     note: str | None = None
-    """Explanation of a state other than `ok`; in a diagnosis also the value with a confounded effect."""
+    """
+    The state in words, if it is not `ok`. In a diagnosis also the value with an effect that the run does not
+    exclude.
+    """
 
     state: ParameterState
+    """Whether the run determines the parameter, and its value is possible."""
+
     unit: str
+    """Unit of value and interval, `1` if dimensionless."""
+
     value: float
+    """Estimate in `unit`; 0 if the run cannot show the effect."""
 
 
 class FormulaLanguage(BaseModel):
@@ -1730,10 +2012,16 @@ class Instrument(BaseModel):
 
 
 class Invisible(BaseModel):
+    """An effect that this data cannot show."""
+
     effect: str
-    reason: InvisibleReason | None = None
+    """Id of the effect."""
+
+    reason: InvisibleReason
+    """Why this data cannot show it."""
+
     why: str
-    """The reason in words: the missing signal or excitation."""
+    """The same in words: the missing signal or excitation."""
 
 
 class LastModel(BaseModel):
@@ -1749,13 +2037,8 @@ class LastModel(BaseModel):
     """Validation error (cross-validated RMS)."""
 
 
-class LeftOut(BaseModel):
-    """A rejected effect: tested, but not added to the model."""
-
-    effect: str
-    reason: RejectionReason | None = None
-    why: str
-    """The reason in words, with the figures."""
+LeftOutReason = TypeAliasType("LeftOutReason", RejectionReason | RemovalReason)
+"""Why an effect was tested and rejected: it was not added, or removed again."""
 
 
 class LimitCheck(BaseModel):
@@ -1914,40 +2197,61 @@ class NotificationTarget(BaseModel):
 
 
 class ParameterPair(BaseModel):
+    """A parameter in two models."""
+
     differ: bool | None = None
-    """The intervals of the values do not overlap; `null` if a value or an interval is missing."""
+    """Whether the values differ by more than their intervals allow. Absent if one is missing or has no interval."""
 
     effect: str
+    """Id of the effect that the parameter belongs to."""
+
     first: FittedParameter | None = None
     name: str
+    """Name of the parameter within its effect."""
+
     second: FittedParameter | None = None
     unit: str
+    """Unit of both values."""
+
     wider: Wider | None = None
 
 
 class Preparation(BaseModel):
-    """Preprocessing of the run."""
+    """Preprocessing of the run for the fit. A run is preprocessed in the same way when the fit is evaluated on it."""
 
     blocks: Annotated[int, Field(ge=0)]
     """Independent blocks for validation, intervals and tests."""
 
+    bristles: Bristles | None = None
     chunk_s: float | None = None
+    """Length of a chunk. In a long run in steps, a row is the mean of several neighbouring chunks."""
+
     cutoff_hz: float | None = None
+    """Absent without a filter."""
+
     decimation: Annotated[int, Field(ge=0)]
+    """Every n-th filtered sample is used; 1 without decimation."""
+
     repeats_from: str
-    """`column`, `found` or `none`."""
+    """Source of the repeats: `column`, `found` or `none`."""
 
     residual: ResidualKind
+    """The data that the fit uses."""
+
     rows: Annotated[int, Field(ge=0)]
     """Rows of the fit: chunks or decimated samples."""
 
     sample_rate_hz: float
+    """Sample rate of the recorded run, 1 / median time step [Hz]."""
+
     samples: Annotated[int, Field(ge=0)]
+    """Samples of the recorded run."""
+
     segments_from: str
-    """`column` or `found`."""
+    """Source of the segments: `column`, `found` or `operating points`."""
 
     velocity_lag_s: float | None = None
-    """Corrected delay of the measured velocity against position."""
+    """Corrected delay of the measured velocity against the position. Absent without a correction."""
 
 
 class Preview(BaseModel):
@@ -2052,42 +2356,90 @@ class RunSummary(BaseModel):
     verdict: Identified | None = None
 
 
+class Scope(BaseModel):
+    """Range of validity of a fit, for its use without the run."""
+
+    constants: list[GivenConstant] | None = None
+    """
+    Constants of the set-up that converted measured columns to model quantities. Empty in fits of earlier
+    versions.
+    """
+
+    fed_rms: float | None = None
+    """
+    Error of the hysteresis states in C code, with the measured load instead of the smoothed one. Absent if the
+    fit smoothed no signal of a hysteresis state.
+    """
+
+    load_scale: float
+    """Factor from the load in model quantities to the link torque: the gear ratio for friction runs, otherwise 1."""
+
+    means: list[MeanCurve] | None = None
+    """Mean curves of hysteresis effects."""
+
+    motion: str
+    """Whether the joint rotates or slides, which determines the units."""
+
+    sample_s: float
+    """Time step of the samples on which hysteresis effects were simulated [s]."""
+
+    signals: list[SignalRange]
+    """Ranges of the signals at the points of the fit, by their formula names."""
+
+    table_rms: float | None = None
+    """
+    Error of the look-up table with linear interpolation at the points of the run. Absent in fits of earlier
+    versions.
+    """
+
+
 class Suggestion(BaseModel):
+    """One missing effect with its evidence."""
+
     bic_change: float | None = None
-    """Change of the Bayesian information criterion over independent blocks; negative values favour the effect."""
+    """Change of the Bayesian information criterion over independent blocks; a negative value supports the effect."""
 
     confounded_with: list[str]
-    """Effects that this data cannot distinguish from it."""
+    """Effects that explain this data as well."""
 
     effect: str
+    """Id of the missing effect."""
+
     effects_rms: float | None = None
-    """RMS error of the effects alone on the fitted data; absent for a fit without nuisance terms."""
+    """RMS error of the effects alone on the fitted data. Absent for a fit without nuisance terms."""
 
     error_reduction: float
-    """Relative reduction of the validation error by this effect alone."""
+    """1 − validation_rms / validation_rms of the present model."""
 
     error_reduction_ci95: tuple[float, float] | None = None
-    """From the scatter over the validation data; absent for an effect that acts outside the data of the RMS."""
+    """95 % interval from the scatter over the folds. Absent for an effect of other data than that of the RMS."""
 
     error_reduction_together: float | None = None
-    """Relative reduction of the validation error together with all other suggestions."""
+    """
+    Relative reduction of the validation error by this effect in the complete model, compared with the complete
+    model without it. Effects that mask each other have a small individual reduction.
+    """
 
     evidence: Evidence
+    """Class of the evidence, from the p-value and the error reductions."""
+
     p_at_most: bool | None = None
-    """No sign flip scored as high: the p-value is at most `p_value`."""
+    """No flip reached this score, so that `p_value` is an upper limit."""
 
     p_value: float
-    """Family-wise p-value from sign flips of blocks."""
+    """Family-wise, from sign flips of whole blocks."""
 
     parameters: list[FittedParameter]
-    reasons: str
-    """Its evidence and the effects that this data cannot distinguish from it; empty in a diagnosis of an older version."""
+    """Parameters in the complete model with all suggestions, where `discover` ends."""
+
+    reasons: str | None = None
+    """The same without the description of the effect."""
 
     validation_rms: float
-    """With the effect added."""
+    """Validation error of the model with this effect."""
 
     why: str
-    """What the effect is, and the reasons."""
+    """What the effect is, its evidence and its confounded effects, in sentences."""
 
 
 class UnitList(BaseModel):
@@ -2163,22 +2515,31 @@ class BenchQueue(BaseModel):
 
 
 class Comparison(BaseModel):
-    """Comparison of two model versions."""
+    """Result of `compare`: differences between two models of one kind."""
 
     added: list[str]
-    """Effects of the second that are not in the first."""
+    """Effects of the second model that the first one lacks."""
 
     first: Evaluation
     """Both on the same run."""
 
     first_validation_rms: float
-    """Each on the validation data of its own run."""
+    """Validation error of each model on its own run."""
 
     kind: str
+    """Kind of both models."""
+
     parameters: list[ParameterPair]
+    """Every parameter of either model: those of the first one in its order, then those only in the second one."""
+
     removed: list[str]
+    """Effects of the first model that the second one lacks."""
+
     second: Evaluation
+    """Evaluation of the second model on that run."""
+
     second_validation_rms: float
+    """Validation error of the second model on the run that it was fitted to."""
 
 
 class ControlChart(BaseModel):
@@ -2239,55 +2600,87 @@ class EffectCheck(BaseModel):
 
 
 class Figure(BaseModel):
+    """A plot of a result."""
+
     form: FigureForm
+    """Coordinates in which it is drawn."""
+
     name: str
+    """Stable and unique in its identification."""
+
     series: list[FigureSeries]
+    """The data, in drawing order."""
+
     title: str
+    """Heading of the plot."""
+
     x: FigureAxis
+    """Horizontal axis, or the angle."""
+
     y: FigureAxis
+    """Vertical axis, or the radius."""
 
 
 class Fit(BaseModel):
-    """A model with fitted parameters."""
+    """A model with the parameters that fit one run best."""
 
     condition: float | None = None
     """Condition number of the scaled columns."""
 
     effects: list[str]
+    """Effect ids in the order of the model, including effects that the run cannot show."""
+
     effects_rms: float | None = None
     """
-    RMS error of the effects alone on the fitted data, as an exported model predicts; absent for a fit without
+    RMS error of the effects alone on the fitted data, as an exported model predicts. Absent for a fit without
     nuisance terms.
     """
 
+    form_error: list[FormErrorTerm] | None = None
+    """
+    Nuisance terms for the form error of a run that is judged sample by sample; they belong to the run, not to the
+    model.
+    """
+
     kind: str
+    """Kind of the fitted run, which determines the response."""
+
     notes: list[str]
-    """Notes for the user."""
+    """Notes for the user, in plain sentences."""
 
     own: list[EffectDefinition] | None = None
-    """User-defined effects at the time of the fit."""
+    """Definitions of the user effects that the fit contains."""
 
     parameters: list[FittedParameter]
+    """Coefficients and nonlinear parameters, in the order of `effects`."""
+
     preparation: Preparation
+    """How the run was preprocessed."""
+
     relative_error: float
     """‖residual‖ / ‖measured‖."""
 
     residual: ResidualKind
-    rms: float
-    """Training error (RMS)."""
+    """Data that the residual and all RMS figures refer to."""
 
+    rms: float
+    """Training error: RMS of the residual on the fitted data, in `unit`."""
+
+    scope: Scope | None = None
     settings: list[ParameterSetting] | None = None
-    """Fixed values, bounds and start values of parameters that were set for the fit."""
+    """Fixed values, bounds and start values that a user has set."""
 
     terms: list[Term]
-    """Internal parameters of the effects, to evaluate the model."""
+    """The parameters in the structure of the effects, for predictions."""
 
     trade_offs: list[TradeOff]
-    """Parameter trade-offs (correlated pairs)."""
+    """Pairs of parameters with a trade-off."""
 
     unit: str
+    """Unit of the response and of every RMS: `Nm` or `rad`, for a sliding axis `N` or `m`."""
+
     validation_rms: float
-    """Validation error (cross-validated RMS)."""
+    """Validation error: RMS on data that the fit did not use; the other conditions predict every condition."""
 
 
 class ImportPreview(BaseModel):
@@ -2308,6 +2701,19 @@ class ImportPreview(BaseModel):
 
     refused: ImportRefusal | None = None
     rows: Annotated[int, Field(ge=0)]
+
+
+class LeftOut(BaseModel):
+    """A rejected effect, which may nevertheless be present."""
+
+    effect: str
+    """Id of the effect."""
+
+    reason: LeftOutReason
+    """Why it was rejected."""
+
+    why: str
+    """The same in words, with the figures."""
 
 
 class LiveMessage1(BaseModel):
@@ -2447,50 +2853,74 @@ class Beside(BaseModel):
 
 
 class Finding(BaseModel):
-    """What `jointbench diagnose --json` prints."""
+    """Result of `diagnose`."""
 
-    data_problems: list[str]
-    """Contradictions between columns, each as a sentence. The summary begins with them."""
+    data_problems: list[str] | None = None
+    """Contradicting columns, each in a sentence. The summary begins with them."""
 
     experiment: Experiment | None = None
     fit: Fit
+    """The diagnosed model, fitted to the run without suggestions."""
+
+    imitated: Imitated | None = None
     kind: str
+    """Kind of the run and the model."""
+
     left_out: list[LeftOut] | None = None
-    """Rejected effects."""
+    """Effects that were tested and rejected."""
 
     model: list[str]
-    """Effects of the diagnosed model."""
+    """Effect ids of the diagnosed model, without suggestions."""
 
     noise_floor: NoiseFloor
+    """The noise floor with its interval and source."""
+
     noise_floor_rms: float | None = None
-    """Of the same kind as the RMS figures; `null` without repeats."""
+    """Noise floor of the run, comparable with the RMS figures. Absent without repeats."""
 
     not_visible: list[Invisible]
-    """Effects that are not testable with this data, also because their detection limit exceeds 5 % of the signal."""
+    """Effects that this data cannot show."""
+
+    own: list[EffectDefinition] | None = None
+    """User effects that the diagnosis included."""
 
     residual: ResidualKind
-    silent: list[Silent]
-    """Effects that were tested and are not significant, each with an upper limit."""
+    """Data that the residual and all RMS figures refer to."""
 
+    shows_over: list[str] | None = None
+    """The columns with most structure, as named in the summary. Empty without structure."""
+
+    silent: list[Silent]
+    """Effects that were tested and not found, with their detection limits."""
+
+    structure: PairMap | None = None
     structure_remains: bool | None = None
-    """Whether unexplained structure remains with all suggestions; no run is then recommended for untestable effects."""
+    """Whether structure remains with all suggestions."""
 
     suggestions: list[Suggestion]
-    """Ranked; empty unless the verdict is `missing_effect`."""
+    """
+    Missing effects: in the order of addition where samples are judged, elsewhere the most important first. Empty unless
+    the verdict is `missing_effect`.
+    """
 
     summary: str
-    """One sentence."""
+    """One plain sentence."""
 
-    summary_parts: list[TextPart]
-    """The summary with its effects as separate parts; empty in a diagnosis of an older version."""
+    summary_parts: list[TextPart] | None = None
+    """The summary with its effects as separate parts."""
 
     undecided: str | None = None
-    """Why no verdict is possible: the data cannot show a missing effect, or the columns contradict each other."""
+    """
+    Why the verdict is undecided: too little data to reject the model, so that `adequate` only means that nothing
+    was found, or contradicting columns. `jointbench` then ends with code 3.
+    """
 
     undecided_reason: UndecidedReason | None = None
     verdict: Verdict
+    """The conclusion; also read `undecided`."""
+
     where: list[Region]
-    """Regions with significant residual, largest first."""
+    """Regions with a significant residual, the worst first."""
 
 
 class Identification(Shown):

@@ -6,7 +6,7 @@ use super::shared::{RETRY_INTERVAL, Shared};
 use super::status::NewFault;
 use super::wire::{Entry, Order};
 use crate::store::{RunCommit, StoreError};
-use crate::view::{LiveMessage, run_event, safe_view, state_view};
+use crate::view::{LiveMessage, run_event};
 use jointbench_procedure::{RunId, RunState, Safe};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -204,8 +204,8 @@ impl Keeper {
         self.shared.hub.publish(LiveMessage::State {
             bench: self.shared.name().to_owned(),
             run,
-            state: state_view(active.state),
-            safe: active.safe.map(safe_view),
+            state: active.state,
+            safe: active.safe,
             reason: active.reason,
         });
     }

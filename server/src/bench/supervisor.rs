@@ -8,7 +8,7 @@ use super::shared::{Shared, lock};
 use super::status::{ActiveRun, FAULTS, NewFault, RunFault, Status};
 use super::wire::{self, Entry, Order, Report, Setup};
 use crate::store::SafetyRecord;
-use crate::view::{self, BenchState, InstrumentFault, LiveMessage, state_view};
+use crate::view::{self, BenchState, InstrumentFault, LiveMessage};
 use jiff::Timestamp;
 use jointbench_procedure::{EventKind, RunEnd, RunId, RunState, Safe};
 use std::io::{self, BufReader};
@@ -202,7 +202,7 @@ impl Supervisor {
             shared.hub.publish(LiveMessage::State {
                 bench: shared.name().to_owned(),
                 run: commit.run,
-                state: state_view(commit.state),
+                state: commit.state,
                 safe: None,
                 reason: None,
             });

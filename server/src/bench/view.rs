@@ -2,7 +2,7 @@
 
 use super::status::Status;
 use crate::config::BenchDescription;
-use crate::view::{self, safe_view, state_view};
+use crate::view;
 use jiff::Timestamp;
 use jointbench_instrument::limits::Limited;
 
@@ -46,8 +46,8 @@ pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Benc
 /// Shows a run whose end is not stored with the state of its worker.
 pub fn show_unstored_end(run: &mut view::RunSummary, status: &Status) {
     let Some((active, fault)) = status.not_stored(run.id) else { return };
-    run.state = state_view(active.state);
-    run.safe = active.safe.map(safe_view);
+    run.state = active.state;
+    run.safe = active.safe;
     run.reason = active.reason.clone();
     run.not_stored = Some(fault.to_owned());
 }

@@ -63,7 +63,7 @@ fn wait(client: &Client, id: i64, prints: bool) -> Result<Autopilot, Exit> {
         }
         if let Some(run) = autopilot.runs.last() {
             let run: Run = client.get(&format!("/runs/{run}"))?;
-            if let Some(progress) = run.progress.filter(|_| !run.summary.state.is_over()) {
+            if let Some(progress) = run.progress.filter(|_| !run.summary.state.is_final()) {
                 shown.get_or_insert_with(RunProgress::begin).show(&progress);
             }
         }

@@ -34,7 +34,7 @@ fn request(arguments: &Control, how: &str, wanted: RunState) -> Done {
     let client = Client::new(&arguments.reach)?;
     let id = named_or_on(&client, arguments.run)?;
     let mut run: Run = client.post(&format!("/runs/{id}/{how}"), &())?;
-    while run.summary.state != wanted && !run.summary.state.is_over() {
+    while run.summary.state != wanted && !run.summary.state.is_final() {
         std::thread::sleep(POLL_INTERVAL);
         run = client.get(&format!("/runs/{id}"))?;
     }
@@ -59,7 +59,7 @@ fn named_or_on(client: &Client, named: Option<i64>) -> Result<i64, Exit> {
         return Ok(id);
     }
     let list: RunList = client.get("/runs?limit=100")?;
-    let on: Vec<String> = list.runs.iter().filter(|run| !run.state.is_over()).map(|run| run.id.to_string()).collect();
+    let on: Vec<String> = list.runs.iter().filter(|run| !run.state.is_final()).map(|run| run.id.to_string()).collect();
     match on.as_slice() {
         [one] => one.parse().map_err(|_| Exit::failed(format!("run {one}: expected a number"))),
         [] => Err(Exit::bad_input("no run is active")),

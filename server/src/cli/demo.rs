@@ -123,9 +123,8 @@ async fn improve(lab: &Lab, run: &Run, known: &[&str]) -> Result<Improved, Exit>
         println!();
         println!("   model {}: {}", model.id, model.effects.join(" + "));
         println!("   {}", diagnosis.summary);
-        print::regions(&reread::<_, Vec<_>>(&diagnosis.regions)?, &diagnosis.fit.unit);
-        let suggestions: Vec<_> = reread(&diagnosis.suggestions)?;
-        print::suggestions(&suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
+        print::regions(&diagnosis.regions, &diagnosis.fit.unit);
+        print::suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
         let worth = |suggestion: &&Suggestion| suggestion.validation_rms < WORTH_ADDING * model.validation_rms;
         let best = diagnosis.suggestions.iter().find(worth).filter(|_| versions.len() <= MOST_EFFECTS);
         let Some(best) = best else {

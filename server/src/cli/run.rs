@@ -47,14 +47,14 @@ pub(super) fn found(client: &Client, ended: &Result<Run, Exit>) -> Option<Found>
 
 /// Prints how a run ended and its result, unless `quiet`. Returns the exit of the command.
 pub(super) fn conclude(run: &Run, found: Option<&Found>, required: &[(&Requirement, Outcome)], quiet: bool) -> Done {
-    let message = if run.summary.state.is_over() { run.ending() } else { String::new() };
+    let message = if run.summary.state.is_final() { run.ending() } else { String::new() };
     if !quiet && !message.is_empty() {
         println!("{message}");
         if let Some(Ok(found)) = found {
             identify::print(found);
         }
     }
-    match run.summary.state.is_over() && run.summary.state != RunState::Completed {
+    match run.summary.state.is_final() && run.summary.state != RunState::Completed {
         true => Err(Exit::failed(if quiet { message } else { String::new() })),
         false => judge(found, required, quiet),
     }

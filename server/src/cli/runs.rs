@@ -29,7 +29,7 @@ pub fn runs(arguments: &Runs) -> Done {
                 arguments.sort.as_deref().map(Order::parse).transpose().map_err(LabError::from)?.unwrap_or_default();
             let filter = RunFilter { limit: arguments.limit, offset: 0, search: Some(search.clone()), order };
             let mut list = runtime.block_on(lab.runs(&filter))?;
-            for run in list.runs.iter_mut().filter(|run| !run.state.is_over()) {
+            for run in list.runs.iter_mut().filter(|run| !run.state.is_final()) {
                 run.reason = Some(NO_DAEMON.to_owned());
             }
             list

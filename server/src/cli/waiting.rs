@@ -95,7 +95,7 @@ pub(super) fn wait_at_most(
         // After a restart of the daemon, the end of a run appears before its safe state. A completed run can be read
         // only when it is stored. Other ends are final immediately.
         let waits_for_the_disk = run.summary.state == RunState::Completed && run.summary.not_stored.is_some();
-        if run.summary.state.is_over() && run.summary.safe.is_some() && !waits_for_the_disk {
+        if run.summary.state.is_final() && run.summary.safe.is_some() && !waits_for_the_disk {
             shown.end();
             return Ok(match exceeded {
                 Some(limit) if run.summary.state == RunState::Aborted => timed_out(run, limit),

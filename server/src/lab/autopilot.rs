@@ -3,7 +3,7 @@
 use super::autopilot_task::{AutopilotTask, Goal};
 use super::{Answer, Lab, LabError};
 use crate::store::AutopilotRecord;
-use crate::view::{Autopilot, AutopilotState, AutopilotStep, NewAutopilot, NewExperiment, reread};
+use crate::view::{Autopilot, AutopilotState, AutopilotStep, NewAutopilot, NewExperiment, reread, word};
 use jointbench_instrument::Kind;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -88,7 +88,7 @@ impl Lab {
         if let Some(block) = self.inner.store.bench_block(bench).await? {
             return Err(LabError::Conflict(format!("bench {bench} is blocked: {}", block.reason)));
         }
-        let state: String = reread(&AutopilotState::Running)?;
+        let state = word(AutopilotState::Running);
         let id = self.inner.store.create_autopilot(bench, &request, &state).await?;
         tracing::info!(autopilot.id = id, bench, by, "autopilot started");
         self.spawn_task(id, bench, goal, format!("{by}, autopilot {id}"));

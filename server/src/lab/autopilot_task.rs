@@ -7,7 +7,7 @@ use super::computation::with_retries;
 use super::{Answer, Lab, LabError};
 use crate::view::{
     AutopilotAction, AutopilotState, AutopilotStep, Experiment, Finding, LiveMessage, Model, NewAutopilot, NewModel,
-    NewRun, Run, RunState, Suggestion, reread,
+    NewRun, Run, RunState, Suggestion, reread, word,
 };
 use jointbench_instrument::Meta;
 use jointbench_procedure::Control;
@@ -77,11 +77,7 @@ impl AutopilotTask {
         };
         let End { state, reason } = end.unwrap_or_else(|fault| End::new(AutopilotState::Failed, fault.to_string()));
         tracing::info!(autopilot.id = self.id, ?state, reason, "autopilot ended");
-        let kept = match reread::<_, String>(&state) {
-            Ok(word) => self.lab.inner.store.end_autopilot(self.id, &word, &reason).await.map_err(LabError::from),
-            Err(fault) => Err(fault.into()),
-        };
-        if let Err(fault) = kept {
+        if let Err(fault) = self.lab.inner.store.end_autopilot(self.id, &word(state), &reason).await {
             tracing::error!(autopilot.id = self.id, %fault, "how the autopilot ended could not be kept");
         }
         self.publish(state, Some(reason), None);
@@ -203,7 +199,7 @@ impl AutopilotTask {
         let summary = &run.summary;
         let duration_s = summary.duration_s.unwrap_or(0.0);
         self.bench_time_s += duration_s;
-        let state: String = reread(&summary.state)?;
+        let state = word(summary.state);
         let text = format!("run {id} {state}: {} rows in {duration_s:.0} s of bench time", summary.rows);
         let step = AutopilotStep::new(AutopilotAction::Measured, text.clone());
         self.keep(AutopilotStep { run: Some(id), bench_time_s: Some(duration_s), ..step }).await?;

@@ -6,12 +6,12 @@ use super::{Answer, Lab, LabError};
 use crate::bench::{BenchHandle, bench_view};
 use crate::job::Job;
 use crate::store::{RunFilter, RunRecord};
-use crate::view::{self, Bench, BenchState, ProcedureRefusal, RefusalReason, reread, safety_entry};
+use crate::view::{self, Bench, BenchState, ProcedureRefusal, RefusalReason, safety_entry};
 use jointbench_instrument::zero::TORQUE_ZERO;
 use jointbench_procedure::catalogue::{brake_model, compared_brake};
 use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
 use jointbench_procedure::{
-    BenchFacts, BrakeModel, ComparedBrake, Plan, PlanFault, Procedure, RunState, catalogue, procedure,
+    BenchFacts, BrakeModel, ComparedBrake, Plan, PlanFault, Preview, Procedure, RunState, catalogue, procedure,
 };
 use serde_json::{Map, Value};
 use std::time::Duration;
@@ -102,7 +102,7 @@ impl Lab {
     /// Dry run. Nothing moves.
     pub async fn preview(&self, bench: &str, id: &str, parameters: &Map<String, Value>) -> Answer<view::Preview> {
         let (bench, plan) = self.plan(bench, id, parameters).await?;
-        previewed(bench, &plan)
+        Ok(previewed(bench, &plan))
     }
 
     pub(super) async fn plan(
@@ -237,11 +237,11 @@ impl Lab {
 }
 
 /// Preview of a plan on its bench, with the conditions that prevent a start now.
-pub(super) fn previewed(bench: &BenchHandle, plan: &Plan) -> Answer<view::Preview> {
-    let mut preview: view::Preview = reread(&plan.preview(&bench.facts()))?;
-    preview.wait_s = bench.description().pace().map(|pace| preview.duration_s / pace);
-    preview.checks.extend(readiness(bench));
-    Ok(preview)
+pub(super) fn previewed(bench: &BenchHandle, plan: &Plan) -> view::Preview {
+    let Preview { duration_s, steps, extremes, setpoints, mut checks } = plan.preview(&bench.facts());
+    let wait_s = bench.description().pace().map(|pace| duration_s / pace);
+    checks.extend(readiness(bench));
+    view::Preview { duration_s, wait_s, steps, extremes, setpoints, checks }
 }
 
 fn readiness(bench: &BenchHandle) -> Vec<view::Check> {

@@ -8,6 +8,7 @@ use super::{Answer, Lab};
 use crate::limits::{self, Requirement};
 use crate::store::UnitRunRecord;
 use crate::view::{Capability, ControlChart, ControlPoint, ControlRule, EmptyChart, Quantity};
+use jointbench_model::stats::proportion::Z95;
 use jointbench_model::stats::student;
 use jointbench_procedure::RunState;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -17,8 +18,6 @@ use std::collections::BTreeMap;
 const MOST: usize = 500;
 /// Mean moving range of two normal values in standard deviations (d₂).
 const D2: f64 = 1.128;
-/// Half width of a 95 % interval in standard errors.
-const Z95: f64 = 1.959_963_984_540_054;
 /// Least number of units for a capability.
 const LEAST_UNITS: usize = 5;
 

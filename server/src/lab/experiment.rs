@@ -59,10 +59,10 @@ impl Lab {
         let model = self.inner.store.model(record.model).await?;
         let table = self.tables(&model.runs()).await?;
         check_same_joint(&table, &offer.bench)?;
-        let found: jointbench_model::Diagnosis = reread(&record.diagnosis)?;
+        let found: view::Finding = reread(&record.diagnosis)?;
         let open = Open { user_effects: found.user_effects.clone(), ..Open::from(&found) };
         let next = super::blocking::blocking(move || Ok(next_run(&table, &open, &offer, &Options::default()))).await?;
-        Ok(next.experiment.map(|next| reread(&next)).transpose()?)
+        Ok(next.experiment)
     }
 }
 

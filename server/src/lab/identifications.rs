@@ -7,9 +7,7 @@ use crate::bench::BenchHandle;
 use crate::job::Job;
 use crate::limits::{self, LimitsFile, Measured};
 use crate::store::{RunRecord, Subject};
-use crate::view::{
-    self, Earlier, FollowUp, Identification, LimitCheck, LiveMessage, Quantity, Shown, reread, unit_view, word,
-};
+use crate::view::{self, Earlier, FollowUp, Identification, LimitCheck, LiveMessage, Quantity, Shown, unit_view, word};
 use jointbench_procedure::RunState;
 use jointbench_procedure::parameter::Values;
 use serde::Serialize;
@@ -146,7 +144,7 @@ impl Lab {
     /// The JUnit report of an ended run: one test case for the run, and one for each of its limits.
     pub async fn junit(&self, id: i64) -> Answer<String> {
         let run = self.run(id).await?;
-        if !run.summary.state.is_over() {
+        if !run.summary.state.is_final() {
             return Err(LabError::Conflict(format!("run {id} is not over: wait for its end")));
         }
         let found = match run.summary.state {
@@ -184,14 +182,15 @@ impl Lab {
             let before: Vec<String> = before.iter().map(i64::to_string).collect();
             found = found.introduced(&format!("Runs {} and {last} together:", before.join(", ")));
         }
-        let result = reread::<_, Shown>(&found)?.with_warnings(self.warnings(&runs).await?);
+        let follow_up = procedure.follow_up(&found);
+        let result = Shown::new(found, self.warnings(&runs).await?);
         Ok(Identification {
             run: id,
             limits: limit_check(&record, &result)?,
             applies: applies(&record.procedure),
             procedure: record.procedure.clone(),
             software: concat!("jointbench ", env!("CARGO_PKG_VERSION")).to_owned(),
-            follow_up: procedure.follow_up(&found).map(|next| reread(&next)).transpose()?,
+            follow_up,
             result,
         })
     }

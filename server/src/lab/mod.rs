@@ -56,7 +56,7 @@ use crate::config::{Archive, BenchDescription, Notify};
 use crate::job::{Jobs, Limits};
 use crate::live::Hub;
 use crate::store::{Store, StoreHealth};
-use crate::view::{AutopilotState, reread};
+use crate::view::{AutopilotState, word};
 use archive::Archiving;
 use autopilot::ActiveAutopilots;
 use computation::Turns;
@@ -245,7 +245,7 @@ fn clear_uploads(data: &Path) -> Answer<()> {
 }
 
 async fn interrupt_autopilots(store: &Store) -> Answer<()> {
-    let state: String = reread(&AutopilotState::Interrupted)?;
+    let state = word(AutopilotState::Interrupted);
     store.interrupt_open_autopilots(&state, autopilot::INTERRUPTED).await?;
     Ok(())
 }

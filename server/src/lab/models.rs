@@ -8,7 +8,7 @@ use crate::job::Job;
 use crate::store::{ModelRecord, NewModel, Subject, packed, unpacked};
 use crate::view::{
     self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ParameterSetting, ResidualSet, diagnosis_view, finite,
-    model_view, reread, residual_set,
+    model_view, reread, residual_set, word,
 };
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, UserEffect};
@@ -70,7 +70,7 @@ impl Lab {
         let excluded = self.exclusions(run, parent, asked.exclude).await?;
         let spec = self.spec(self.kind_of_ended(&runs).await?, &effects, Some(run)).await?;
         let settings = self.settings(parent, &effects, asked.parameters).await?;
-        let spec = spec.with_settings(reread(&settings)?)?;
+        let spec = spec.with_settings(settings.clone())?;
         let _turn = match parent {
             None => Some(self.inner.turns.of(Turn::First(run)).await),
             Some(_) => None,
@@ -141,7 +141,7 @@ impl Lab {
         let whole = self.tables(runs).await?;
         let table = exclusions::without(whole.clone(), excluded)?;
         let spec = self.spec(table.kind(), effects, runs.first().copied()).await?;
-        let spec = spec.with_settings(reread(&settings)?)?;
+        let spec = spec.with_settings(settings.to_vec())?;
         let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
         let options = Options::default();
         let chosen = reread(&options)?;
@@ -156,7 +156,7 @@ impl Lab {
         let mut answer = json(&Fitted {
             kind: fit.kind.to_string(),
             effects: fit.effects.clone(),
-            residual: reread(&fit.residual)?,
+            residual: word(fit.residual),
             rms: checked.rms,
             validation_rms: checked.validation_rms,
             noise_floor_rms,
@@ -262,7 +262,7 @@ impl Lab {
     /// The last diagnosis, if it is based on the current effects.
     async fn diagnosis_kept(&self, record: &ModelRecord) -> Answer<Option<Diagnosis>> {
         let Some(kept) = self.inner.store.diagnoses(record.id).await?.pop() else { return Ok(None) };
-        let known: jointbench_model::Diagnosis = reread(&kept.diagnosis)?;
+        let known: view::Finding = reread(&kept.diagnosis)?;
         if known.user_effects != self.user_effects_of(record).await? {
             return Ok(None);
         }

@@ -14,8 +14,6 @@ impl Lab {
     ) -> Answer<Vec<ParameterSetting>> {
         let (None, Some(parent)) = (&given, parent) else { return Ok(given.unwrap_or_default()) };
         let before: Fit = reread(&self.inner.store.model(parent).await?.fit)?;
-        let mut settings: Vec<ParameterSetting> = reread(&before.settings)?;
-        settings.retain(|setting| effects.contains(&setting.effect));
-        Ok(settings)
+        Ok(before.settings.into_iter().filter(|setting| effects.contains(&setting.effect)).collect())
     }
 }

@@ -66,7 +66,7 @@ impl Lab {
                 .ok_or_else(|| LabError::Invalid(format!("run {id} was planned by an incompatible version")))?,
             None => plan,
         };
-        previewed(bench, &plan)
+        Ok(previewed(bench, &plan))
     }
 
     /// The step in which a run ended: `step 3 of 41`, or `step 3` if the run can no longer be planned.

@@ -5,7 +5,9 @@ use super::computation::Subject as Turn;
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
 use crate::store::{NewModel, Subject};
-use crate::view::{Comparison, Evaluation, ImportedModel, LiveMessage, ModelImport, Worth, finite, model_view, reread};
+use crate::view::{
+    Comparison, Evaluation, ImportedModel, LiveMessage, ModelImport, Worth, finite, model_view, reread, word,
+};
 use jointbench_model::export::{Format, ModelFile, export};
 use jointbench_model::{Fit, ModelSpec, Options, UserEffect};
 
@@ -25,7 +27,7 @@ impl Lab {
     pub(super) async fn compare_here(&self, first: i64, second: i64, run: i64) -> Answer<Comparison> {
         let (first, second) = (self.fit(first).await?, self.fit(second).await?);
         let table = self.measurement(run).await?;
-        Ok(reread(&blocking(move || jointbench_model::compare(&first, &second, &table)).await?)?)
+        blocking(move || jointbench_model::compare(&first, &second, &table)).await
     }
 
     /// The validation error without each effect in turn; the order of addition has no influence. Cached, and computed
@@ -116,7 +118,7 @@ impl Lab {
     pub(super) async fn evaluate_here(&self, model: i64, run: i64) -> Answer<Evaluation> {
         let fit = self.fit(model).await?;
         let table = self.measurement(run).await?;
-        Ok(reread(&blocking(move || jointbench_model::evaluate(&fit, &table)).await?)?)
+        blocking(move || jointbench_model::evaluate(&fit, &table)).await
     }
 
     /// The exported model and the run that it was fitted to.
@@ -146,7 +148,7 @@ impl Lab {
             parent: None,
             kind: kept.kind.to_string(),
             effects: kept.effects.clone(),
-            residual: reread(&held.residual)?,
+            residual: word(held.residual),
             rms: held.rms,
             validation_rms: held.rms,
             noise_floor_rms: None,
@@ -169,7 +171,7 @@ impl Lab {
             let why = "predictions of this model on the run are not finite: check its parameters";
             return Err(LabError::Invalid(why.to_owned()));
         }
-        Ok(reread(&held)?)
+        Ok(held)
     }
 
     async fn fit(&self, model: i64) -> Answer<Fit> {

@@ -7,7 +7,7 @@ use super::{Answer, Lab, LabError};
 use crate::bench::{BenchHandle, Status, show_unstored_end};
 use crate::limits::ACCEPTANCE_LIMITS;
 use crate::store::{NewRun, RunFilter, RunRecord, Search};
-use crate::view::{self, Run, RunEvent, RunList, Samples, reread, run_event, run_summary, run_view};
+use crate::view::{self, Run, RunEvent, RunList, Samples, reread, run_event, run_summary, run_view, word};
 use jointbench_instrument::{Meta, RunTable};
 use jointbench_procedure::{Control, Demand, Plan};
 use serde_json::{Map, Value, json};
@@ -103,8 +103,7 @@ impl Lab {
         let demand = Demand { control, by: Some(by.to_owned()) };
         if !self.inner.benches.iter().any(|bench| bench.control(id, demand.clone())) {
             let state = self.run(id).await?.summary.state;
-            let state: String = reread(&state)?;
-            return Err(LabError::Over(format!("run {id} has already ended ({state})")));
+            return Err(LabError::Over(format!("run {id} has already ended ({})", word(state))));
         }
         self.run(id).await
     }

@@ -8,14 +8,13 @@ use crate::view::{
     FirstPassYield, Identified, LimitOutcome, NewRun, Unit, UnitList, UnitSummary, YieldGroup, reread, unit_view,
 };
 use jointbench_instrument::Meta;
+use jointbench_model::stats::proportion::wilson_interval;
 use jointbench_procedure::RunState;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Limit of the listed units.
 const MOST: usize = 1000;
-/// Two-sided 95 % quantile of the standard normal distribution.
-const Z95: f64 = 1.959_963_984_540_054;
 /// Keys of the metadata of exported runs.
 const UNIT: &str = "unit";
 const OPERATOR: &str = "operator";
@@ -198,18 +197,9 @@ fn yields<'r>(units: impl Iterator<Item = &'r Vec<&'r UnitRunRecord>>) -> Vec<Fi
         units,
         passed,
         fraction: passed as f64 / units as f64,
-        ci95: wilson(passed, units),
+        ci95: wilson_interval(passed, units),
     };
     counts.into_iter().map(row).collect()
-}
-
-/// 95 % interval of a fraction (Wilson 1927): valid for few units and for fractions of 0 and 1.
-fn wilson(passed: u64, units: u64) -> [f64; 2] {
-    let (n, fraction) = (units as f64, passed as f64 / units as f64);
-    let z2_n = Z95 * Z95 / n;
-    let centre = fraction + z2_n / 2.0;
-    let half = Z95 * (fraction * (1.0 - fraction) / n + z2_n / (4.0 * n)).sqrt();
-    [-1.0, 1.0].map(|side| ((centre + side * half) / (1.0 + z2_n)).clamp(0.0, 1.0))
 }
 
 #[cfg(test)]
@@ -232,23 +222,6 @@ mod tests {
             limits: None,
             is_reference: false,
         }
-    }
-
-    #[test]
-    fn the_interval_agrees_with_published_values() {
-        // Newcombe 1998, table I: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
-        for (passed, units, expected) in [
-            (81, 263, [0.2553, 0.3662]),
-            (15, 148, [0.0624, 0.1605]),
-            (0, 20, [0.0, 0.1611]),
-            (1, 29, [0.0061, 0.1718]),
-        ] {
-            let found = wilson(passed, units);
-            for (found, expected) in found.iter().zip(expected) {
-                assert!((found - expected).abs() < 5e-5, "{passed} of {units}: {found} {expected}");
-            }
-        }
-        assert_eq!(wilson(3, 3)[1], 1.0);
     }
 
     #[test]

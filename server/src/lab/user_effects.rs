@@ -12,7 +12,7 @@ use crate::view::{
 };
 use jointbench_instrument::Kind;
 use jointbench_model::formula::{self, Function};
-use jointbench_model::{Definition, Effect as _, ModelError, ModelSpec, Options, TradeOff, UserEffect};
+use jointbench_model::{Effect as _, ModelError, ModelSpec, Options, TradeOff, UserEffect};
 use serde::{Deserialize, Serialize};
 
 impl Lab {
@@ -83,7 +83,7 @@ impl Lab {
         let name = |p: &usize| user_effect.definition().parameters[*p].name.clone();
         let mut check = EffectCheck {
             effect: Some(Effect {
-                definition: Some(reread(user_effect.definition())?),
+                definition: Some(user_effect.definition().clone()),
                 ..effect_view(&user_effect.info())
             }),
             mistake: None,
@@ -137,7 +137,7 @@ impl Lab {
         let Some(fit) = fit else { return Ok(TrialFit { like, ..TrialFit::default() }) };
         let error = finite(fit.validation_rms).map(|after_rms| TrialError { before_rms, after_rms, unit: fit.unit });
         let of_effect: Vec<_> = fit.parameters.into_iter().filter(|p| p.effect == id).collect();
-        Ok(TrialFit { parameters: reread(&of_effect)?, like, error })
+        Ok(TrialFit { parameters: of_effect, like, error })
     }
 
     /// Stores an effect; an existing id gets the next version. The diagnosis of `run`, in whose workbench it was written,
@@ -268,10 +268,8 @@ fn trading(user_effect: &str, pairs: &[TradeOff]) -> Vec<String> {
 }
 
 fn parse(definition: &EffectDefinition) -> Answer<UserEffect> {
-    find_kind(&definition.kind)?;
     names::check_effect(definition)?;
-    let definition: Definition = reread(definition)?;
-    UserEffect::try_from(definition).map_err(|fault| LabError::Formula(fault.into()))
+    UserEffect::try_from(definition.clone()).map_err(|fault| LabError::Formula(fault.into()))
 }
 
 fn read(record: &UserEffectRecord) -> Answer<UserEffect> {

@@ -99,7 +99,7 @@ impl Report {
             table {
                 tr { th { "Effect" } th { "Parameter" } th.figure { "Value" } th.figure { "95 % interval" } td { } }
                 @for parameter in &model.fit.parameters {
-                    @let ends = parameter.ci95[0].zip(parameter.ci95[1]).map(|(low, high)| [low, high]);
+                    @let ends = Some(parameter.ci95).filter(|ends| ends.iter().all(|end| end.is_finite()));
                     @let is_fixed = parameter.state == ParameterState::Fixed;
                     @let (value, interval) = with_interval(parameter.value, ends.filter(|_| !is_fixed), &parameter.unit);
                     tr {

@@ -4,7 +4,7 @@ use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyR
 use crate::view::{self, AxisKind};
 use jointbench_instrument::Motion;
 use jointbench_model::Axis;
-use jointbench_procedure::{Control, EventKind, RunState, Safe};
+use jointbench_procedure::{Control, EventKind, RunState};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -22,29 +22,6 @@ pub fn reread<T: Serialize, U: DeserializeOwned>(value: &T) -> Result<U, Convers
         .map_err(|fault| ConversionError(format!("a result is not finite or not whole: {fault}")))
 }
 
-pub fn state_view(state: RunState) -> view::RunState {
-    match state {
-        RunState::Queued => view::RunState::Queued,
-        RunState::Arming => view::RunState::Arming,
-        RunState::Running => view::RunState::Running,
-        RunState::Paused => view::RunState::Paused,
-        RunState::Securing => view::RunState::Securing,
-        RunState::Completed => view::RunState::Completed,
-        RunState::Stopped => view::RunState::Stopped,
-        RunState::Aborted => view::RunState::Aborted,
-        RunState::Failed => view::RunState::Failed,
-        RunState::Interrupted => view::RunState::Interrupted,
-    }
-}
-
-pub fn safe_view(safe: Safe) -> view::Safe {
-    match safe {
-        Safe::SafeVerified => view::Safe::SafeVerified,
-        Safe::SafeCommanded => view::Safe::SafeCommanded,
-        Safe::UnsafeUnknown => view::Safe::UnsafeUnknown,
-    }
-}
-
 pub fn safety_entry(record: SafetyRecord) -> view::SafetyEntry {
     let SafetyRecord { blocked, stopped, reason, run, by, at } = record;
     view::SafetyEntry { blocked, stopped, reason, run, by, at }
@@ -58,8 +35,8 @@ pub fn run_summary(record: &RunRecord) -> view::RunSummary {
         bench: record.bench.clone(),
         procedure: record.procedure.clone(),
         kind: record.kind.clone(),
-        state: state_view(record.state),
-        safe: record.safe.map(safe_view),
+        state: record.state,
+        safe: record.safe,
         reason: record.reason.clone(),
         created_at: record.created_at.clone(),
         finished_at: record.finished_at.clone(),
@@ -211,10 +188,6 @@ pub fn residual_set(left: jointbench_model::ResidualSet) -> Result<view::Residua
         return Err(ConversionError("the residuals are not finite".to_owned()));
     }
     let axis = |Axis { name, unit, values }| view::ResidualAxis { kind: AxisKind::of(&name), name, unit, values };
-    let residual = match residual {
-        jointbench_model::ResidualKind::Raw => view::ResidualKind::Raw,
-        jointbench_model::ResidualKind::PlateauMean => view::ResidualKind::PlateauMean,
-    };
     let axes = axes.into_iter().map(axis).collect();
     let excluded = Vec::new();
     Ok(view::ResidualSet {
@@ -233,12 +206,11 @@ pub fn residual_set(left: jointbench_model::ResidualSet) -> Result<view::Residua
 }
 
 pub fn diagnosis_view(record: DiagnosisRecord, run: i64) -> Result<view::Diagnosis, ConversionError> {
-    let diagnosis: jointbench_model::Diagnosis = reread(&record.diagnosis)?;
     Ok(view::Diagnosis {
         id: record.id,
         model_id: record.model,
         run,
         created_at: record.created_at,
-        finding: reread(&diagnosis.bounded())?,
+        finding: reread::<_, view::Finding>(&record.diagnosis)?.bounded(),
     })
 }

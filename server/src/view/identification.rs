@@ -1,8 +1,8 @@
 //! Results of procedures.
 
-use super::{LimitCheck, word};
+use super::{Figure, FollowUp, LimitCheck, Quantity, word};
+use jointbench_procedure::identification::{Part, Verdict};
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -58,16 +58,6 @@ pub struct Applies {
     pub what: String,
 }
 
-/// A run with parameters from the result of this one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FollowUp {
-    pub procedure: String,
-    #[schema(value_type = Object)]
-    pub parameters: Map<String, Value>,
-    /// Purpose, in a few words.
-    pub why: String,
-}
-
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Shown {
     pub verdict: Identified,
@@ -111,14 +101,34 @@ pub struct CampaignPart {
 }
 
 impl Shown {
-    /// With preconditions that the run found broken. The rule: what was identified is identified with a warning; what is
-    /// inconclusive or failed stays so.
-    pub fn with_warnings(mut self, warnings: Vec<String>) -> Self {
-        if self.verdict == Identified::Identified && !warnings.is_empty() {
-            self.verdict = Identified::IdentifiedWithWarning;
+    /// A result with the preconditions that the run found broken. The rule: what was identified is identified with a
+    /// warning; what is inconclusive or failed stays so.
+    pub fn new(result: jointbench_procedure::Identification, warnings: Vec<String>) -> Self {
+        let jointbench_procedure::Identification { verdict, summary, lead, advice, quantities, figures, passes, parts } =
+            result;
+        let verdict = match verdict {
+            Verdict::Identified if !warnings.is_empty() => Identified::IdentifiedWithWarning,
+            verdict => verdict.into(),
+        };
+        let parts = parts.into_iter().map(CampaignPart::from).collect();
+        Self { verdict, summary, lead, warnings, advice, quantities, figures, passes, parts }
+    }
+}
+
+impl From<Verdict> for Identified {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Identified => Self::Identified,
+            Verdict::Inconclusive => Self::Inconclusive,
+            Verdict::Failed => Self::Failed,
         }
-        self.warnings = warnings;
-        self
+    }
+}
+
+impl From<Part> for CampaignPart {
+    fn from(part: Part) -> Self {
+        let Part { id, title, verdict, summary, quantities, figures } = part;
+        Self { id, title, verdict: verdict.into(), summary, quantities, figures }
     }
 }
 
@@ -177,91 +187,4 @@ pub struct ModelOverlay {
     pub why_not: Option<String>,
     /// Measured signal and model over time, and the residual with the noise band.
     pub figures: Vec<Figure>,
-}
-
-/// One figure of a result, in SI units.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Quantity {
-    /// Stable and unique in its result, for scripts and limits.
-    pub name: String,
-    /// As in the literature: `τ_c⁺`.
-    pub symbol: String,
-    pub title: String,
-    /// The title without the part of a campaign and without the configuration; absent if the title contains neither.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub base_title: Option<String>,
-    /// The direction or method for which it holds.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub configuration: Option<String>,
-    /// SI symbol; empty for a fraction or a count.
-    pub unit: String,
-    pub value: f64,
-    /// 95 % interval, if determined by the run.
-    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
-    pub ci95: Option<[f64; 2]>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Figure {
-    pub name: String,
-    pub title: String,
-    pub form: FigureForm,
-    pub x: FigureAxis,
-    pub y: FigureAxis,
-    pub series: Vec<FigureSeries>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FigureForm {
-    Cartesian,
-    /// x is the angle [rad], y the radius.
-    Polar,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FigureAxis {
-    pub label: String,
-    /// SI symbol; empty for a fraction or a count.
-    pub unit: String,
-    /// Names of the categories, if the axis is not a quantity; 0 is the first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub names: Vec<String>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Mark {
-    Points,
-    Line,
-    Bars,
-}
-
-/// Meaning of a series in its figure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SeriesRole {
-    /// An error before it is compensated.
-    Before,
-    /// The same error after compensation.
-    After,
-    /// A hysteresis loop during a reversal, while the points are steady motion.
-    Loop,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FigureSeries {
-    pub label: String,
-    /// Series that belong together, such as points and their model, have the same group; its label if absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub group: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub role: Option<SeriesRole>,
-    pub mark: Mark,
-    pub x: Vec<f64>,
-    pub y: Vec<f64>,
-    /// Lower and upper end of the 95 % band at each point; empty without a band.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schema(value_type = Vec<Vec<f64>>)]
-    pub band: Vec<[f64; 2]>,
 }

@@ -1,7 +1,7 @@
 //! Output of the daemon: the same serialisable types for REST, the live stream, the demo and `--json`.
 //!
 //! SI units with the unit as suffix of the name. No number is NaN or infinite: [`finite`] converts an unknown value to
-//! `null`. Types of the model crate are converted with [`reread`], which refuses `null` for a number.
+//! `null`. Results of the lower crates come as JSON from the store or from a job, and a number refuses `null`.
 
 mod archive;
 mod autopilot;
@@ -52,6 +52,17 @@ pub use table::*;
 pub use token::*;
 pub use unit::*;
 pub use user_effect::*;
+
+/// Types of the lower crates that the API returns as they are.
+pub use jointbench_model::{
+    Comparison, Definition as EffectDefinition, Diagnosis as Finding, Evaluation, Experiment, Fit,
+    Parameter as FittedParameter, ParameterSetting, ParameterState, Region, ResidualKind, Suggestion, Verdict,
+};
+pub use jointbench_procedure::identification::{
+    Axis as FigureAxis, Figure, FollowUp, Form as FigureForm, Mark, Quantity, Series as FigureSeries,
+};
+pub use jointbench_procedure::preview::{Check, Extreme, Setpoints, StepPreview as PlannedStep};
+pub use jointbench_procedure::{RunState, Safe};
 
 /// `None` for NaN and infinity, which JSON cannot carry.
 pub fn finite(value: f64) -> Option<f64> {

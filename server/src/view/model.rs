@@ -1,6 +1,6 @@
-//! Effects, model versions, fits and residuals.
+//! Model versions and their residuals.
 
-use super::effect::EffectDefinition;
+use super::{Fit, ParameterSetting, ResidualKind};
 use jointbench_files::{Dimension, dimension_of};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -28,28 +28,6 @@ pub struct NewModel {
     /// Trial: the version is not listed as a model until it is kept.
     #[serde(default)]
     pub tried: bool,
-}
-
-/// What is set for one parameter, in the unit of the parameter. At least one of the values is given.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ParameterSetting {
-    /// Effect of the model.
-    pub effect: String,
-    pub name: String,
-    /// The value, which is not fitted.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fixed: Option<f64>,
-    /// Smallest value that the fit may find.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub min: Option<f64>,
-    /// Largest value that the fit may find.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub max: Option<f64>,
-    /// Start value of the search for a nonlinear parameter. Refused for a linear one: least squares finds it without a
-    /// search.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub start: Option<f64>,
 }
 
 /// An interval of a measurement that is excluded from the fit.
@@ -127,124 +105,6 @@ pub struct Worth {
     pub without_rms: Option<f64>,
     /// Why there is no figure.
     pub reason: Option<String>,
-}
-
-/// A model with fitted parameters.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Fit {
-    pub kind: String,
-    pub effects: Vec<String>,
-    /// User-defined effects at the time of the fit.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub own: Vec<EffectDefinition>,
-    /// Fixed values, bounds and start values of parameters that were set for the fit.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub settings: Vec<ParameterSetting>,
-    /// Training error (RMS).
-    pub rms: f64,
-    /// Validation error (cross-validated RMS).
-    pub validation_rms: f64,
-    /// RMS error of the effects alone on the fitted data, as an exported model predicts; absent for a fit without
-    /// nuisance terms.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub effects_rms: Option<f64>,
-    pub unit: String,
-    pub residual: ResidualKind,
-    /// ‖residual‖ / ‖measured‖.
-    pub relative_error: f64,
-    pub parameters: Vec<FittedParameter>,
-    /// Parameter trade-offs (correlated pairs).
-    pub trade_offs: Vec<TradeOff>,
-    /// Condition number of the scaled columns.
-    pub condition: Option<f64>,
-    /// Notes for the user.
-    pub notes: Vec<String>,
-    pub preparation: Preparation,
-    /// Internal parameters of the effects, to evaluate the model.
-    pub terms: Vec<Term>,
-}
-
-/// Basis of RMS figures and residuals.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ResidualKind {
-    /// Filtered and decimated samples.
-    Raw,
-    /// Means over short chunks of settled motion.
-    PlateauMean,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FittedParameter {
-    pub effect: String,
-    pub name: String,
-    pub value: f64,
-    pub unit: String,
-    /// 95 % confidence interval over segments or repeats; `null` without a bound. Both ends of a fixed parameter are its
-    /// value.
-    #[schema(value_type = Vec<Option<f64>>, min_items = 2, max_items = 2)]
-    pub ci95: [Option<f64>; 2],
-    pub state: ParameterState,
-    /// Explanation of a state other than `ok`; in a diagnosis also the value with a confounded effect.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub note: Option<String>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ParameterState {
-    Ok,
-    /// The best value lies at the edge of what is physically sensible, or at a bound that was set.
-    AtBound,
-    /// The value was set and not fitted.
-    Fixed,
-    /// The whole interval of a coefficient contradicts physics, or the range that was given for it.
-    Impossible,
-    /// The interval is as wide as the value.
-    Unidentified,
-}
-
-/// Two parameters of which the data determines only a combination.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct TradeOff {
-    /// `effect.parameter`.
-    pub first: String,
-    pub second: String,
-    pub correlation: f64,
-}
-
-/// Preprocessing of the run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Preparation {
-    pub residual: ResidualKind,
-    pub sample_rate_hz: f64,
-    pub cutoff_hz: Option<f64>,
-    /// Corrected delay of the measured velocity against position.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub velocity_lag_s: Option<f64>,
-    pub decimation: u64,
-    pub chunk_s: Option<f64>,
-    pub samples: u64,
-    /// Rows of the fit: chunks or decimated samples.
-    pub rows: u64,
-    /// Independent blocks for validation, intervals and tests.
-    pub blocks: u64,
-    /// `column` or `found`.
-    pub segments_from: String,
-    /// `column`, `found` or `none`.
-    pub repeats_from: String,
-}
-
-/// One effect of the model, as numbers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Term {
-    pub effect: String,
-    pub form: String,
-    pub shape: Vec<f64>,
-    pub linear: Vec<f64>,
-    /// Names of the coefficients, then of the nonlinear parameters.
-    #[serde(default)]
-    pub names: Vec<String>,
 }
 
 /// Residuals of a run for a model version. All lists have the same length.

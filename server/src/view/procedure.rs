@@ -1,5 +1,6 @@
 //! Procedures and what they would do.
 
+use super::{Check, Extreme, PlannedStep, Setpoints};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -85,36 +86,4 @@ pub struct Preview {
     pub setpoints: Setpoints,
     /// A condition for the start; a failed one states its remedy.
     pub checks: Vec<Check>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct PlannedStep {
-    pub label: String,
-    pub duration_s: f64,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Extreme {
-    pub quantity: String,
-    pub unit: String,
-    pub value: f64,
-    /// `null` without a limit.
-    pub limit: Option<f64>,
-    pub ok: bool,
-}
-
-/// The commanded profile, as corner points.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, ToSchema)]
-pub struct Setpoints {
-    pub time_s: Vec<f64>,
-    pub motor_velocity_rad_s: Vec<f64>,
-    pub brake_current_a: Vec<f64>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Check {
-    pub name: String,
-    pub ok: bool,
-    pub detail: String,
-    pub cure: Option<String>,
 }

@@ -1,43 +1,9 @@
 //! Runs, their journal and their samples.
 
-use super::{ArchivedTable, FittedParameter, Identified, LimitOutcome, Unit, word};
+use super::{ArchivedTable, FittedParameter, Identified, LimitOutcome, RunState, Safe, Unit, word};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum RunState {
-    Queued,
-    Arming,
-    Running,
-    Paused,
-    Securing,
-    Completed,
-    Stopped,
-    Aborted,
-    Failed,
-    /// The daemon ended before the run did.
-    Interrupted,
-}
-
-impl RunState {
-    pub fn is_over(self) -> bool {
-        matches!(self, Self::Completed | Self::Stopped | Self::Aborted | Self::Failed | Self::Interrupted)
-    }
-}
-
-/// Safe state reached at the end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Safe {
-    /// Read back: drive off, brake current zero.
-    SafeVerified,
-    /// Commanded, but not read back.
-    SafeCommanded,
-    /// Not known. The bench is blocked until a person acknowledges.
-    UnsafeUnknown,
-}
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RunSummary {
@@ -185,7 +151,7 @@ impl Run {
             text += &format!("; not yet stored: {why}");
         }
         let can_go_on = jointbench_procedure::procedure(&summary.procedure).is_some_and(|one| one.can_resume().is_ok());
-        if can_go_on && summary.state.is_over() && summary.state != RunState::Completed && summary.rows > 0 {
+        if can_go_on && summary.state.is_final() && summary.state != RunState::Completed && summary.rows > 0 {
             text += &format!("; complete it with `jointbench run --continue {}`", summary.id);
         }
         text

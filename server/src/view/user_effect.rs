@@ -1,7 +1,6 @@
-//! Trials of user-defined effects, comparison of models, export and import of models.
+//! Trials of user-defined effects, evaluation and import of models.
 
-use super::effect::{Effect, EffectDefinition};
-use super::model::{Exclusion, FittedParameter, Model, ResidualKind};
+use super::{Effect, EffectDefinition, Exclusion, FittedParameter, Model};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -117,64 +116,6 @@ pub struct FormulaLanguage {
 #[serde(deny_unknown_fields)]
 pub struct NewEvaluation {
     pub run: i64,
-}
-
-/// A model on a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Evaluation {
-    pub rms: f64,
-    /// RMS error of the effects alone; absent for a fit without nuisance terms.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub effects_rms: Option<f64>,
-    pub unit: String,
-    pub residual: ResidualKind,
-    /// ‖residual‖ / ‖measured‖.
-    pub relative_error: f64,
-    pub rows: u64,
-    pub samples: u64,
-    /// Fraction of the samples in steady state, if only steady state is evaluated.
-    pub settled_share: Option<f64>,
-    /// Limitations of the evaluation: missing columns, metadata that differ from the fit, signals outside the range of
-    /// the fit.
-    pub notes: Vec<String>,
-}
-
-/// Comparison of two model versions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Comparison {
-    pub kind: String,
-    /// Effects of the second that are not in the first.
-    pub added: Vec<String>,
-    pub removed: Vec<String>,
-    pub parameters: Vec<ParameterPair>,
-    /// Both on the same run.
-    pub first: Evaluation,
-    pub second: Evaluation,
-    /// Each on the validation data of its own run.
-    pub first_validation_rms: f64,
-    pub second_validation_rms: f64,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct ParameterPair {
-    pub effect: String,
-    pub name: String,
-    pub unit: String,
-    pub first: Option<FittedParameter>,
-    pub second: Option<FittedParameter>,
-    /// The intervals of the values do not overlap; `null` if a value or an interval is missing.
-    pub differ: Option<bool>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub wider: Option<Wider>,
-}
-
-/// Why the interval of a parameter is much wider in one of two versions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Wider {
-    /// In the second, or in the first.
-    pub second: bool,
-    pub times: f64,
-    pub why: String,
 }
 
 /// An imported version, with the limitations of its evaluation.

@@ -5,7 +5,7 @@ use crate::effect::{Effect, Form, Regime, ShapeSearch};
 use crate::effects::excitation;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::Silent;
-use crate::report::reasons::{Invisible, InvisibleReason, LeftOut, RejectionReason};
+use crate::report::reasons::{Invisible, InvisibleReason, LeftOut, LeftOutReason, RejectionReason};
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::{hysteresis_stage, ramp_stage};
@@ -34,16 +34,18 @@ impl ExcludedEffects {
         let is_out = |effect: &&dyn Effect| !end.effects.iter().any(|e| e == effect.info().id);
         for effect in end.spec.known().filter(is_out) {
             let id = effect.info().id;
-            let tied = ties.iter().find(|(_, scored)| *scored == id);
-            let tied = tied.map(|(named, _)| format!("{named} is in the model, and this run cannot distinguish them"));
-            let tried = withdrawn.iter().find(|w| w.effect == id);
-            let tried = tried.map(|w| (RejectionReason::Removed(w.why), w.why.words().to_owned()));
-            let mut refused = selected.decided.iter().flat_map(|decided| &decided.refused);
-            let refused = || refused.find(|one| one.effect == id).map(|one| (one.reason, one.words()));
-            let rejected = tried.or_else(refused).or_else(|| given(effect, end));
+            let tied = ties.iter().find(|(_, scored)| *scored == id).map(|(named, _)| {
+                let why = format!("{named} is in the model, and this run cannot distinguish them");
+                (RejectionReason::Confounded, why)
+            });
+            let removed = withdrawn.iter().find(|w| w.effect == id);
+            let removed = removed.map(|w| (LeftOutReason::Removed(w.why), w.why.words().to_owned()));
+            let refused = selected.decided.iter().flat_map(|decided| &decided.refused).find(|one| one.effect == id);
+            let refused = refused.map(|one| (one.reason, one.words())).or_else(|| given(effect, end));
+            let rejected = |(reason, why)| (LeftOutReason::Rejected(reason), why);
+            let left_out = tied.map(rejected).or(removed).or(refused.map(rejected));
             let detection_limit = detection_limits.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
-            let rejected = tied.map(|why| (RejectionReason::Confounded, why)).or(rejected);
-            match (rejected, detection_limit) {
+            match (left_out, detection_limit) {
                 (Some((reason, why)), _) => others.left_out.push(LeftOut { effect: id.into(), reason, why }),
                 // No noise is larger than the signal: only effects of the model can hide so much.
                 (None, Some(limit)) if limit.detectable_rms <= signal => others.silent.push(Silent {

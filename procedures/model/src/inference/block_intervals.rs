@@ -4,7 +4,7 @@
 use crate::inference::parameter_state::{self, Intervals, Slot};
 use crate::linear::cholesky::projections;
 use crate::preprocess::Problem;
-use crate::regression::linear_model::{LinearModel, Relative, Term, columns};
+use crate::regression::linear_model::{LinearModel, Term, columns};
 use crate::regression::solution::Solution;
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use crate::stats::summary::deviation;
@@ -108,11 +108,11 @@ impl Estimates {
 /// What each effect gains for a unit of another form, if only its own forms count as its size.
 fn moved(model: &LinearModel, solution: &Solution) -> Vec<Vec<f64>> {
     let columns = model.relatives.iter().flat_map(|relative| relative.columns.iter().map(move |c| (relative, c)));
-    let of = |((relative, column), parts): ((&Relative, &Vec<f64>), &Vec<f64>)| {
+    let of = |((relative, column), parts): ((&Term, &Vec<f64>), &Vec<f64>)| {
         let mut moved: Vec<f64> = parts.iter().map(|part| -part).collect();
         let mut first = 0;
         for term in &model.terms {
-            if term.id() == relative.effect.info().id {
+            if term.id() == relative.id() {
                 let effects: Vec<&Vec<f64>> = term.columns.iter().collect();
                 let projected = projections(std::slice::from_ref(column), &effects).remove(0);
                 moved[first..].iter_mut().zip(projected).for_each(|(moved, part)| *moved += part);
@@ -141,8 +141,7 @@ fn at_corner<'p>(model: &LinearModel<'p>, problem: &'p Problem) -> LinearModel<'
     other.offsets.clone_from(&model.offsets);
     let term = |term: &Term<'p>| Term::new(term.effect, term.form.clone(), term.shape.clone(), problem);
     other.terms = model.terms.iter().map(term).collect();
-    other.relatives =
-        Arc::new(model.relatives.par_iter().map(|relative: &Relative<'p>| relative.at(problem)).collect());
+    other.relatives = Arc::new(model.relatives.par_iter().map(term).collect());
     other
 }
 

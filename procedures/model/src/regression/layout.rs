@@ -4,7 +4,7 @@
 use crate::effect::{Effect, ShapeSearch};
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::{errors, visible};
-use crate::regression::linear_model::{LinearModel, Relative, Term, allows};
+use crate::regression::linear_model::{LinearModel, Term, allows};
 use crate::regression::solution::Solution;
 use crate::thresholds::{DECISION_SHARE, ONE_ERROR};
 use rayon::prelude::*;
@@ -107,7 +107,8 @@ fn is_form_error(form: &Regressor, parts: &[&Regressor]) -> bool {
     })
 }
 
-fn relative<'p>(form: &Regressor<'p>) -> Relative<'p> {
+/// The form as a nuisance term.
+fn relative<'p>(form: &Regressor<'p>) -> Term<'p> {
     let columns = form.columns.iter().map(|c| c.iter().map(|v| f64::from(*v)).collect()).collect();
-    Relative { effect: form.effect, form: form.form.clone(), shape: form.shape.clone(), columns }
+    Term { effect: form.effect, form: form.form.clone(), shape: form.shape.clone(), columns, fixed: Vec::new() }
 }

@@ -1,6 +1,5 @@
 //! A model on one problem: effects with their forms, nonlinear parameters and columns at the rows.
 
-pub use crate::regression::relative::Relative;
 pub use crate::regression::term::{Term, allows, columns, fixed_part};
 
 use crate::effect::{Effect, ShapeSearch};
@@ -21,8 +20,8 @@ pub struct LinearModel<'p> {
     /// Effects that are offset terms.
     pub offsets: Vec<&'p dyn Effect>,
     pub terms: Vec<Term<'p>>,
-    /// Other forms of the effects, as nuisance columns.
-    pub relatives: Arc<Vec<Relative<'p>>>,
+    /// Other forms of the effects, as nuisance columns: what the forms in the model cannot show.
+    pub relatives: Arc<Vec<Term<'p>>>,
 }
 
 /// The solution of a model: coefficients of the columns of each term, and the residual.
@@ -51,8 +50,8 @@ impl<'p> LinearModel<'p> {
     pub fn without(&self, id: &str) -> Self {
         let mut less = self.clone();
         less.terms.retain(|t| t.id() != id);
-        if less.relatives.iter().any(|r| r.effect.info().id == id) {
-            less.relatives = Arc::new(less.relatives.iter().filter(|r| r.effect.info().id != id).cloned().collect());
+        if less.relatives.iter().any(|r| r.id() == id) {
+            less.relatives = Arc::new(less.relatives.iter().filter(|r| r.id() != id).cloned().collect());
         }
         less.refine();
         less

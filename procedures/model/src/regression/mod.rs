@@ -11,7 +11,7 @@ pub(crate) mod layout;
 pub(crate) mod least_squares;
 pub(crate) mod linear_model;
 pub(crate) mod partial_regression;
-pub(crate) mod relative;
+pub(crate) mod remainder;
 pub(crate) mod significance;
 pub(crate) mod solution;
 pub(crate) mod term;

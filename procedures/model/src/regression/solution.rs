@@ -7,9 +7,9 @@ use crate::effects::friction::{presliding, signal_delay};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
 use crate::preprocess::form_error::{ErrorColumn, FormError, FormErrorKind};
-use crate::regression::linear_model::{Linear, LinearModel, Relative};
+use crate::regression::linear_model::{Linear, LinearModel};
 use crate::regression::partial_regression::LEAST_TOLERANCE;
-use crate::regression::relative::Remainder;
+use crate::regression::remainder::Remainder;
 use crate::regression::weights::weights;
 use crate::stats::jackknife;
 use crate::stats::summary::rms;
@@ -72,7 +72,7 @@ pub fn nuisance<'a>(
             term.columns.iter().map(move |column| receives.then_some(column))
         })
         .collect();
-    let wholes: Vec<&Vec<f64>> = model.relatives.iter().flat_map(|relative: &Relative| &relative.columns).collect();
+    let wholes: Vec<&Vec<f64>> = model.relatives.iter().flat_map(|relative| &relative.columns).collect();
     let relatives = wholes.into_par_iter().map(|whole| Remainder::of(whole, &effects)).collect();
     Nuisance { error: error.collect(), relatives }
 }
@@ -249,7 +249,7 @@ fn name(model: &LinearModel) -> String {
         name.push_str(&format!("+{} {} {:?}", term.id(), term.form.name, term.shape));
     }
     for relative in model.relatives.iter() {
-        name.push_str(&format!("~{} {} {:?}", relative.effect.info().id, relative.form.name, relative.shape));
+        name.push_str(&format!("~{} {} {:?}", relative.id(), relative.form.name, relative.shape));
     }
     name
 }

@@ -3,11 +3,13 @@
 use crate::report::fit::{Evaluation, Parameter};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Result of `compare`: differences between two models of one kind.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Comparison {
     /// Kind of both models.
+    #[schema(value_type = String)]
     pub kind: Kind,
     /// Effects of the second model that the first one lacks.
     pub added: Vec<String>,
@@ -26,7 +28,7 @@ pub struct Comparison {
 }
 
 /// A parameter in two models.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ParameterPair {
     /// Id of the effect that the parameter belongs to.
     pub effect: String,
@@ -34,11 +36,11 @@ pub struct ParameterPair {
     pub name: String,
     /// Unit of both values.
     pub unit: String,
-    /// The parameter in the first model. `None` if that model lacks it.
+    /// The parameter in the first model. Absent if that model lacks it.
     pub first: Option<Parameter>,
-    /// The parameter in the second model. `None` if that model lacks it.
+    /// The parameter in the second model. Absent if that model lacks it.
     pub second: Option<Parameter>,
-    /// Whether the values differ by more than their intervals allow. `None` if one is missing or has no interval.
+    /// Whether the values differ by more than their intervals allow. Absent if one is missing or has no interval.
     pub differ: Option<bool>,
     /// Present if one interval is much wider than the other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -46,7 +48,8 @@ pub struct ParameterPair {
 }
 
 /// Why a parameter is less certain in one of two models.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = Wider)]
 pub struct WiderInterval {
     /// Whether the second model has the wider interval.
     pub second: bool,

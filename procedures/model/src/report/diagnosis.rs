@@ -1,16 +1,17 @@
 //! Result of a diagnosis: missing effects and unexplained structure.
 
-use crate::UserEffect;
 use crate::report::fit::{Fit, Parameter, ResidualKind};
 use crate::report::maps::{PairMap, Region};
 use crate::report::reasons::{AdditionReason, Invisible, LeftOut, RemovalReason};
 use crate::report::text::TextPart;
 use crate::thresholds::{MASKED_RATIO, SMALL_REDUCTION, STRONG_P_VALUE};
+use crate::{Definition, UserEffect};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Why a verdict is undecided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum UndecidedReason {
     /// The columns of the run contradict each other.
@@ -26,7 +27,7 @@ pub enum UndecidedReason {
 }
 
 /// Conclusion of a diagnosis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// No repeatable structure remains that the library or the maps could show.
@@ -38,20 +39,23 @@ pub enum Verdict {
 }
 
 /// Result of `diagnose`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = Finding)]
 pub struct Diagnosis {
     /// Kind of the run and the model.
+    #[schema(value_type = String)]
     pub kind: Kind,
     /// Effect ids of the diagnosed model, without suggestions.
     pub model: Vec<String>,
     /// User effects that the diagnosis included.
     #[serde(default, rename = "own", skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<Definition>)]
     pub user_effects: Vec<UserEffect>,
     /// The diagnosed model, fitted to the run without suggestions.
     pub fit: Fit,
     /// Data that the residual and all RMS figures refer to.
     pub residual: ResidualKind,
-    /// Noise floor of the run, comparable with the RMS figures. `None` without repeats.
+    /// Noise floor of the run, comparable with the RMS figures. Absent without repeats.
     pub noise_floor_rms: Option<f64>,
     /// The noise floor with its interval and source.
     pub noise_floor: NoiseFloor,
@@ -90,7 +94,7 @@ pub struct Diagnosis {
     /// An effect that may be present in addition to the suggestions and changes the parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imitated: Option<Imitated>,
-    /// The recommended next run. Without a menu (`next_run`) only missing repeats are recommended, otherwise `None`.
+    /// The recommended next run. Without a menu (`next_run`) only missing repeats are recommended, otherwise it is absent.
     pub experiment: Option<Experiment>,
     /// Effects that were tested and not found, with their detection limits.
     pub silent: Vec<Silent>,
@@ -102,32 +106,35 @@ pub struct Diagnosis {
 }
 
 /// Noise floor: the repeatability of the measurement.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NoiseFloor {
-    /// RMS of the pure error, in the unit of the fit. `None` if fewer than eight pairs of rows are replicates.
+    /// RMS of the pure error, in the unit of the fit. Absent if fewer than eight pairs of rows are replicates.
     pub rms: Option<f64>,
-    /// 95 % interval of `rms`, jackknife over blocks. `None` if a few blocks contain all the noise.
+    /// 95 % interval of `rms`, jackknife over blocks. Absent if a few blocks contain all the noise.
+    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
     pub ci95: Option<[f64; 2]>,
     /// Source of the figure, in words.
     pub source: String,
-    /// Share of the remaining squared error that is repeatable.
+    /// Fraction of the remaining squared error that is repeatable.
     pub repeatable_share: Option<f64>,
-    /// 95 % interval of that share. If it includes zero, the share is not significant.
+    /// 95 % interval of that fraction. If it includes zero, the fraction is not significant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
     pub repeatable_ci95: Option<[f64; 2]>,
 }
 
 /// How significant and how relevant a missing effect is.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Evidence {
-    /// Significant, with a reduction of at least [`SMALL_REDUCTION`].
+    /// Significant, with a reduction of the validation error of at least the threshold `SMALL_REDUCTION`.
     #[default]
     Strong,
-    /// Significant, but less than [`SMALL_REDUCTION`] of the validation error.
+    /// Significant, with a smaller reduction.
     Small,
-    /// Possibly missing: its p-value exceeds [`STRONG_P_VALUE`], the interval of its reduction of the validation error
-    /// includes zero, the error is not smaller with it, or the intervals of all its coefficients include zero.
+    /// Possibly missing: its p-value exceeds the threshold `STRONG_P_VALUE`, the interval of its reduction of the
+    /// validation error includes zero, the error is not smaller with it, or the intervals of all its coefficients
+    /// include zero.
     Weak,
 }
 
@@ -146,19 +153,20 @@ impl Evidence {
 }
 
 /// One missing effect with its evidence.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Suggestion {
     /// Id of the missing effect.
     pub effect: String,
     /// Validation error of the model with this effect.
     pub validation_rms: f64,
-    /// RMS error of the effects alone on the fitted data. `None` for a fit without nuisance terms.
+    /// RMS error of the effects alone on the fitted data. Absent for a fit without nuisance terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects_rms: Option<f64>,
     /// 1 − validation_rms / validation_rms of the present model.
     pub error_reduction: f64,
-    /// 95 % interval from the scatter over the folds. `None` for an effect of other data than that of the RMS.
+    /// 95 % interval from the scatter over the folds. Absent for an effect of other data than that of the RMS.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
     pub error_reduction_ci95: Option<[f64; 2]>,
     /// Change of the Bayesian information criterion over independent blocks; a negative value supports the effect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -171,6 +179,7 @@ pub struct Suggestion {
     pub p_value: f64,
     /// Class of the evidence, from the p-value and the error reductions.
     #[serde(default)]
+    #[schema(required)]
     pub evidence: Evidence,
     /// No flip reached this score, so that `p_value` is an upper limit.
     #[serde(default)]
@@ -186,12 +195,13 @@ pub struct Suggestion {
     pub reasons: String,
 }
 
-/// A run that would answer the questions that this run leaves open.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A run that would answer the questions that this run cannot answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Experiment {
     /// Name of the procedure.
     pub procedure: String,
     /// Parameters of the procedure by name; empty if the defaults apply.
+    #[schema(value_type = Object)]
     pub parameters: serde_json::Map<String, serde_json::Value>,
     /// The question that the run answers, in words.
     pub why: String,
@@ -207,7 +217,7 @@ pub struct Experiment {
 }
 
 /// An effect that another one imitates: its absence hardly changes the error, but biases a parameter.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Imitated {
     /// Id of the effect that may be present.
     pub effect: String,
@@ -222,14 +232,15 @@ pub struct Imitated {
 }
 
 /// An effect that was tested and not found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Silent {
     /// Id of the effect.
     pub effect: String,
     /// Detection limit: RMS of the smallest effect that is found with 80 % power, in the unit of the fit.
     pub minimum_detectable_rms: f64,
-    /// The effect is smaller than this RMS (95 %), in the unit of the fit; set by [`Diagnosis::bounded`].
+    /// The effect is smaller than this RMS (95 %), in the unit of the fit; set by `bounded`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(required, value_type = f64)]
     pub upper_rms: Option<f64>,
     /// Tested range, if it is limited: `1 to 60 waves a turn`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -239,15 +250,15 @@ pub struct Silent {
 /// One step of `discover`. The first one is the given model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
-    /// Effect that this step added. `None` for the given model and for a removal.
+    /// Effect that this step added. Absent for the given model and for a removal.
     pub added: Option<String>,
-    /// Why `added` was added. `None` if nothing was.
+    /// Why `added` was added. Absent if nothing was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub addition_reason: Option<AdditionReason>,
     /// An added effect that is removed again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub removed: Option<String>,
-    /// Why `removed` was removed. `None` if nothing was.
+    /// Why `removed` was removed. Absent if nothing was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub removal_reason: Option<RemovalReason>,
     /// Effects that explain this data as well as the added one, in the final model too.
@@ -270,7 +281,7 @@ pub struct Discovery {
     pub steps: Vec<Step>,
     /// Data that the residual and all RMS figures refer to.
     pub residual: ResidualKind,
-    /// Noise floor of the run, comparable with the RMS figures. `None` without repeats.
+    /// Noise floor of the run, comparable with the RMS figures. Absent without repeats.
     pub noise_floor_rms: Option<f64>,
     /// The noise floor with its interval and source.
     pub noise_floor: NoiseFloor,
@@ -301,7 +312,7 @@ pub struct Discovery {
     /// An effect that may be present in addition to those of the model and changes the parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imitated: Option<Imitated>,
-    /// The recommended next run. Without a menu (`next_run`) only missing repeats are recommended, otherwise `None`.
+    /// The recommended next run. Without a menu (`next_run`) only missing repeats are recommended, otherwise it is absent.
     pub experiment: Option<Experiment>,
     /// Effects that were tested and not found, with their detection limits.
     #[serde(default)]

@@ -1,13 +1,14 @@
 //! A fitted model.
 
-use crate::UserEffect;
 use crate::report::setting::ParameterSetting;
 use crate::thresholds::ELEMENT_WEIGHT;
+use crate::{Definition, UserEffect};
 use jointbench_instrument::{Kind, Motion};
 use serde::{Deserialize, Deserializer, Serialize};
+use utoipa::ToSchema;
 
 /// The data of RMS figures and residuals.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ResidualKind {
     /// Filtered and decimated samples.
@@ -17,23 +18,25 @@ pub enum ResidualKind {
 }
 
 /// A model with the parameters that fit one run best.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Fit {
     /// Kind of the fitted run, which determines the response.
+    #[schema(value_type = String)]
     pub kind: Kind,
     /// Effect ids in the order of the model, including effects that the run cannot show.
     pub effects: Vec<String>,
     /// Definitions of the user effects that the fit contains.
     #[serde(default, rename = "own", skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<Definition>)]
     pub user_effects: Vec<UserEffect>,
     /// Fixed values, bounds and start values that a user has set.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settings: Vec<ParameterSetting>,
     /// Training error: RMS of the residual on the fitted data, in `unit`.
     pub rms: f64,
-    /// Validation error: RMS on data left out of the fit; the other conditions predict every condition.
+    /// Validation error: RMS on data that the fit did not use; the other conditions predict every condition.
     pub validation_rms: f64,
-    /// RMS error of the effects alone on the fitted data, as an exported model predicts. `None` for a fit without
+    /// RMS error of the effects alone on the fitted data, as an exported model predicts. Absent for a fit without
     /// nuisance terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects_rms: Option<f64>,
@@ -49,6 +52,7 @@ pub struct Fit {
     pub trade_offs: Vec<TradeOff>,
     /// Condition number of the scaled columns.
     #[serde(deserialize_with = "open_end")]
+    #[schema(value_type = Option<f64>)]
     pub condition: f64,
     /// Notes for the user, in plain sentences.
     pub notes: Vec<String>,
@@ -60,13 +64,14 @@ pub struct Fit {
     /// model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub form_error: Vec<FormErrorTerm>,
-    /// `None` in fits of earlier versions.
+    /// Absent in fits of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scope: Option<Scope>,
 }
 
 /// One number of the model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = FittedParameter)]
 pub struct Parameter {
     /// Id of the effect that the parameter belongs to.
     pub effect: String,
@@ -78,6 +83,7 @@ pub struct Parameter {
     pub unit: String,
     /// 95 % interval over segments or repeats (delete-group jackknife, t with G − 1 degrees of freedom).
     #[serde(deserialize_with = "open_interval")]
+    #[schema(value_type = Vec<Option<f64>>, min_items = 2, max_items = 2)]
     pub ci95: [f64; 2],
     /// Whether the run determines the parameter, and its value is possible.
     pub state: ParameterState,
@@ -88,7 +94,7 @@ pub struct Parameter {
 }
 
 /// How well a run determines a parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ParameterState {
     /// The run determines the value, and the value is physically possible.
@@ -114,7 +120,7 @@ fn open_end<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
 }
 
 /// Two parameters of which the data determines only a combination.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TradeOff {
     /// `effect.parameter`.
     pub first: String,
@@ -125,20 +131,20 @@ pub struct TradeOff {
 }
 
 /// Preprocessing of the run for the fit. A run is preprocessed in the same way when the fit is evaluated on it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Preparation {
     /// The data that the fit uses.
     pub residual: ResidualKind,
     /// Sample rate of the recorded run, 1 / median time step [Hz].
     pub sample_rate_hz: f64,
-    /// `None` without a filter.
+    /// Absent without a filter.
     pub cutoff_hz: Option<f64>,
-    /// Corrected delay of the measured velocity against the position. `None` without a correction.
+    /// Corrected delay of the measured velocity against the position. Absent without a correction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity_lag_s: Option<f64>,
     /// Every n-th filtered sample is used; 1 without decimation.
     pub decimation: usize,
-    /// The presliding direction of motion. `None` if the direction is the sign of the velocity.
+    /// The presliding direction of motion. Absent if the direction is the sign of the velocity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bristles: Option<Bristles>,
     /// Length of a chunk. In a long run in steps, a row is the mean of several neighbouring chunks.
@@ -157,7 +163,7 @@ pub struct Preparation {
 
 /// A direction that changes over a displacement: weighted stop operators, which slip at ±1, and Dahl elements with
 /// exponential approach.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Bristles {
     /// Reaches of the stop operators, the shortest first; the Dahl elements have the same without the shortest [rad].
     pub reaches_rad: Vec<f64>,
@@ -182,7 +188,7 @@ impl Bristles {
 }
 
 /// A nuisance column for the form error of a model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FormErrorTerm {
     /// `bristle`, `bristle_rate`, `jerk`, `snap` or `load_rate`, or an effect, for another form of it.
     pub name: String,
@@ -196,7 +202,7 @@ pub struct FormErrorTerm {
 }
 
 /// One effect of the model, as numbers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Term {
     /// Id of the effect.
     pub effect: String,
@@ -212,9 +218,10 @@ pub struct Term {
 }
 
 /// Range of validity of a fit, for its use without the run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Scope {
     /// Whether the joint rotates or slides, which determines the units.
+    #[schema(value_type = String)]
     pub motion: Motion,
     /// Factor from the load in model quantities to the link torque: the gear ratio for friction runs, otherwise 1.
     pub load_scale: f64,
@@ -226,21 +233,21 @@ pub struct Scope {
     /// versions.
     #[serde(default)]
     pub constants: Vec<GivenConstant>,
-    /// Error of the hysteresis states in C code, with the measured load instead of the smoothed one. `None` if the
+    /// Error of the hysteresis states in C code, with the measured load instead of the smoothed one. Absent if the
     /// fit smoothed no signal of a hysteresis state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fed_rms: Option<f64>,
     /// Mean curves of hysteresis effects.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub means: Vec<MeanCurve>,
-    /// Error of the look-up table with linear interpolation at the points of the run. `None` in fits of earlier
+    /// Error of the look-up table with linear interpolation at the points of the run. Absent in fits of earlier
     /// versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table_rms: Option<f64>,
 }
 
 /// The mean curve of a hysteresis effect over its signal, fitted to the run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MeanCurve {
     /// Id of the hysteresis effect.
     pub effect: String,
@@ -255,7 +262,7 @@ pub struct MeanCurve {
 }
 
 /// A constant of the set-up, by its name in the meta file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct GivenConstant {
     /// Name in the meta file, with its unit: `torque_constant_nm_per_a`.
     pub name: String,
@@ -264,7 +271,7 @@ pub struct GivenConstant {
 }
 
 /// Smallest and largest value of a signal at the points of a fit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SignalRange {
     /// Name of the signal in formulas.
     pub name: String,
@@ -280,11 +287,11 @@ pub struct SignalRange {
 }
 
 /// A fit on a run that was not used for it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Evaluation {
     /// RMS of the residual on the evaluated run, in `unit`.
     pub rms: f64,
-    /// RMS error of the effects alone. `None` for a fit without nuisance terms.
+    /// RMS error of the effects alone. Absent for a fit without nuisance terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects_rms: Option<f64>,
     /// Unit of both RMS figures.
@@ -297,7 +304,7 @@ pub struct Evaluation {
     pub rows: usize,
     /// Samples of the evaluated run.
     pub samples: usize,
-    /// Share of the samples at steady state, if only these are judged.
+    /// Fraction of the samples at steady state, if only these are judged.
     pub settled_share: Option<f64>,
     /// Limitations of the error, in plain sentences: missing columns, constants that differ from those of the fit,
     /// signals outside its ranges.

@@ -2,6 +2,7 @@
 
 use crate::report::fit::ResidualKind;
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Every map of a fit on a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,7 +35,7 @@ pub struct AxisMap {
     pub unit: String,
     /// Bins with rows, in ascending order; their ranges may have gaps.
     pub bins: Vec<MapBin>,
-    /// Cross-validated R²: share of the squared residual that a function of this quantity removes on data that was
+    /// Cross-validated R²: fraction of the squared residual that a function of this quantity removes on data that was
     /// not used for it.
     pub removable_share: f64,
 }
@@ -51,16 +52,16 @@ pub struct MapBin {
     pub centre: f64,
     /// Mean residual (measured − predicted) of the rows in the bin.
     pub mean: f64,
-    /// `None` with fewer than three independent blocks: shown hatched, without a band.
+    /// Absent with fewer than three independent blocks: shown hatched, without a band.
     pub half_width: Option<f64>,
     /// Number of rows in the bin.
     pub rows: usize,
 }
 
 /// Mean residual over two quantities: a heat map without empty cells.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PairMap {
-    /// Name of the horizontal axis, as in [`AxisMap::axis`].
+    /// Name of the horizontal axis, as in the map of one axis.
     pub x: String,
     /// Unit of the horizontal axis.
     pub x_unit: String,
@@ -69,18 +70,20 @@ pub struct PairMap {
     /// Unit of the vertical axis.
     pub y_unit: String,
     /// Smallest and largest value in each bin of the horizontal axis.
+    #[schema(value_type = Vec<Vec<f64>>)]
     pub x_bins: Vec<[f64; 2]>,
     /// Smallest and largest value in each bin of the vertical axis.
+    #[schema(value_type = Vec<Vec<f64>>)]
     pub y_bins: Vec<[f64; 2]>,
     /// Cells with rows, in the order of x, then y.
     pub cells: Vec<MapCell>,
-    /// Cross-validated R²: share of the squared residual that a function of both quantities removes on data that was
+    /// Cross-validated R²: fraction of the squared residual that a function of both quantities removes on data that was
     /// not used for it.
     pub removable_share: f64,
 }
 
 /// One cell, with its place in `x_bins` and `y_bins`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MapCell {
     /// Index of the bin in `x_bins`.
     pub x: usize,
@@ -88,16 +91,16 @@ pub struct MapCell {
     pub y: usize,
     /// Mean residual (measured − predicted) of the rows in the cell.
     pub mean: f64,
-    /// Half width of the simultaneous band. `None` with fewer than three independent blocks.
+    /// Half width of the simultaneous band. Absent with fewer than three independent blocks.
     pub half_width: Option<f64>,
     /// Number of rows in the cell.
     pub rows: usize,
 }
 
 /// A range of an axis (and a direction or a second axis) with a significant residual.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Region {
-    /// Name of the axis, as in [`AxisMap::axis`].
+    /// Column name of the run table, or `direction`, `time_since_reversal_s`, `motor_torque_nm`.
     pub axis: String,
     /// Smallest value of the axis in the region.
     pub from: f64,
@@ -106,6 +109,7 @@ pub struct Region {
     /// Mean of measured − predicted: positive where the model is too low.
     pub mean_residual: f64,
     /// Simultaneous over all regions of all maps.
+    #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
     pub ci95: [f64; 2],
     /// Number of rows in the region.
     pub samples: usize,

@@ -20,7 +20,9 @@ pub use crate::report::fit::{
     ResidualKind, Scope, SignalRange, Term, TradeOff,
 };
 pub use crate::report::maps::{AxisMap, MapBin, MapCell, PairMap, Region, ResidualMaps};
-pub use crate::report::reasons::{AdditionReason, Invisible, InvisibleReason, LeftOut, RejectionReason, RemovalReason};
+pub use crate::report::reasons::{
+    AdditionReason, Invisible, InvisibleReason, LeftOut, LeftOutReason, RejectionReason, RemovalReason,
+};
 pub use crate::report::residuals::{Axis, ResidualSet};
 pub use crate::report::setting::ParameterSetting;
 pub use crate::report::text::TextPart;

@@ -1,20 +1,31 @@
 //! Typed reasons: why an effect was added, removed, rejected, or cannot be shown.
 
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// A rejected effect, which may nevertheless be present.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LeftOut {
     /// Id of the effect.
     pub effect: String,
     /// Why it was rejected.
-    pub reason: RejectionReason,
+    pub reason: LeftOutReason,
     /// The same in words, with the figures.
     pub why: String,
 }
 
-/// Why an effect was tested and rejected.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// Why an effect was tested and rejected: it was not added, or removed again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum LeftOutReason {
+    /// It was not added.
+    Rejected(RejectionReason),
+    /// It was added and removed again.
+    Removed(RemovalReason),
+}
+
+/// Why an effect was not added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RejectionReason {
     /// An effect of the model explains the same.
@@ -29,13 +40,10 @@ pub enum RejectionReason {
     ModelFull,
     /// With it, the error is not smaller.
     NoReduction,
-    /// It was added and removed again.
-    #[serde(untagged)]
-    Removed(RemovalReason),
 }
 
 /// An effect that this data cannot show.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Invisible {
     /// Id of the effect.
     pub effect: String,
@@ -52,7 +60,7 @@ impl Invisible {
 }
 
 /// Why data cannot show an effect.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum InvisibleReason {
     /// The run lacks a signal or an excitation that the effect needs.
@@ -61,7 +69,7 @@ pub enum InvisibleReason {
     Confounded,
     /// It acts on ramps only, which are tested for a delay only.
     RampsOnly,
-    /// Its detection limit exceeds a share of the measured signal.
+    /// Its detection limit exceeds a fraction of the measured signal.
     DetectionLimit,
 }
 
@@ -86,7 +94,7 @@ pub enum AdditionReason {
 }
 
 /// Why an added effect was removed again.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RemovalReason {
     /// The fitted error is as small without it.

@@ -1,9 +1,10 @@
 //! What a user sets for a parameter of a model.
 
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// A fixed value, bounds or a start value of one parameter, in the unit of the parameter.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterSetting {
     /// Id of an effect of the model.

@@ -3,5 +3,6 @@
 pub(crate) mod grouped;
 pub(crate) mod jackknife;
 pub(crate) mod permutation_test;
+pub mod proportion;
 pub mod student;
 pub(crate) mod summary;

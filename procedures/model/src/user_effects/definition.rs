@@ -7,21 +7,25 @@ use crate::formula::signals::left_hand_side;
 use crate::formula::{Formula, is_bare, signals};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Largest number of parameters: data cannot separate more, and every subset is tested for linearity.
 const MOST_PARAMETERS: usize = 8;
 /// Largest number of tested integers, including all combinations of several integer parameters.
 const MOST_WHOLE: f64 = 512.0;
 
-/// A user effect as written, not yet checked; `UserEffect::try_from` checks it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A user effect as written, not yet checked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[schema(as = EffectDefinition)]
 pub struct Definition {
     /// Lower case letters, digits and underscores; not an id of the library.
     pub id: String,
     /// Kind of run whose response the formula is a part of.
+    #[schema(value_type = String)]
     pub kind: Kind,
-    /// `response = formula` over signals and parameters; the right-hand side alone is sufficient.
+    /// `tau = …` for friction and brake, `error = …` for encoder, `torsion = …` for stiffness, over signals and
+    /// parameters; the right-hand side alone is sufficient.
     pub formula: String,
     /// Parameters of the formula, at most eight; each must occur in it.
     pub parameters: Vec<UserParameter>,
@@ -34,22 +38,24 @@ pub struct Definition {
 }
 
 /// A parameter of a user effect. Linear parameters are solved for; nonlinear ones are searched for in their range.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[schema(as = DefinedParameter)]
 pub struct UserParameter {
     /// Name in the formula: a letter, then letters, digits and underscores; not a signal, constant or function.
     pub name: String,
     /// Unit in results, `1` if not given; contradictions with the formula are warnings.
     #[serde(default = "one")]
     pub unit: String,
-    /// Smallest possible value. `None`: unbounded, for a nonlinear parameter a bound that follows from the data.
+    /// Smallest possible value. Absent: unbounded, for a nonlinear parameter a bound that follows from the data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min: Option<f64>,
-    /// Largest possible value. `None`: as for `min`.
+    /// Largest possible value. Absent: as for `min`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
     /// Range of the starting points, inside the bounds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
     pub start: Option<[f64; 2]>,
     /// An integer parameter, such as waves in a turn: every value of the range is tested.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

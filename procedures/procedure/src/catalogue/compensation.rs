@@ -188,7 +188,7 @@ pub(super) fn of_friction(found: &Identification) -> Option<FollowUp> {
         given.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?.into()))).collect();
     Values::parse(SCHEMA, &parameters).ok()?;
     let why = "compare the compensation methods with these values";
-    Some(FollowUp { procedure: Compensation.id(), parameters, why })
+    Some(FollowUp { procedure: Compensation.id().to_owned(), parameters, why: why.to_owned() })
 }
 
 /// Comparison of the dynamic model with the static ones, with the presliding stiffness that a run has identified.
@@ -197,7 +197,7 @@ pub(super) fn of_presliding(found: &Identification) -> Option<FollowUp> {
     let parameters = Map::from_iter([(STIFFNESS.to_owned(), Value::from(four_digits(stiffness.value)))]);
     Values::parse(SCHEMA, &parameters).ok()?;
     let why = "compare the dynamic model with the static ones";
-    Some(FollowUp { procedure: Compensation.id(), parameters, why })
+    Some(FollowUp { procedure: Compensation.id().to_owned(), parameters, why: why.to_owned() })
 }
 
 /// Comparison of the load term with the other methods, with the load-dependent friction that a run has identified.
@@ -207,7 +207,7 @@ pub(super) fn of_load(found: &Identification) -> Option<FollowUp> {
     next.parameters.insert("load_friction".into(), four_digits(grows.value).into());
     next.parameters.insert("load".into(), LOAD.into());
     Values::parse(SCHEMA, &next.parameters).ok()?;
-    Some(FollowUp { why: "compare the load term with the other methods, under load", ..next })
+    Some(FollowUp { why: "compare the load term with the other methods, under load".to_owned(), ..next })
 }
 
 /// Rounds to a number of digits that a person would type.

@@ -10,7 +10,7 @@ use crate::regression::evidence::visible;
 use crate::regression::solution::{DELAY, Solution, effect_coefficient, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::detection_limit::DetectionLimit;
-use crate::selection::evidence_search::rules::error_reduction::least_share;
+use crate::selection::evidence_search::rules::error_reduction::least_gain;
 use crate::stats::student;
 use crate::stats::summary::quantile;
 use crate::thresholds::{DELAY_ROWS, DETECTION_POWER};
@@ -58,7 +58,7 @@ fn smallest(
     let added = visible(ridge, form)?;
     let scatter = added.scatter(&added.coefficients());
     // Form error imitates effects of transients.
-    let share = least_share(form.effect.traits().regime != Regime::SteadyState);
+    let share = least_gain(form.effect.traits().regime != Regime::SteadyState);
     let least = share / (1.0 - share) * ridge.loss();
     let delay = || {
         let form_error = end.main.problem.form_error.as_deref()?;

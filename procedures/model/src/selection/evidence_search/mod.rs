@@ -25,7 +25,7 @@ use crate::selection::equivalence::is_tie;
 use crate::selection::evidence_search::candidates::{candidates, in_turn, is_tied};
 use crate::selection::evidence_search::insignificant::insignificant;
 use crate::selection::evidence_search::power_balance::power_balance;
-use crate::selection::evidence_search::rules::error_reduction::least_share;
+use crate::selection::evidence_search::rules::error_reduction::least_gain;
 use crate::selection::evidence_search::rules::{Figures, Refit};
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
@@ -248,7 +248,7 @@ fn large_refused<'p>(
         if let Some(reason) = reason(found)
             && !large.iter().any(|other| other.effect == effect)
         {
-            let least = least_share(found.form_error_imitates);
+            let least = least_gain(found.form_error_imitates);
             let Evidence { gain, p_value, is_without_form_error, .. } = *found;
             large.push(Refused { effect, gain, p_value, least, is_without_form_error, reason });
         }

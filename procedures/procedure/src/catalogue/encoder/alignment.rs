@@ -164,7 +164,7 @@ impl Procedure for EncoderAlignment {
         Values::parse(EncoderLinearity.schema(), &parameters).ok()?;
         let why = "move the sensor to this position and measure the linearity; repeat an earlier linearity run to move \
                    it back";
-        Some(FollowUp { procedure: EncoderLinearity.id(), parameters, why })
+        Some(FollowUp { procedure: EncoderLinearity.id().to_owned(), parameters, why: why.to_owned() })
     }
 }
 

@@ -7,11 +7,11 @@ use crate::selection::evidence_search::rules::Figures;
 use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
 
 pub(super) fn passes(figures: &Figures) -> bool {
-    figures.gain > least_share(figures.form_error_imitates)
+    figures.gain > least_gain(figures.form_error_imitates)
 }
 
 /// The smallest error reduction of an effect, which is larger if form error imitates the effect.
-pub fn least_share(form_error_imitates: bool) -> f64 {
+pub fn least_gain(form_error_imitates: bool) -> f64 {
     if form_error_imitates { UNMISTAKABLE_SHARE } else { DECISION_SHARE }
 }
 

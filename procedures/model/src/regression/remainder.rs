@@ -1,28 +1,8 @@
-//! Another form of an effect, as nuisance columns.
+//! What the effects of a model cannot represent of a nuisance column.
 
-use crate::effect::{Columns, Effect, Form};
 use crate::linear::blocked_ridge::BaseColumn;
 use crate::linear::cholesky::projections;
-use crate::preprocess::Problem;
-use crate::regression::term::columns;
 use crate::stats::summary::rms;
-use std::sync::Arc;
-
-/// Another form of an effect of the model: what the form in the model cannot show.
-#[derive(Clone)]
-pub struct Relative<'e> {
-    pub effect: &'e dyn Effect,
-    pub form: Arc<Form<'e>>,
-    pub shape: Vec<f64>,
-    pub columns: Columns,
-}
-
-impl Relative<'_> {
-    /// The same at the rows of another problem.
-    pub fn at(&self, problem: &Problem) -> Self {
-        Self { columns: columns(self.effect, self.form.name, &self.shape, problem), ..self.clone() }
-    }
-}
 
 /// A column of another form without the part that the effects of the model can represent.
 ///
