@@ -8,7 +8,7 @@ use crate::linear::basis::dot;
 use crate::linear::condition;
 use crate::prediction::{predict_effects, predict_nuisance, prepare_alike};
 use crate::preprocess::{Prepared, prepare};
-use crate::regression::cross_validation::validation_losses;
+use crate::regression::cross_validation::validation_rms;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport, TradeOff};
@@ -101,7 +101,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         user_effects,
         settings: assembly.spec.settings.clone(),
         rms: (linear.sse / n).sqrt(),
-        validation_rms: (validation_losses(main).iter().sum::<f64>() / n).sqrt(),
+        validation_rms: validation_rms(main),
         effects_rms: nuisance.as_ref().map(|nuisance| nuisance.effects_rms),
         unit: prepared.unit(),
         residual: prepared.about.residual,

@@ -21,7 +21,7 @@ fn named(torque_nm: impl Fn(f64, f64, f64) -> f64) -> Vec<String> {
         friction + torque_nm(now.angle, now.velocity, now.step_s) + NOISE_NM * scatter(now.row, 1)
     });
     let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous").unwrap();
-    let found = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
+    let found = discover(&run, &spec, &Options::default(), 4).unwrap();
     found.model[2..].to_vec()
 }
 
@@ -68,7 +68,7 @@ fn named_of_encoder(error_rad: impl Fn(f64) -> f64) -> Vec<String> {
     meta.pole_pairs = Some(24);
     let run = RunTable::new(meta, trace).unwrap();
     let spec = ModelSpec::parse(Kind::Encoder, "offset").unwrap();
-    let found = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
+    let found = discover(&run, &spec, &Options::default(), 4).unwrap();
     found.model[1..].to_vec()
 }
 

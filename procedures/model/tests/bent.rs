@@ -18,7 +18,7 @@ fn found(square: f64) -> Discovery {
         friction + NOISE_NM * scatter(now.row, 1)
     });
     let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous").unwrap();
-    discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap()
+    discover(&run, &spec, &Options::default(), 4).unwrap()
 }
 
 #[test]

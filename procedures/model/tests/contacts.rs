@@ -50,7 +50,7 @@ fn run() -> RunTable {
 fn two_contacts_are_two_and_leave_only_noise() {
     let run = run();
     let spec = ModelSpec::baseline(&run).unwrap();
-    let whole = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
+    let whole = discover(&run, &spec, &Options::default(), 4).unwrap();
     let added: Vec<_> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
     assert_eq!(added, ["torsional_hysteresis"], "{}", whole.summary);
     let (end, floor) = (whole.steps.last().unwrap().validation_rms, whole.noise_floor_rms.unwrap());

@@ -21,7 +21,7 @@ fn run(seed: u64, down: f64, rub: impl Fn(f64) -> f64) -> RunTable {
 }
 
 fn end(run: &RunTable) -> Discovery {
-    discover(run, &ModelSpec::baseline(run).unwrap(), &Options::default(), 4, |_| {}).unwrap()
+    discover(run, &ModelSpec::baseline(run).unwrap(), &Options::default(), 4).unwrap()
 }
 
 /// Added effects, sorted by name.

@@ -27,7 +27,7 @@ fn a_hump_over_the_speed_is_structure() {
     for (speed, wide, height, seed) in [(8.0, 0.3, 2.5e-3, 1), (8.0, 0.3, 2.5e-3, 2), (14.0, 0.2, 1.5e-3, 2)] {
         let run = run(speed, wide, height, seed);
         let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous").unwrap();
-        let found = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
+        let found = discover(&run, &spec, &Options::default(), 4).unwrap();
         assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{speed} rad/s: {}", found.summary);
         // Earlier versions named viscous_sublinear and viscous_quadratic, with negative Coulomb friction between
         // them.

@@ -61,7 +61,7 @@ fn a_delayed_torque_is_named_with_its_delay() {
     assert_eq!(named, ["signal_delay"], "{}", found.summary);
     assert!(found.summary.contains("signal_delay acts on ramps"), "{}", found.summary);
     let spec = ModelSpec::parse(Kind::Friction, "inertia,coulomb,viscous").unwrap();
-    let end = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
+    let end = discover(&run, &spec, &Options::default(), 4).unwrap();
     let of = |effect: &str| end.fit.parameters.iter().find(|p| p.effect == effect).unwrap();
     let delay_s = -of("signal_delay").value / of("inertia").value;
     assert!((0.7..1.4).contains(&(delay_s / (3.0 * STEP_S))), "{delay_s}");

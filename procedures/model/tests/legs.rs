@@ -62,7 +62,7 @@ fn braked(seed: u64) -> Discovery {
     }
     let run = RunTable::new(Meta { kind: Some(Kind::Brake), ..Meta::default() }, trace).unwrap();
     let spec = ModelSpec::new(Kind::Brake, ["drag", "torque_per_current"]).unwrap();
-    discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap()
+    discover(&run, &spec, &Options::default(), 6).unwrap()
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn wandered(seed: u64, step_nm: f64, drift_nm_s: f64, leap_nm: f64) -> (Vec<Stri
     let meta = Meta { kind: Some(Kind::Friction), torque_constant_nm_per_a: Some(1.0), ..Meta::default() };
     let run = RunTable::new(meta, trace).unwrap();
     let spec = ModelSpec::new(Kind::Friction, ["coulomb", "viscous"]).unwrap();
-    let found = discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap();
+    let found = discover(&run, &spec, &Options::default(), 6).unwrap();
     let named = found.model.into_iter().filter(|id| !["coulomb", "viscous"].contains(&id.as_str())).collect();
     (named, found.verdict)
 }

@@ -50,7 +50,7 @@ fn recorded(hold_nm: f64, can_absorb: bool, from: usize) -> RunTable {
 }
 
 fn end(run: &RunTable, most: usize) -> Discovery {
-    discover(run, &ModelSpec::baseline(run).unwrap(), &Options::default(), most, |_| {}).unwrap()
+    discover(run, &ModelSpec::baseline(run).unwrap(), &Options::default(), most).unwrap()
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn emps_continues_to_the_flexibility() {
     let Some(data) = shared("data") else { return };
     let train = recording(&data, EMPS);
     let spec = ModelSpec::baseline(&train).unwrap();
-    let found = discover(&train, &spec, &Options::default(), most(EMPS), |_| {}).unwrap();
+    let found = discover(&train, &spec, &Options::default(), most(EMPS)).unwrap();
     let unseen = of_pulses(&data, &found.fit);
     assert!(unseen < 0.028, "{:?}: {unseen}", found.model);
     assert_eq!(found.verdict, Verdict::UnexplainedStructure);
@@ -132,7 +132,7 @@ fn odrive_shows_cogging_at_slots_and_poles() {
     for folder in ODRIVE {
         let run = recording(&data, folder);
         let spec = ModelSpec::baseline(&run).unwrap();
-        let found = discover(&run, &spec, &Options::default(), most(folder), |_| {}).unwrap();
+        let found = discover(&run, &spec, &Options::default(), most(folder)).unwrap();
         let added: Vec<&str> = found.steps.iter().filter_map(|step| step.added.as_deref()).collect();
         assert_eq!(added[0], "cogging", "{folder}: {}", found.summary);
         assert!(!found.model.iter().any(|effect| effect == "direction_offset"), "{folder}: {}", found.summary);
@@ -177,7 +177,7 @@ fn kr300_has_a_delayed_encoder_where_its_authors_saw_compliance() {
     assert!(published.iter().zip(bounds).all(|(e, (low, high))| (low..high).contains(e)), "{published:?} mdeg");
     let delayed = mdeg(&["delay"]);
     assert!(delayed < 0.11 * published[0], "{delayed} mdeg");
-    let found = discover(&run, &spec, &Options::default(), most(KR300), |_| {}).unwrap();
+    let found = discover(&run, &spec, &Options::default(), most(KR300)).unwrap();
     let added: Vec<&str> = found.steps.iter().filter_map(|s| s.added.as_deref()).collect();
     assert_eq!(added[..2], ["delay", "transmission_error"], "{:?}", found.steps);
     let delay_s = found.fit.parameters.iter().find(|p| p.name == "t_d").unwrap().value;

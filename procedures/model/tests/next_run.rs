@@ -143,7 +143,7 @@ fn runs_together_fit_as_one_and_repeat_each_other() {
     let of = |fit: &jointbench_model::Fit| fit.parameters.iter().find(|p| p.effect == "viscous").unwrap().clone();
     let width = |p: jointbench_model::Parameter| p.ci95[1] - p.ci95[0];
     assert!(width(of(&joined)) < 0.85 * width(of(&alone)), "twice the data, narrower intervals");
-    let found = discover(&both, &spec, &Options::default(), 6, |_| {}).unwrap();
+    let found = discover(&both, &spec, &Options::default(), 6).unwrap();
     assert_eq!((found.verdict, found.steps.len()), (Verdict::Adequate, 1), "{}", found.summary);
     assert!(found.noise_floor_rms.is_some());
 }

@@ -26,7 +26,7 @@ fn creeping(baseline: &[&str]) -> RunTable {
 fn a_run_in_one_direction_has_one_name_for_confounded_effects() {
     for baseline in [&["viscous"][..], &["coulomb", "viscous"]] {
         let run = creeping(baseline);
-        let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4, |_| {}).unwrap();
+        let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4).unwrap();
         let mut model: Vec<&str> = found.model.iter().map(String::as_str).filter(|e| *e != "viscous").collect();
         model.sort_unstable();
         assert_eq!(model, ["cogging", "coulomb"], "{}", found.summary);
@@ -58,7 +58,7 @@ fn recordings_in_opposite_directions_are_not_one_direction() {
         }
         let baseline = ["coulomb", "viscous"].map(String::from).to_vec();
         let run = RunTable::new(Meta { gear_ratio: Some(1.0), baseline, ..meta(Kind::Friction) }, trace).unwrap();
-        let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4, |_| {}).unwrap();
+        let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4).unwrap();
         assert_eq!(found.model, ["coulomb", "viscous", "direction_offset"], "{pieces} pieces: {}", found.summary);
         let coulomb = found.fit.parameters.iter().find(|p| p.name == "tau_c").unwrap();
         assert!((coulomb.value - 0.03).abs() < 1e-3, "{pieces} pieces: {coulomb:?}");

@@ -59,7 +59,7 @@ fn friction_under_load_is_missing_and_found() {
     let spec = ModelSpec::baseline(&run).unwrap();
     let diagnosis = diagnose(&run, &spec, &Options::default()).unwrap();
     assert_eq!(diagnosis.suggestions[0].effect, "load_linear", "{}", diagnosis.summary);
-    let found = discover(&run, &spec, &Options::default(), 3, |_| ()).unwrap();
+    let found = discover(&run, &spec, &Options::default(), 3).unwrap();
     let size = found.fit.parameters.iter().find(|p| p.effect == "load_linear").unwrap();
     assert!((size.ci95[0]..size.ci95[1]).contains(&0.1), "{size:?}");
     assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);

@@ -56,7 +56,7 @@ fn joint(past: f64) -> RunTable {
 
 fn check(run: &RunTable, effect: &str, is_reported: bool) {
     let spec = ModelSpec::baseline(run).unwrap();
-    let whole = discover(run, &spec, &Options::default(), 4, |_| {}).unwrap();
+    let whole = discover(run, &spec, &Options::default(), 4).unwrap();
     let added: Vec<_> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
     assert_eq!(added, [effect], "{}", whole.summary);
     assert_eq!(whole.verdict, Verdict::Adequate, "{}", whole.summary);

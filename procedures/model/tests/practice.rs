@@ -18,7 +18,7 @@ fn check_family(family: &str) {
         let spec = ModelSpec::baseline(&run).unwrap();
         let first = diagnose(&run, &spec, &Options::default()).unwrap();
         assert!(!first.summary.contains("Attention"), "{}: {}", case.display(), first.summary);
-        let whole = discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap();
+        let whole = discover(&run, &spec, &Options::default(), 6).unwrap();
         let added: Vec<&String> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
         let name = case.file_name().unwrap().to_string_lossy().into_owned();
         let same = fit(&run, &ModelSpec::new(spec.kind, &whole.model).unwrap(), &Options::default()).unwrap();

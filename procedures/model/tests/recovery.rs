@@ -51,7 +51,7 @@ fn check_found(name: &str, seed: u64, friction: impl Fn(Moment) -> f64) {
     assert_eq!(first.suggestions.first().map(|s| s.effect.as_str()), Some(name), "{}", first.summary);
     assert_eq!(first.verdict, Verdict::MissingEffect);
     assert!(first.suggestions[0].p_value <= 0.05 && first.suggestions[0].error_reduction > 0.0);
-    let whole = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
+    let whole = discover(&run, &spec, &Options::default(), 4).unwrap();
     let added: Vec<_> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
     assert_eq!(added, [name], "{}", whole.summary);
     // Consistency: the suggestions equal the final model of the search, and a fit of the same effects in any order.
@@ -126,7 +126,7 @@ fn what_the_library_does_not_know_is_called_structure_and_shown() {
         let bump = (-((m.velocity.abs() - 20.3) / 2.0).powi(2)).exp();
         dry(m) * (1.0 + 0.5 * bump)
     });
-    let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4, |_| {}).unwrap();
+    let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4).unwrap();
     assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
     let shown = |r: &jointbench_model::Region| r.axis == "motor_velocity_rad_s" && r.from < 21.0 && r.to > 19.0;
     assert!(found.regions.iter().any(shown), "{:?}", found.regions);

@@ -44,7 +44,7 @@ fn run() -> RunTable {
 #[test]
 fn a_changing_flank_is_named_nothing() {
     let spec = ModelSpec::parse(Kind::Stiffness, "offset,compliance,directional_offset").unwrap();
-    let whole = discover(&run(), &spec, &Options::default(), 4, |_| {}).unwrap();
+    let whole = discover(&run(), &spec, &Options::default(), 4).unwrap();
     assert_eq!(whole.verdict, Verdict::Adequate, "{}", whole.summary);
     let added: Vec<_> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
     assert!(added.is_empty(), "{added:?}: {}", whole.summary);

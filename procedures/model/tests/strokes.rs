@@ -33,7 +33,7 @@ fn noisy(scatter_rad: f64, mix: u64, error: impl Fn(f64) -> f64) -> RunTable {
 }
 
 fn end(run: &RunTable) -> Discovery {
-    discover(run, &ModelSpec::baseline(run).unwrap(), &Options::default(), 4, |_| {}).unwrap()
+    discover(run, &ModelSpec::baseline(run).unwrap(), &Options::default(), 4).unwrap()
 }
 
 #[test]

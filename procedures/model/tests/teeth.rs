@@ -43,7 +43,7 @@ fn run() -> RunTable {
 fn steps_that_waver_over_teeth_show_them() {
     let run = run();
     let spec = ModelSpec::parse(Kind::Friction, "inertia,coulomb,viscous").unwrap();
-    let found = discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap();
+    let found = discover(&run, &spec, &Options::default(), 6).unwrap();
     assert_eq!(found.model, ["inertia", "coulomb", "viscous", "cogging"], "{}", found.summary);
     assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
     let order = found.fit.parameters.iter().find(|p| p.name == "harmonic").unwrap();

@@ -47,7 +47,7 @@ fn a_column_that_moves_with_the_temperature_is_reported_with_it() {
     let why = &diagnosed(&run).suggestions[0].why;
     assert!(why.contains("oil_pressure_pa moves with temperature_c in this data (r = -0.9"), "{why}");
     assert!(!why.contains("air_pressure_pa") && !why.contains("drift over time"), "{why}");
-    let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4, |_| {}).unwrap();
+    let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4).unwrap();
     let reported = found.fit.notes.iter().filter(|note| note.starts_with("oil_pressure_pa moves with")).count();
     assert_eq!(reported, 1, "{:?}", found.fit.notes);
 }

@@ -76,7 +76,7 @@ fn a_formula_is_a_candidate_like_any_other() {
     let [low, high] = rub.error_reduction_ci95.unwrap();
     assert!(0.0 < low && low < rub.error_reduction && rub.error_reduction < high && high < 1.0, "{rub:?}");
     assert!(rub.bic_change.unwrap() < -10.0, "{rub:?}");
-    let whole = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
+    let whole = discover(&run, &spec, &Options::default(), 4).unwrap();
     assert_eq!(whole.model.last().map(String::as_str), Some("rub"), "{:?}", whole.model);
     assert_eq!((whole.verdict, whole.fit.user_effects.len()), (Verdict::Adequate, 1), "{}", whole.summary);
 }

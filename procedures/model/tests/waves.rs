@@ -37,7 +37,7 @@ fn run() -> RunTable {
 fn small_waves_are_found_next_to_a_large_eccentricity() {
     let run = run();
     let spec = ModelSpec::parse(Kind::Encoder, "offset,delay").unwrap();
-    let found = discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap();
+    let found = discover(&run, &spec, &Options::default(), 6).unwrap();
     let mut effects = found.model.clone();
     effects.sort();
     assert_eq!(effects, ["delay", "direction_hysteresis", "harmonic_1", "offset", "pole_period"]);

@@ -37,7 +37,7 @@ pub fn discover(arguments: &Discover) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
     let about = |fault| Exit::of(&arguments.run.files, fault);
     let mut discovery =
-        jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {}).map_err(about)?.bounded();
+        jointbench_model::discover(&run, &spec, &options, arguments.max_effects).map_err(about)?.bounded();
     let open = Open { user_effects: spec.user_effects, ..Open::from(&discovery) };
     let next = next_run(&run, &open, &Offer::shown_by(&run), &options);
     discovery.experiment = next.experiment;

@@ -24,7 +24,7 @@ pub fn measure(data: &Path, asked: &Asked) -> Result<(), Box<dyn Error>> {
         }
         let spec = ModelSpec::baseline(&run)?;
         let named = diagnose(&run, &spec, &Options::default())?.suggestions;
-        let whole = discover(&run, &spec, &Options::default(), most(folder), |_| {})?;
+        let whole = discover(&run, &spec, &Options::default(), most(folder))?;
         let added: Vec<&str> = whole.model.iter().map(String::as_str).filter(|effect| !spec.contains(effect)).collect();
         let first = named.first().map_or_else(|| "–".to_owned(), with_ties);
         let errors = [whole.steps.first(), whole.steps.last()].map(|s| s.map_or(f64::NAN, |s| s.validation_rms));

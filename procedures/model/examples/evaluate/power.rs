@@ -62,7 +62,7 @@ pub fn measure(asked: &Asked) -> Result<(), Box<dyn Error>> {
 fn one(effect: &str, run: &RunTable, power: &mut Power) -> Result<Vec<String>, Box<dyn Error>> {
     let spec = ModelSpec::baseline(run)?;
     let first = diagnose(run, &spec, &Options::default())?;
-    let whole = discover(run, &spec, &Options::default(), 6, |_| {})?;
+    let whole = discover(run, &spec, &Options::default(), 6)?;
     let added: Vec<String> = whole.model.into_iter().filter(|e| !spec.contains(e)).collect();
     let top = first.suggestions.first();
     power.top1.add(top.is_some_and(|s| s.effect == effect));

@@ -53,7 +53,7 @@ impl Table {
         let first = diagnose(run, &spec, &Options::default())?;
         let took_s = start.elapsed().as_secs_f64();
         self.slowest_s = self.slowest_s.max(took_s);
-        let whole = discover(run, &spec, &Options::default(), 6, |_| {})?;
+        let whole = discover(run, &spec, &Options::default(), 6)?;
         let names: Vec<&str> = first.suggestions.iter().map(|s| s.effect.as_str()).collect();
         let added: Vec<&str> = whole.model.iter().map(String::as_str).filter(|e| !spec.contains(e)).collect();
         let hidden = |id: &str| answer.accept.iter().any(|g| g.iter().any(|a| a == id));

@@ -18,7 +18,7 @@ pub fn show(folder: &Path) -> Result<(), Box<dyn Error>> {
     }
     first.regions.iter().take(3).for_each(|r| println!("  {}", r.sentence));
     first.not_visible.iter().for_each(|n| println!("  not visible: {} ({})", n.effect, n.why));
-    let whole = discover(&run, &spec, &Options::default(), 6, |_| {})?;
+    let whole = discover(&run, &spec, &Options::default(), 6)?;
     for s in &whole.steps {
         let made = match (&s.added, &s.removed) {
             (Some(added), _) => format!("+ {added}"),

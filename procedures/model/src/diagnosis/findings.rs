@@ -11,8 +11,8 @@ use crate::report::reasons::{Invisible, LeftOut};
 use crate::residual_analysis::events::{Event, Events};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::{lack_of_fit, noise_floor};
-use crate::selection::advance::SelectionStep;
 use crate::selection::model_selection::ModelSelection;
+use crate::selection::path::SelectionStep;
 use crate::selection::refused::EvidenceResult;
 use crate::selection::removal::Withdrawn;
 use crate::thresholds::{FLOOR_RATIO, REPEATABLE_SHARE, STRUCTURE_SHARE};
@@ -21,7 +21,7 @@ use jointbench_instrument::Kind;
 
 pub struct Findings<'p> {
     pub start: TwoStageModel<'p>,
-    pub advances: Vec<SelectionStep<'p>>,
+    pub steps: Vec<SelectionStep<'p>>,
     pub withdrawn: Vec<Withdrawn<'p>>,
     others: ExcludedEffects,
     /// Residual maps of the last model.
@@ -56,10 +56,10 @@ impl<'p> Findings<'p> {
         let scatters = selected.decided.is_none()
             && lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
         let end_validation_rms = validation_rms(&selected.end().main);
-        let ModelSelection { start, advances, withdrawn, maps, ties, retained, open, decided, .. } = selected;
+        let ModelSelection { start, steps, withdrawn, maps, ties, retained, open, decided, .. } = selected;
         Self {
             start,
-            advances,
+            steps,
             withdrawn,
             others,
             maps,
@@ -75,7 +75,7 @@ impl<'p> Findings<'p> {
     }
 
     pub fn end(&self) -> &TwoStageModel<'p> {
-        self.advances.last().map_or(&self.start, |a| &a.after)
+        self.steps.last().map_or(&self.start, |a| &a.after)
     }
 
     /// Effects that this run cannot show, those of the model first.
@@ -154,17 +154,17 @@ impl<'p> Findings<'p> {
         let mut seen: Vec<&str> = Vec::new();
         let mut ranked: Vec<(&SelectionStep, f64)> = Vec::new();
         // In reverse order: for an effect that was removed and added again, the last step has its evidence.
-        for advance in self.advances.iter().rev() {
-            let Some(id) = advance.added.as_ref().map(|r| r.term.id()) else { continue };
+        for step in self.steps.iter().rev() {
+            let Some(id) = step.added.as_ref().map(|r| r.term.id()) else { continue };
             if !seen.contains(&id) && end.effects.iter().any(|e| e == id) {
                 seen.push(id);
-                ranked.push((advance, importance(end, id)));
+                ranked.push((step, importance(end, id)));
             }
         }
         if self.decided.is_some() {
             // In the order of addition, each with its error reduction at that time.
-            let taken = |advance: &SelectionStep| advance.added.as_ref().map_or(0.0, |scored| scored.share);
-            return ranked.into_iter().rev().map(|(advance, _)| (advance, taken(advance))).collect();
+            let taken = |step: &SelectionStep| step.added.as_ref().map_or(0.0, |scored| scored.share);
+            return ranked.into_iter().rev().map(|(step, _)| (step, taken(step))).collect();
         }
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         ranked
@@ -176,12 +176,12 @@ impl Findings<'_> {
     /// that model in words.
     pub fn reduction_when_added(&self, id: &str) -> (f64, &'static str) {
         let is_meant = |step: &SelectionStep| step.added.as_ref().is_some_and(|scored| scored.term.id() == id);
-        let Some(at) = self.advances.iter().rposition(is_meant) else { return (0.0, "the model") };
+        let Some(at) = self.steps.iter().rposition(is_meant) else { return (0.0, "the model") };
         let (before, words) = match at.checked_sub(1) {
             None => (&self.start, "the model"),
-            Some(at) => (&self.advances[at].after, "the effects before it"),
+            Some(at) => (&self.steps[at].after, "the effects before it"),
         };
-        let ratio = validation_rms(&self.advances[at].after.main) / validation_rms(&before.main);
+        let ratio = validation_rms(&self.steps[at].after.main) / validation_rms(&before.main);
         (1.0 - ratio.powi(2), words)
     }
 

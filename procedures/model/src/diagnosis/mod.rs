@@ -11,9 +11,8 @@ pub(crate) mod reversals;
 use crate::diagnosis::findings::Findings;
 use crate::fit::{report, written};
 use crate::inference::confounding;
-use crate::linear::basis::dot;
 use crate::preprocess::{Prepared, prepare};
-use crate::regression::cross_validation::{validation_losses, validation_rms};
+use crate::regression::cross_validation::validation_rms;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Diagnosis, Discovery, Evidence, Experiment, Step, Suggestion, Verdict};
 use crate::report::fit::Parameter;
@@ -22,8 +21,8 @@ use crate::report::text::{parts, plain};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::maps::regions::reference;
 use crate::selection;
-use crate::selection::advance::SelectionStep;
 use crate::selection::forward_step::ScoredCandidate;
+use crate::selection::path::SelectionStep;
 use crate::thresholds::MOST_EFFECTS;
 use crate::words::{Scale, figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
@@ -61,10 +60,10 @@ use jointbench_instrument::RunTable;
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
     refuse_settings(spec)?;
     let prepared = prepare(run, options)?;
-    let selected = selection::search(&prepared, spec, options, MOST_EFFECTS as usize, &mut |_| {})?;
+    let selected = selection::search(&prepared, spec, options, MOST_EFFECTS as usize)?;
     let found = Findings::of(&prepared, selected, options);
     let mut fit = report(&found.start)?;
-    if found.advances.is_empty() {
+    if found.steps.is_empty() {
         leave_open(&mut fit, &found);
     }
     let complete = report(found.end())?;
@@ -75,7 +74,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let of_start = (verdict == Verdict::MissingEffect).then(|| Maps::new(&prepared, start.linear().residual, options));
     let maps = of_start.as_ref().unwrap_or(&found.maps);
     let mut regions = regions(maps, &fit, &found, verdict == Verdict::Adequate && undecided.is_none());
-    let remembering = found.ranking().into_iter().filter_map(|(advance, _)| advance.added.as_ref());
+    let remembering = found.ranking().into_iter().filter_map(|(step, _)| step.added.as_ref());
     let apart = remembering.filter(|scored| found.start.is_apart(scored.term.effect));
     let reach = apart.filter_map(|scored| scored.term.shape.first().copied());
     let measure = reference(&fit, Some(&found.floor));
@@ -119,29 +118,18 @@ fn refuse_settings(spec: &ModelSpec) -> Result<(), ModelError> {
 }
 
 /// Diagnoses, adds the best effect and refits until no candidate passes or `max_effects` were added.
-///
-/// `on_step` gets each step when it is made.
 pub fn discover(
     run: &RunTable,
     spec: &ModelSpec,
     options: &Options,
     max_effects: usize,
-    mut on_step: impl FnMut(&Step),
 ) -> Result<Discovery, ModelError> {
     refuse_settings(spec)?;
     let prepared = prepare(run, options)?;
-    let mut steps = vec![step(&TwoStageModel::new(&prepared, spec, options)?, None)];
-    on_step(&steps[0]);
-    let selected = selection::search(&prepared, spec, options, max_effects, &mut |advance| {
-        let step = step(&advance.after, Some(advance));
-        on_step(&step);
-        steps.push(step);
-    })?;
+    let selected = selection::search(&prepared, spec, options, max_effects)?;
     let found = Findings::of(&prepared, selected, options);
-    // Ties are those of the last model.
-    for step in &mut steps {
-        step.confounded_with = step.added.as_deref().map_or_else(Vec::new, |added| found.ties_of(added));
-    }
+    let made = found.steps.iter().map(|made| step(&found, &made.after, Some(made)));
+    let steps: Vec<Step> = std::iter::once(step(&found, &found.start, None)).chain(made).collect();
     let is_cut = steps.iter().filter(|step| step.added.is_some()).count() >= max_effects;
     let mut fit = report(found.end())?;
     leave_open(&mut fit, &found);
@@ -173,18 +161,18 @@ pub fn discover(
     })
 }
 
-fn step(model: &TwoStageModel, advance: Option<&SelectionStep>) -> Step {
-    let residual = model.main.linear().residual;
-    let n = residual.len() as f64;
+/// The model after a step; ties are those of the last model.
+fn step(found: &Findings, model: &TwoStageModel, made: Option<&SelectionStep>) -> Step {
+    let added = made.and_then(|made| made.added.as_ref());
     Step {
-        added: advance.and_then(|a| a.added.as_ref()).map(|r| r.term.id().into()),
-        addition_reason: advance.and_then(|a| a.added.as_ref()).map(|r| r.reason),
-        removed: advance.and_then(|a| a.removed).map(|(id, _)| id.into()),
-        removal_reason: advance.and_then(|a| a.removed).map(|(_, why)| why),
-        confounded_with: advance.map_or_else(Vec::new, |a| a.ties.iter().map(|t| (*t).into()).collect()),
+        added: added.map(|scored| scored.term.id().into()),
+        addition_reason: added.map(|scored| scored.reason),
+        removed: made.and_then(|made| made.removed).map(|(id, _)| id.into()),
+        removal_reason: made.and_then(|made| made.removed).map(|(_, why)| why),
+        confounded_with: added.map_or_else(Vec::new, |scored| found.ties_of(scored.term.id())),
         model: model.effects.clone(),
-        rms: (dot(&residual, &residual) / n).sqrt(),
-        validation_rms: (validation_losses(&model.main).iter().sum::<f64>() / n).sqrt(),
+        rms: (model.main.linear().sse / model.main.problem.rows() as f64).sqrt(),
+        validation_rms: validation_rms(&model.main),
     }
 }
 
@@ -196,8 +184,8 @@ fn suggestions(
     options: &Options,
 ) -> Result<Vec<Suggestion>, ModelError> {
     let mut out = Vec::new();
-    for (advance, importance) in found.ranking() {
-        let Some(scored) = &advance.added else { continue };
+    for (step, importance) in found.ranking() {
+        let Some(scored) = &step.added else { continue };
         let id = scored.term.id();
         let with = spec.with(id)?;
         let alone = TwoStageModel::new(found.start.prepared, &with, options)?;

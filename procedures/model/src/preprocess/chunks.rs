@@ -4,9 +4,11 @@ use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::{blocks, replicates, segments};
 use crate::preprocess::memo::Memo;
 use crate::preprocess::{Problem, Reduce, residual_acceleration};
+use crate::report::fit::{Preparation, ResidualKind};
 use crate::signal::{Signal, Signals};
 use crate::thresholds::{EVEN_PART, EVEN_SPEED};
 use crate::view::{Constants, View};
+use jointbench_instrument::RunTable;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
@@ -55,6 +57,24 @@ pub struct Layout<'a> {
 }
 
 impl Source {
+    /// How the run was preprocessed to means over chunks of `n` samples.
+    pub fn preparation_of_chunks(&self, n: usize, run: &RunTable, main: &Problem, repeats_from: &str) -> Preparation {
+        Preparation {
+            residual: ResidualKind::PlateauMean,
+            sample_rate_hz: 1.0 / self.step_s,
+            cutoff_hz: self.derived_velocity.then_some(self.cutoff_hz),
+            velocity_lag_s: None,
+            decimation: 1,
+            bristles: None,
+            chunk_s: Some(n as f64 * self.step_s),
+            samples: run.len(),
+            rows: main.rows(),
+            blocks: main.blocks,
+            segments_from: if self.segment.is_some() { "column" } else { "found" }.into(),
+            repeats_from: repeats_from.into(),
+        }
+    }
+
     pub fn chunk(&self, chunk_s: f64) -> usize {
         ((chunk_s / self.step_s).round() as usize).max(1)
     }

@@ -40,20 +40,8 @@ pub fn prepare(
         false if main.replicate_pairs.is_empty() => "none",
         false => "found",
     };
-    let about = Preparation {
-        residual: if raw { ResidualKind::Raw } else { ResidualKind::PlateauMean },
-        sample_rate_hz: 1.0 / samples.step_s,
-        cutoff_hz: samples.derived_velocity.then_some(samples.cutoff_hz),
-        velocity_lag_s: None,
-        decimation: 1,
-        bristles: None,
-        chunk_s: Some(n as f64 * samples.step_s),
-        samples: run.len(),
-        rows: main.rows(),
-        blocks: main.blocks,
-        segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
-        repeats_from: repeats_from.into(),
-    };
+    let residual = if raw { ResidualKind::Raw } else { ResidualKind::PlateauMean };
+    let about = Preparation { residual, ..samples.preparation_of_chunks(n, run, &main, repeats_from) };
     let data_errors = crate::preprocess::checks::unit_mismatch::data_errors(run);
     Ok(Prepared { data_errors, warnings, ..Prepared::of(run, main, about) })
 }

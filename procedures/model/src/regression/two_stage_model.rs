@@ -55,22 +55,12 @@ impl<'p> TwoStageModel<'p> {
             ramp_offset: vec![0.0; prepared.main.rows()],
             hidden: Vec::new(),
         };
-        let mut settled = Vec::new();
-        for id in &assembly.effects {
-            let effect = spec.find(id)?;
-            if let Some(user_effect) = spec.user_effects.iter().find(|user_effect| user_effect.id() == id) {
-                user_effect.check(&prepared.main.view)?;
-            }
-            if let Some(why) = effect.hidden(&prepared.main.view) {
-                assembly.hidden.push(Invisible::not_excited(id, why));
-            } else if effect.traits().is_offset {
-                let given = columns(effect, "linear", &[], assembly.main.problem);
-                add(&mut assembly.main.given, &given, &[1.0]);
-                assembly.main.offsets.push(effect);
-            } else if !assembly.is_apart(effect) {
-                settled.push(effect.info().id);
-            }
-        }
+        let effects_to_fit = assembly.enter_offsets()?;
+        let settled: Vec<&str> = effects_to_fit
+            .iter()
+            .filter(|effect| !assembly.is_apart(**effect))
+            .map(|effect| effect.info().id)
+            .collect();
         let library = CandidateSet::for_layout(spec, &prepared.main, prepared.regimes(), &settled);
         // The ramps depend on the steady-state part, and the steady-state part depends a little on the ramp effects.
         for _ in 0..2 {
@@ -113,24 +103,31 @@ impl<'p> TwoStageModel<'p> {
         let main = LinearModel::new(prepared.judged(&effects));
         let mut assembly =
             Self { prepared, spec, effects, main, moving: None, ramp_offset: Vec::new(), hidden: Vec::new() };
-        let mut effects_to_fit: Vec<&'p dyn Effect> = Vec::new();
-        let view = &prepared.main.view;
-        for id in &assembly.effects {
-            let effect = spec.find(id)?;
-            if let Some(user_effect) = spec.user_effects.iter().find(|user_effect| user_effect.id() == id) {
+        let mut effects_to_fit = assembly.enter_offsets()?;
+        effects_to_fit.retain(|effect| effect.info().id != PRESLIDING);
+        Ok((assembly, effects_to_fit))
+    }
+
+    /// Enters the offset terms and the effects that the run cannot show. Returns the effects that have to be fitted.
+    fn enter_offsets(&mut self) -> Result<Vec<&'p dyn Effect>, ModelError> {
+        let view = &self.prepared.main.view;
+        let mut effects_to_fit = Vec::new();
+        for id in &self.effects {
+            let effect = self.spec.find(id)?;
+            if let Some(user_effect) = self.spec.user_effects.iter().find(|user_effect| user_effect.id() == id) {
                 user_effect.check(view)?;
             }
             if let Some(why) = effect.hidden(view) {
-                assembly.hidden.push(Invisible::not_excited(id, why));
+                self.hidden.push(Invisible::not_excited(id, why));
             } else if effect.traits().is_offset {
-                let given = columns(effect, "linear", &[], assembly.main.problem);
-                add(&mut assembly.main.given, &given, &[1.0]);
-                assembly.main.offsets.push(effect);
-            } else if id != PRESLIDING {
+                let given = columns(effect, "linear", &[], self.main.problem);
+                add(&mut self.main.given, &given, &[1.0]);
+                self.main.offsets.push(effect);
+            } else {
                 effects_to_fit.push(effect);
             }
         }
-        Ok((assembly, effects_to_fit))
+        Ok(effects_to_fit)
     }
 
     /// Whether steady-state means cannot show the effect, so that it is fitted where the motion changes.

@@ -1,7 +1,6 @@
 //! Selection of missing effects: forward steps, acceptance, pruning, and the stages that follow.
 
 pub(crate) mod acceptance;
-pub(crate) mod advance;
 pub(crate) mod detection_limit;
 pub(crate) mod equivalence;
 pub(crate) mod evidence_search;
@@ -13,6 +12,7 @@ mod listed_rules;
 pub(crate) mod model_selection;
 pub(crate) mod offset_terms;
 pub(crate) mod omitted_variable_bias;
+pub(crate) mod path;
 pub(crate) mod pruning;
 pub(crate) mod ramp_stage;
 pub(crate) mod refused;
@@ -22,21 +22,18 @@ pub(crate) mod staged_search;
 mod tiny;
 
 use crate::preprocess::Prepared;
-use crate::selection::advance::SelectionStep;
 use crate::selection::model_selection::ModelSelection;
 use crate::{ModelError, ModelSpec, Options};
 
 /// Searches for at most `most` missing effects: by evidence if the run is judged sample by sample, else in stages.
-/// `on_advance` gets each step when it is made.
 pub(crate) fn search<'p>(
     prepared: &'p Prepared,
     spec: &'p ModelSpec,
     options: &Options,
     most: usize,
-    on_advance: &mut dyn FnMut(&SelectionStep),
 ) -> Result<ModelSelection<'p>, ModelError> {
     match prepared.main.form_error {
-        Some(_) => evidence_search::search(prepared, spec, options, most, on_advance),
-        None => staged_search::search(prepared, spec, options, most, on_advance),
+        Some(_) => evidence_search::search(prepared, spec, options, most),
+        None => staged_search::search(prepared, spec, options, most),
     }
 }

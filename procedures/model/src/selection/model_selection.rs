@@ -4,15 +4,15 @@ use crate::regression::linear_model::LinearModel;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::Imitated;
 use crate::residual_analysis::maps::Maps;
-use crate::selection::advance::SelectionStep;
 use crate::selection::detection_limit::DetectionLimit;
+use crate::selection::path::SelectionStep;
 use crate::selection::refused::EvidenceResult;
 use crate::selection::removal::Withdrawn;
 
 /// The steps from the given model to the last one, with all findings.
 pub struct ModelSelection<'p> {
     pub start: TwoStageModel<'p>,
-    pub advances: Vec<SelectionStep<'p>>,
+    pub steps: Vec<SelectionStep<'p>>,
     pub withdrawn: Vec<Withdrawn<'p>>,
     /// The steady-state part of the last model.
     pub now: LinearModel<'p>,
@@ -33,6 +33,6 @@ pub struct ModelSelection<'p> {
 
 impl<'p> ModelSelection<'p> {
     pub fn end(&self) -> &TwoStageModel<'p> {
-        self.advances.last().map_or(&self.start, |a| &a.after)
+        self.steps.last().map_or(&self.start, |a| &a.after)
     }
 }

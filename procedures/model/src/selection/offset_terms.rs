@@ -8,17 +8,13 @@ use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::reasons::AdditionReason;
-use crate::selection::advance::SelectionStep;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
+use crate::selection::path::SelectionStep;
 
 /// Adds the power balance if the model lacks it and the data supports it. Friction effects must not explain power
 /// that the joint only transmits.
-pub fn advance<'p>(
-    start: &TwoStageModel<'p>,
-    library: &CandidateSet<'p>,
-    options: &Options,
-) -> Option<SelectionStep<'p>> {
+pub fn step<'p>(start: &TwoStageModel<'p>, library: &CandidateSet<'p>, options: &Options) -> Option<SelectionStep<'p>> {
     let problem = start.main.problem;
     let is_out = |id: &str| !start.effects.iter().any(|e| e == id);
     let missing =

@@ -8,12 +8,12 @@ use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::Imitated;
 use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
-use crate::selection::advance::{Path, SelectionStep};
 use crate::selection::floating_search::{FloatingSearch, Move};
 use crate::selection::hysteresis_stage::hysteresis_step;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::offset_terms;
 use crate::selection::omitted_variable_bias::{Imitated as Found, biased_coefficient};
+use crate::selection::path::{Path, SelectionStep};
 use crate::selection::pruning::unidentified::{Undetermined, is_identified};
 use crate::selection::pruning::{Point, Rejected, Trial};
 use crate::selection::ramp_stage::delay;
@@ -28,27 +28,25 @@ struct SteadyState<'p> {
     open: Option<Found<'p>>,
 }
 
-/// `on_advance` gets each step when it is made.
 pub fn search<'p>(
     prepared: &'p Prepared,
     spec: &'p ModelSpec,
     options: &Options,
     most: usize,
-    on_advance: &mut dyn FnMut(&SelectionStep),
 ) -> Result<ModelSelection<'p>, ModelError> {
     let start = TwoStageModel::new(prepared, spec, options)?;
     let library = CandidateSet::new(spec, &prepared.main, prepared.regimes());
     // Contradicting columns make every effect spurious.
     let most = if prepared.data_errors.fatal.is_empty() { most } else { 0 };
-    let offset = (most > 0).then(|| offset_terms::advance(&start, &library, options)).flatten();
-    let mut path = Path::new(start, on_advance);
+    let offset = (most > 0).then(|| offset_terms::step(&start, &library, options)).flatten();
+    let mut path = Path::new(start);
     if let Some(offset) = offset {
         path.push(offset);
     }
-    let left = most.saturating_sub(path.advances.len());
+    let left = most.saturating_sub(path.steps.len());
     let mut search = FloatingSearch::new(path.end().main.clone(), &library, prepared, left, options);
     let SteadyState { maps, residual, open } = steady_state(&mut search, &mut path);
-    if let Some(last) = path.advances.last_mut() {
+    if let Some(last) = path.steps.last_mut() {
         last.after = last.after.clone().canonical(options)?;
     }
     let moves = |id: &str, was: &LinearModel<'p>, is: &LinearModel<'p>| imitated(id, was, is, spec, prepared);
@@ -56,17 +54,17 @@ pub fn search<'p>(
     let retained = search.retained_for_bias.iter().filter(|id| search.now.contains(id));
     let retained = retained.filter_map(|id| moves(id, &search.now.without(id), &search.now)).collect();
     let withdrawn = removal::all(&search);
-    let ties = open_ties(&search, &path.advances);
+    let ties = open_ties(&search, &path.steps);
     if !search.unmodelled_structure {
         ramps(&mut path, most, options)?;
         hysteresis(&mut path, most, prepared, options)?;
     }
     let detection_limits = search.detection_limits();
-    let Path { start, advances, .. } = path;
+    let Path { start, steps, .. } = path;
     let now = search.now;
     Ok(ModelSelection {
         start,
-        advances,
+        steps,
         withdrawn,
         now,
         residual,
@@ -81,7 +79,7 @@ pub fn search<'p>(
 
 /// First stage: effects that show in steady-state motion, or in the whole of a trajectory. Each move adds or removes one
 /// effect.
-fn steady_state<'p>(search: &mut FloatingSearch<'_, 'p>, path: &mut Path<'_, 'p>) -> SteadyState<'p> {
+fn steady_state<'p>(search: &mut FloatingSearch<'_, 'p>, path: &mut Path<'p>) -> SteadyState<'p> {
     let mut effects = path.end().effects.clone();
     loop {
         let made = match next_move(search) {
@@ -160,7 +158,7 @@ fn may_grow(path: &Path, most: usize) -> bool {
 }
 
 /// Second stage: a torque delay, on the ramps of a run in steps.
-fn ramps<'p>(path: &mut Path<'_, 'p>, most: usize, options: &Options) -> Result<(), ModelError> {
+fn ramps<'p>(path: &mut Path<'p>, most: usize, options: &Options) -> Result<(), ModelError> {
     if may_grow(path, most)
         && let Some((scored, after)) = delay(path.end(), options)
     {
@@ -172,7 +170,7 @@ fn ramps<'p>(path: &mut Path<'_, 'p>, most: usize, options: &Options) -> Result<
 
 /// Third stage: hysteresis effects, around the reversals of a run in steps.
 fn hysteresis<'p>(
-    path: &mut Path<'_, 'p>,
+    path: &mut Path<'p>,
     most: usize,
     prepared: &'p Prepared,
     options: &Options,
@@ -191,13 +189,13 @@ fn hysteresis<'p>(
 }
 
 /// Confounded pairs of the final model: ties from the time of addition that still hold, and new ones.
-fn open_ties<'p>(search: &FloatingSearch<'_, 'p>, advances: &[SelectionStep<'p>]) -> Vec<(&'p str, &'p str)> {
+fn open_ties<'p>(search: &FloatingSearch<'_, 'p>, steps: &[SelectionStep<'p>]) -> Vec<(&'p str, &'p str)> {
     let mut open = Vec::new();
-    for advance in advances {
-        let Some(effect) = advance.added.as_ref().map(|scored| scored.term.id()) else { continue };
+    for step in steps {
+        let Some(effect) = step.added.as_ref().map(|scored| scored.term.id()) else { continue };
         let is_new = |scored: &&&'p str| !search.now.contains(scored) && !open.contains(&(effect, **scored));
         if search.now.contains(effect) {
-            let confounded: Vec<&'p str> = advance.ties.iter().filter(is_new).copied().collect();
+            let confounded: Vec<&'p str> = step.ties.iter().filter(is_new).copied().collect();
             open.extend(
                 confounded.into_iter().filter(|scored| search.ties(effect, scored)).map(|scored| (effect, scored)),
             );

@@ -14,7 +14,7 @@ const MOST_EFFECTS: usize = 6;
 pub fn answers(case: &Case) -> String {
     let Case { run, spec, options, .. } = case;
     let diagnosis = diagnose(run, spec, options);
-    let discovery = discover(run, spec, options, MOST_EFFECTS, |_| {});
+    let discovery = discover(run, spec, options, MOST_EFFECTS);
     let fitted = discovery.as_ref().map_err(ToString::to_string).and_then(|found| {
         let end = complete(found, spec).map_err(|e| e.to_string())?;
         fit(run, &end, options).map_err(|e| e.to_string())

@@ -24,7 +24,7 @@ fn seeded(seed: u64, joint: Joint, hidden: &[&str], id: &str, parameters: Value)
 /// The effects that the diagnosis adds to the baseline of a run.
 fn shown(run: &RunTable) -> Vec<String> {
     let baseline = ModelSpec::baseline(run).unwrap();
-    let mut added = discover(run, &baseline, &Options::default(), 6, |_| {}).unwrap().model;
+    let mut added = discover(run, &baseline, &Options::default(), 6).unwrap().model;
     added.retain(|effect| !baseline.contains(effect));
     added.sort();
     added

@@ -48,7 +48,7 @@ pub fn score(case: &Case) -> Result<Score, Box<dyn Error>> {
     let Case { run, answer, .. } = case;
     let spec = ModelSpec::baseline(run)?;
     let (first, whole) = match diagnose(run, &spec, &Options::default())
-        .and_then(|first| Ok((first, discover(run, &spec, &Options::default(), 6, |_| {})?)))
+        .and_then(|first| Ok((first, discover(run, &spec, &Options::default(), 6)?)))
     {
         Ok(found) => found,
         Err(refused) => return Ok(refusal(answer, &refused.to_string())),

@@ -90,7 +90,7 @@ mod tests {
     fn every_power_up_has_its_offset() {
         for power_ups in [6, 18, 60] {
             let spec = ModelSpec::new(Kind::Encoder, ["offset"]).unwrap();
-            let found = discover(&started(power_ups), &spec, &Options::default(), 4, |_| {}).unwrap();
+            let found = discover(&started(power_ups), &spec, &Options::default(), 4).unwrap();
             assert_eq!(found.model, ["offset", "startup_offset"], "{}", found.summary);
             assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
             let offsets = found.fit.parameters.iter().filter(|p| p.effect == "startup_offset");

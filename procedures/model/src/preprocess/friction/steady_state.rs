@@ -8,11 +8,10 @@ use crate::preprocess::chunks::{Layout, Source, problem};
 use crate::preprocess::design::{blocks, segments};
 use crate::preprocess::friction::unmeasured_gravity;
 use crate::preprocess::{Prepared, Problem};
-use crate::report::fit::Preparation;
 use crate::signal::Signal;
 use crate::stats::summary::{mean, median, peak};
 use crate::thresholds::{KEPT_SHARE, NOISE_ERRORS, SAME_LENGTH, SAME_LEVEL, SETTLED_SHARE, SMALL_LEVEL, STEADY_SPEED};
-use crate::{ModelError, Options, ResidualKind};
+use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -116,20 +115,7 @@ pub fn prepare(
     let ((main, (data_errors, warnings)), (moving, memory)) =
         rayon::join(|| rayon::join(settled, checks), || rayon::join(|| apart(f64::INFINITY), || apart(slowest)));
     let repeats = main.repeat.iter().max().copied().unwrap_or(0) > main.repeat.iter().min().copied().unwrap_or(0);
-    let about = Preparation {
-        residual: ResidualKind::PlateauMean,
-        sample_rate_hz: 1.0 / samples.step_s,
-        cutoff_hz: samples.derived_velocity.then_some(samples.cutoff_hz),
-        velocity_lag_s: None,
-        decimation: 1,
-        bristles: None,
-        chunk_s: Some(n as f64 * samples.step_s),
-        samples: run.len(),
-        rows: main.rows(),
-        blocks: main.blocks,
-        segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
-        repeats_from: if repeats { "column" } else { "none" }.into(),
-    };
+    let about = samples.preparation_of_chunks(n, run, &main, if repeats { "column" } else { "none" });
     Ok(Prepared { data_errors, warnings, moving, memory, ..Prepared::of(run, main, about) })
 }
 

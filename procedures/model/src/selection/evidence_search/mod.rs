@@ -20,7 +20,6 @@ use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::reasons::{AdditionReason, RejectionReason, RemovalReason};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::{self, Unexplained};
-use crate::selection::advance::{Path, SelectionStep};
 use crate::selection::equivalence::is_tie;
 use crate::selection::evidence_search::candidates::{candidates, in_turn, is_tied};
 use crate::selection::evidence_search::insignificant::insignificant;
@@ -29,6 +28,7 @@ use crate::selection::evidence_search::rules::error_reduction::least_gain;
 use crate::selection::evidence_search::rules::{Figures, Refit};
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
+use crate::selection::path::{Path, SelectionStep};
 use crate::selection::refused::{EvidenceResult, Refused};
 use crate::thresholds::{LEFT_SHARE, MOST_NAMED, SIMPLER_GAIN};
 use crate::{ModelError, ModelSpec, Options};
@@ -39,21 +39,19 @@ use std::sync::Arc;
 struct Search<'a, 'p> {
     spec: &'p ModelSpec,
     options: &'a Options,
-    path: Path<'a, 'p>,
+    path: Path<'p>,
     sets: CandidateSets<'p>,
 }
 
-/// `on_advance` gets each step when it is made.
 pub fn search<'p>(
     prepared: &'p Prepared,
     spec: &'p ModelSpec,
     options: &Options,
     most: usize,
-    on_advance: &mut dyn FnMut(&SelectionStep),
 ) -> Result<ModelSelection<'p>, ModelError> {
     let start = TwoStageModel::new(prepared, spec, options)?;
     let sets = CandidateSets::new(prepared, spec);
-    let mut search = Search { spec, options, path: Path::new(start, on_advance), sets };
+    let mut search = Search { spec, options, path: Path::new(start), sets };
     // Contradicting columns make every effect spurious: none is tested.
     let mut refused = Vec::new();
     if prepared.data_errors.fatal.is_empty() {
@@ -88,7 +86,7 @@ impl<'p> Search<'_, 'p> {
         loop {
             let now = self.path.end();
             let Some((solution, all)) = self.evidence(now) else { return Ok(Vec::new()) };
-            let added = self.path.advances.iter().filter(|a| a.added.is_some()).count();
+            let added = self.path.steps.iter().filter(|a| a.added.is_some()).count();
             let figures = |e: &Evidence| Figures::of(e, self.options.alpha, added >= most);
             let passing: Vec<&Evidence> = all.iter().filter(|e| rules::rejection(&figures(e)).is_none()).collect();
             let (mut named, mut rejected) = (None, BTreeMap::new());
@@ -186,7 +184,7 @@ impl<'p> Search<'_, 'p> {
     fn open_ties(&self) -> Result<Vec<(&'p str, &'p str)>, ModelError> {
         let end = self.path.end();
         let is_in = |id: &str| end.effects.iter().any(|e| e == id);
-        let named = self.path.advances.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
+        let named = self.path.steps.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
         let mut open = Vec::new();
         for (id, rival) in named.flat_map(|(id, rivals)| rivals.iter().map(move |rival| (id, *rival))) {
             let in_place = || end.effects.iter().map(|e| if e == id { rival.to_owned() } else { e.clone() }).collect();
@@ -223,7 +221,7 @@ impl<'p> Search<'_, 'p> {
         let maps = Maps::new(self.sets.prepared, residual.clone(), self.options);
         Ok(ModelSelection {
             start: self.path.start,
-            advances: self.path.advances,
+            steps: self.path.steps,
             withdrawn: Vec::new(),
             now,
             residual,
@@ -270,9 +268,9 @@ fn scored<'p>(found: &Evidence<'_, 'p>, now: &TwoStageModel<'p>, reason: Additio
 }
 
 /// Several added effects, and the first effect that ties with each of them.
-fn shared_tie<'p>(path: &Path<'_, 'p>) -> Option<(Vec<&'p str>, &'p str)> {
+fn shared_tie<'p>(path: &Path<'p>) -> Option<(Vec<&'p str>, &'p str)> {
     let named: Vec<(&'p str, &[&'p str])> =
-        path.advances.iter().filter_map(|step| Some((step.added.as_ref()?.term.id(), &step.ties[..]))).collect();
+        path.steps.iter().filter_map(|step| Some((step.added.as_ref()?.term.id(), &step.ties[..]))).collect();
     let is_in = |id: &str| path.end().effects.iter().any(|e| e == id);
     let rivals = named.iter().flat_map(|(_, ties)| ties.iter().copied()).filter(|rival| !is_in(rival));
     let of = |rival: &'p str| {

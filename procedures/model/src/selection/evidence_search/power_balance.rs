@@ -6,8 +6,8 @@ use crate::regression::linear_model::Term;
 use crate::regression::solution::Solution;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::reasons::AdditionReason;
-use crate::selection::advance::SelectionStep;
 use crate::selection::forward_step::ScoredCandidate;
+use crate::selection::path::SelectionStep;
 use crate::thresholds::DECISION_SHARE;
 use crate::{Effect, Options};
 
