@@ -175,6 +175,8 @@ pub struct Traits {
     pub over_time: Option<&'static str>,
     /// The missing excitation, or why the effect is not visible. Default: how its residual looks.
     pub unseen: Option<&'static str>,
+    /// Excitation that would distinguish the effect from others. Default: that of its regime and its columns.
+    pub excitation: Option<&'static str>,
     /// Whether the formula is exact, so that the effect leaves no form error.
     pub is_exact: bool,
     /// Whether the coefficients belong to this run's repeats: another run has other values of the same size.

@@ -1,5 +1,5 @@
-//! Effects that are not in the last model: each is below its detection limit, not testable, or rejected. No effect is
-//! omitted.
+//! Effects that are not in the last model: each is below its detection limit, not testable, or rejected. No tested
+//! effect is omitted.
 
 use crate::effect::{Effect, Form, Regime, ShapeSearch};
 use crate::effects::excitation;
@@ -25,6 +25,10 @@ impl ExcludedEffects {
     pub fn of(selected: &ModelSelection) -> Self {
         let ModelSelection { withdrawn, ties, detection_limits, .. } = selected;
         let end = selected.end();
+        // Contradicting columns end the test of effects.
+        if !end.prepared.data_errors.fatal.is_empty() {
+            return Self::default();
+        }
         let on_ramps = ramp_stage::detection_limit(end);
         let around_reversals = hysteresis_stage::detection_limits(end);
         let detection_limits: Vec<&DetectionLimit> =
@@ -98,7 +102,7 @@ fn alike(effect: &dyn Effect, end: &TwoStageModel) -> (InvisibleReason, String) 
 }
 
 fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> (InvisibleReason, String) {
-    const RAMP: &str = "it does not act at steady state. Ramps, where signals of different instruments are not aligned, are \
+    const RAMP: &str = "no action at steady state. Ramps, where signals of different instruments are not aligned, are \
                         tested for a delay only, with an inertia in the model; add the effect to the model, or record a \
                         trajectory without steps";
     let prepared = end.prepared;

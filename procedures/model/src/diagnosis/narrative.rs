@@ -53,8 +53,9 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
 
 /// What the first suggestion does to the error, and where.
 fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
-    let unit = Scale::of(fit.validation_rms, &fit.unit);
     let first = &suggestions[0];
+    // The smallest error chooses the unit, so that every figure has digits.
+    let unit = Scale::of(fit.validation_rms.min(first.validation_rms).min(complete.validation_rms), &fit.unit);
     let effect = marked(&first.effect);
     let (error, with) = (unit.figure(fit.validation_rms), unit.figure(first.validation_rms));
     let floor = floor(found, complete, &unit);
@@ -92,12 +93,12 @@ fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion])
     };
     let alone = match (fit.effects_rms, first.effects_rms) {
         (Some(before), Some(after)) if after > before => {
-            let [before, after] = [before, after].map(|rms| figure(rms, &fit.unit));
+            let [before, after] = [before, after].map(|rms| unit.figure(rms));
             let how = if after == before { "no better".into() } else { format!("worse: {after} instead of {before}") };
             format!(" (the effects alone, without the nuisance terms, predict {how})")
         }
         (Some(before), Some(after)) => {
-            format!(" (without the nuisance terms from {} to {})", figure(before, &fit.unit), figure(after, &fit.unit))
+            format!(" (the effects alone, on the fitted data, from {} to {})", unit.figure(before), unit.figure(after))
         }
         _ => String::new(),
     };

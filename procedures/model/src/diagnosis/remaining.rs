@@ -14,9 +14,9 @@ pub fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String
     let error = figure(end.validation_rms, &end.unit);
     let repeats = match found.floor.repeatable_share {
         Some(share) if share < NOTHING_IN_COMMON => {
-            format!(", less than {} of it repeatable", percent(NOTHING_IN_COMMON))
+            format!("; where readings repeat, less than {} of the squared error does", percent(NOTHING_IN_COMMON))
         }
-        Some(share) => format!(", {} of it repeatable", percent(share)),
+        Some(share) => format!("; where readings repeat, {} of the squared error does", percent(share)),
         None => String::new(),
     };
     if lack_of_fit::structured(&found.maps).is_none()

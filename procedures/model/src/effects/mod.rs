@@ -157,6 +157,9 @@ pub(crate) fn one_more_harmonic(form: &Form) -> Option<(&'static str, Form<'stat
 /// Excitation of a run that would distinguish the effect from others.
 pub(crate) fn excitation(effect: &dyn Effect) -> &'static str {
     let needs = |column: &str| effect.info().needs.contains(&column);
+    if let Some(own) = effect.traits().excitation {
+        return own;
+    }
     match effect.traits().regime {
         Regime::Hysteresis => "slow reversals over many steps of the encoder",
         Regime::Transient => "faster changes of the speed",
@@ -166,7 +169,11 @@ pub(crate) fn excitation(effect: &dyn Effect) -> &'static str {
         Regime::SteadyState if needs("temperature_c") => "the same motion at another temperature",
         Regime::SteadyState if needs("link_torque_nm") => "the same speeds under other loads",
         Regime::SteadyState if needs("link_position_rad") => "more of a turn of the link",
-        Regime::SteadyState => "more speeds, in both directions, repeated at other times",
+        Regime::SteadyState => match effect.info().kind {
+            Kind::Stiffness => "larger and smaller torques, in both directions",
+            Kind::Brake => "larger and smaller currents, rising and falling",
+            Kind::Friction | Kind::Encoder => "more speeds, in both directions, repeated at other times",
+        },
     }
 }
 

@@ -90,7 +90,7 @@ fn experiment(bid: ScoredRun, effects: &[&str], is_friction: bool) -> Experiment
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "this run does not reliably show {worth} from {}; in the proposed run, that would be {} standard deviations{}",
+            "this run does not reliably show {} as large as {worth}; in the proposed run, that would be {} standard deviations{}",
             list(effects),
             if bid.z > 100.0 { "more than 100".to_owned() } else { format!("at least {:.1}", bid.z) },
             bid.choice.provided(),

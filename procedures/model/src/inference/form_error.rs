@@ -92,9 +92,10 @@ pub fn nuisance(model: &LinearModel, unit: &str) -> Option<Nuisance> {
     let (size, whole) = (rms(&sum), rms(&model.problem.target));
     let alone: Vec<f64> = solution.residual.iter().zip(&sum).map(|(residual, nuisance)| residual + nuisance).collect();
     let effects_rms = rms(&alone);
+    let worse = if effects_rms > whole { ", more than without a model" } else { "" };
     let note = format!(
         "nuisance terms (transients and other forms of the effects) have {} RMS, {} of that of the torque; an exported model \
-         has the effects only, and its error on this run is {} RMS",
+         has the effects only, and its error on this run is {} RMS{worse}",
         figure(size, unit),
         percent(size / whole.max(f64::MIN_POSITIVE)),
         figure(effects_rms, unit)

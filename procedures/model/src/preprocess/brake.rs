@@ -7,7 +7,7 @@ use crate::preprocess::{Prepared, sample_s, sweeps};
 use crate::signal::{Signal, Signals};
 use crate::view::Constants;
 use crate::{ModelError, Options};
-use jointbench_instrument::RunTable;
+use jointbench_instrument::{Motion, RunTable};
 
 const CHUNK_S: f64 = 0.04;
 
@@ -46,7 +46,12 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         repeat: segments::integers(run, "repeat"),
         derived_velocity: false,
         time_s,
-        constants: Constants { pole_pairs: None, poles: run.meta().poles, ..Constants::default() },
+        constants: Constants {
+            pole_pairs: None,
+            poles: run.meta().poles,
+            slides: run.meta().motion == Motion::Linear,
+            ..Constants::default()
+        },
     };
     sweeps::prepare(run, source, CHUNK_S, &[Same::Size(Signal::Velocity), Same::Value(Signal::Current)], options)
 }

@@ -51,7 +51,12 @@ fn bounded(fit: &Fit, silent: Vec<Silent>, mut not_visible: Vec<Invisible>) -> (
             ),
             None => "measure more repeats, or a wider range".to_owned(),
         };
-        let why = format!("the detection limit is {limit} of the measured signal, above the bound of {bound}; {cure}");
+        let why = match limit == bound {
+            true => format!("the detection limit is just above the bound of {bound} of the measured signal; {cure}"),
+            false => {
+                format!("the detection limit is {limit} of the measured signal, above the bound of {bound}; {cure}")
+            }
+        };
         Invisible { effect: one.effect, reason: InvisibleReason::DetectionLimit, why }
     }));
     (tested, not_visible)

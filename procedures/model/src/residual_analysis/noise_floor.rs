@@ -125,9 +125,11 @@ fn unknown(prepared: &Prepared) -> String {
         true => {
             "no noise floor, because the repeats share no condition and phase; use the same steps in every repeat, in any order"
         }
-        false => {
+        // A period is sought in the motion of friction runs only.
+        false if prepared.kind == Kind::Friction => {
             "no noise floor, because no repeats were found: no column numbers them, and the motion has no clear period"
         }
+        false => "no noise floor, because no column numbers repeats",
     };
     source.to_owned()
 }

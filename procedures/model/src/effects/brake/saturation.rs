@@ -15,8 +15,7 @@ static INFO: EffectInfo = EffectInfo {
     id: "saturation",
     kind: Kind::Brake,
     title: "Saturation",
-    sentence: "The curve over current is S-shaped: flat at first, steep in the middle, flat again as the iron \
-               saturates.",
+    sentence: "The torque is not proportional to the current: the curve bends as the iron saturates.",
     formula: "c_2·i² + c_3·i³, also up to i⁵, or c·tanh((i − i_0)/i_s), or c·tanh(i/i_s), or Σ k_n·(T_n(2·i/i_max − 1) − T_n(−1))",
     source: "Data sheets of hysteresis brakes (torque over current)",
     looks: "a curve over current, equal for rising and falling current",

@@ -1,6 +1,6 @@
 //! Saturation of the torque constant.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, Traits, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -32,6 +32,10 @@ static INFO: EffectInfo = EffectInfo {
 impl Effect for TorqueConstantSaturation {
     fn info(&self) -> EffectInfo<'_> {
         INFO
+    }
+
+    fn traits(&self) -> Traits {
+        Traits { excitation: Some("larger and smaller motor torques"), ..Traits::default() }
     }
 
     /// Not visible without a load: then the torque follows the speed, and any power of it is only another curve over

@@ -4,7 +4,7 @@ use crate::linear::basis::dot;
 use crate::stats::summary::peak;
 use crate::thresholds::{BRAKE_MARGIN, CURRENT_IN_COMMON, LARGEST_CURRENT, SMALL_CURRENT, VARYING_CURRENT};
 use crate::words::figure;
-use jointbench_instrument::{Kind, RunTable};
+use jointbench_instrument::{Kind, Motion, RunTable};
 
 /// Largest plausible coil current. Hysteresis brakes are rated up to 1.2 A (data sheet of the HB series, HB-3500M),
 /// two coils in parallel up to twice that. This limit is ten times as much.
@@ -32,7 +32,8 @@ pub fn beyond(run: &RunTable) -> Option<String> {
             ),
         });
     }
-    if run.kind() != Kind::Brake {
+    // The figures of rotating hysteresis brakes say nothing of a force.
+    if run.kind() != Kind::Brake || run.meta().motion == Motion::Linear {
         return None;
     }
     let held = held(current, run.column("brake_torque_nm")?)?;

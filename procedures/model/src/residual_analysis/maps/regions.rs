@@ -191,8 +191,6 @@ impl Stretch<'_> {
         }
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
         if x.name == "repeat" {
-            // Repeats are counted from one, independent of the first number in the column.
-            let [from, to] = [from, to].map(|repeat| repeat - x.bins[0].from + 1.0);
             return if from == to { format!("in repeat {from}") } else { format!("in repeats {from} to {to}") };
         }
         // Rounding of a computed signal is zero.
