@@ -5,6 +5,7 @@ mod excluded;
 mod maps;
 mod parameter_cells;
 
+use jointbench_instrument::Kind;
 use jointbench_model::{
     Comparison, Diagnosis, Discovery, Evaluation, Evidence, Fit, NoiseFloor, Parameter, ParameterPair, ParameterState,
     Region, ResidualKind, Suggestion, words,
@@ -27,7 +28,7 @@ pub fn fit(fit: &Fit) {
     println!(
         "error     validation {} (cross-validated RMS of {})",
         words::figure(fit.validation_rms, &fit.unit),
-        of(fit.residual)
+        of(fit)
     );
     println!(
         "          training   {}, {:.2} % of the measured RMS",
@@ -331,10 +332,12 @@ fn prepared(fit: &Fit) -> String {
     text + &format!("; {} points in {} independent blocks", prepared.rows, prepared.blocks)
 }
 
-fn of(residual: ResidualKind) -> &'static str {
-    match residual {
-        ResidualKind::Raw => "filtered samples",
-        ResidualKind::PlateauMean => "steady-state means",
+fn of(fit: &Fit) -> &'static str {
+    match (fit.residual, fit.kind) {
+        (ResidualKind::Raw, _) => "filtered samples",
+        (ResidualKind::PlateauMean, Kind::Friction) => "steady-state means",
+        // Runs in legs have no steady states.
+        (ResidualKind::PlateauMean, _) => "short means",
     }
 }
 

@@ -103,9 +103,11 @@ pub(super) fn cases(
     if let Some(Ok(found)) = found {
         cases.extend(found.limits.iter().flat_map(limits::cases_of));
     } else {
-        let kept = ended.as_ref().ok().map(limits::of_run).unwrap_or_default();
-        let unchecked = require.iter().filter(|_| required.is_empty()).chain(&kept);
+        let kept = ended.as_ref().ok().map_or(Ok(Vec::new()), limits::of_run);
+        let unchecked = require.iter().filter(|_| required.is_empty()).chain(kept.iter().flatten());
         cases.extend(unchecked.map(|limit| limits::skipped_case(&limit.text)));
+        let unread = |fault| Case { name: "limits".to_owned(), time_s: 0.0, outcome: CaseOutcome::Error(fault) };
+        cases.extend(kept.err().map(unread));
     }
     cases
 }

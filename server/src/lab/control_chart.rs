@@ -4,7 +4,7 @@
 //! units apart from the uncertainty of each value by the generalised Q statistic (Paule and Mandel 1982), its interval
 //! from the quantiles of the same statistic (Viechtbauer 2007).
 
-use super::{Answer, Lab};
+use super::{Answer, Lab, LabError};
 use crate::limits::{self, Requirement};
 use crate::store::UnitRunRecord;
 use crate::view::{Capability, ControlChart, ControlPoint, ControlRule, EmptyChart, Quantity};
@@ -45,9 +45,10 @@ impl Lab {
             return Ok(ControlChart { pending, ..empty(&found, procedure, quantity) });
         };
         let limit = match found.iter().rev().find(|(run, _)| run.limits.is_some()) {
-            Some((run, _)) => {
-                limits::of_run(&self.run(run.run).await?).into_iter().find(|limit| limit.name == chosen.name)
-            }
+            Some((run, _)) => limits::of_run(&self.run(run.run).await?)
+                .map_err(LabError::Internal)?
+                .into_iter()
+                .find(|limit| limit.name == chosen.name),
             None => None,
         };
         Ok(ControlChart { pending, ..chart(&found, &chosen, procedure, limit.as_ref()) })

@@ -157,7 +157,10 @@ impl Lab {
         let mut cases = vec![limits::run_case(&run, of_run)];
         match &found {
             Some(found) => cases.extend(found.limits.iter().flat_map(limits::cases_of)),
-            None => cases.extend(limits::of_run(&run).iter().map(|limit| limits::skipped_case(&limit.text))),
+            None => {
+                let kept = limits::of_run(&run).map_err(LabError::Internal)?;
+                cases.extend(kept.iter().map(|limit| limits::skipped_case(&limit.text)));
+            }
         }
         let warnings = found.as_ref().map_or(&[][..], |found| &found.result.warnings);
         Ok(limits::junit(&run.summary.bench, &cases, warnings))
@@ -254,7 +257,8 @@ fn values_by_name(quantities: &[Quantity]) -> Vec<(String, f64)> {
 
 /// The result of a run compared with its limits.
 fn limit_check(record: &RunRecord, result: &Shown) -> Answer<Option<LimitCheck>> {
-    let Some(file) = LimitsFile::kept(&record.provenance) else { return Ok(None) };
+    let kept = LimitsFile::kept(&record.provenance).map_err(LabError::Internal)?;
+    let Some(file) = kept else { return Ok(None) };
     let unit = record.unit.clone().map(unit_view);
     let check = file.check(&Measured::new(unit.as_ref(), &record.procedure), &record.parameters, result);
     check.map(Some).map_err(|fault| LabError::Internal(format!("the limits of run {}: {fault}", record.id)))

@@ -13,7 +13,7 @@ use crate::view::{
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, UserEffect};
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 /// Cache key of the residuals of a version.
 const RESIDUALS: &str = "residuals";
@@ -21,44 +21,29 @@ const RESIDUALS: &str = "residuals";
 /// Result of a fit, to be stored. The packed residuals follow, if any.
 #[derive(Debug, Serialize, Deserialize)]
 struct Fitted {
-    kind: String,
-    effects: Vec<String>,
-    residual: String,
-    rms: f64,
-    validation_rms: f64,
-    noise_floor_rms: Option<f64>,
-    options: Map<String, Value>,
-    fit: Value,
+    fit: Fit,
     diagnosis: Option<Value>,
+    noise_floor_rms: Option<f64>,
 }
 
-impl Fitted {
-    fn version(
-        self,
-        run: i64,
-        more_runs: &[i64],
-        excluded: Value,
-        parent: Option<i64>,
-        tried: bool,
-        by: &str,
-    ) -> NewModel {
-        NewModel {
-            run,
-            more_runs: more_runs.to_vec(),
-            excluded,
-            parent,
-            kind: self.kind,
-            effects: self.effects,
-            residual: self.residual,
-            rms: self.rms,
-            validation_rms: self.validation_rms,
-            noise_floor_rms: self.noise_floor_rms,
-            options: self.options,
-            tried,
-            fit: self.fit,
-            by: by.to_owned(),
-        }
-    }
+/// A version with this fit, without parent, exclusions and further runs.
+pub(super) fn version(run: i64, fit: &Fit, by: &str) -> Answer<NewModel> {
+    Ok(NewModel {
+        run,
+        more_runs: Vec::new(),
+        excluded: Value::Array(Vec::new()),
+        parent: None,
+        kind: fit.kind.to_string(),
+        effects: fit.effects.clone(),
+        residual: word(fit.residual),
+        rms: fit.rms,
+        validation_rms: fit.validation_rms,
+        noise_floor_rms: None,
+        options: reread(&Options::default())?,
+        tried: false,
+        fit: reread(fit)?,
+        by: by.to_owned(),
+    })
 }
 
 impl Lab {
@@ -84,9 +69,16 @@ impl Lab {
         let job = Job::Fit { runs, effects, excluded: excluded.clone(), settings, offer };
         let answer = self.compute_json(job).await?;
         let end = answer.iter().position(|byte| *byte == b'\n').unwrap_or(answer.len());
-        let (mut fitted, residuals) = (parsed::<Fitted>(&answer[..end])?, answer.get(end + 1..).unwrap_or_default());
-        let (diagnosis, excluded) = (fitted.diagnosis.take(), reread(&excluded)?);
-        let new = fitted.version(run, more_runs, excluded, parent, asked.tried, by);
+        let (fitted, residuals) = (parsed::<Fitted>(&answer[..end])?, answer.get(end + 1..).unwrap_or_default());
+        let Fitted { fit, diagnosis, noise_floor_rms } = fitted;
+        let new = NewModel {
+            more_runs: more_runs.to_vec(),
+            excluded: reread(&excluded)?,
+            parent,
+            noise_floor_rms,
+            tried: asked.tried,
+            ..version(run, &fit, by)?
+        };
         // A version is valid without residuals; a request for them returns the reason.
         let residuals = Some((RESIDUALS, residuals)).filter(|(_, packed)| !packed.is_empty());
         let record = self.inner.store.save_fitted(&new, residuals, diagnosis.as_ref()).await?;
@@ -144,26 +136,15 @@ impl Lab {
         let spec = spec.with_settings(settings.to_vec())?;
         let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
         let options = Options::default();
-        let chosen = reread(&options)?;
         let (fit, diagnosis, left) = blocking(move || {
             let (fit, diagnosis) = fit_and_diagnose(&table, &spec, &options, &offer)?;
             let left = jointbench_model::residuals(&whole, &fit, &options).ok();
             Ok((fit, diagnosis, left))
         })
         .await?;
-        let checked: view::Fit = reread(&fit)?;
         let noise_floor_rms = diagnosis.as_ref().and_then(|diagnosis| diagnosis.noise_floor_rms).and_then(finite);
-        let mut answer = json(&Fitted {
-            kind: fit.kind.to_string(),
-            effects: fit.effects.clone(),
-            residual: word(fit.residual),
-            rms: checked.rms,
-            validation_rms: checked.validation_rms,
-            noise_floor_rms,
-            options: chosen,
-            fit: reread(&fit)?,
-            diagnosis: diagnosis.as_ref().map(reread).transpose()?,
-        })?;
+        let diagnosis = diagnosis.as_ref().map(reread).transpose()?;
+        let mut answer = json(&Fitted { fit, diagnosis, noise_floor_rms })?;
         if let Some(json) = left.and_then(|left| written(left, excluded).ok()) {
             answer.push(b'\n');
             answer.extend(packed(&json)?);

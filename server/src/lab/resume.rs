@@ -52,7 +52,8 @@ impl Lab {
             None => rest,
         };
         // Another person may continue the run.
-        let tested = TestedUnit { unit: record.unit, operator: None, limits: LimitsFile::kept(&record.provenance) };
+        let limits = LimitsFile::kept(&record.provenance).map_err(LabError::Internal)?;
+        let tested = TestedUnit { unit: record.unit, operator: None, limits };
         self.launch(bench, rest, tested, by).await
     }
 

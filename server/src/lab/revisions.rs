@@ -2,6 +2,7 @@
 
 use super::blocking::blocking;
 use super::computation::Subject as Turn;
+use super::models::version;
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
 use crate::store::{NewModel, Subject};
@@ -142,20 +143,10 @@ impl Lab {
         let held: Evaluation = self.compute(Job::EvaluateFile { file, run }).await?;
         self.import_effects(&kept.user_effects, run, by).await?;
         let new = NewModel {
-            run: import.run,
-            more_runs: Vec::new(),
-            excluded: serde_json::Value::Array(Vec::new()),
-            parent: None,
-            kind: kept.kind.to_string(),
-            effects: kept.effects.clone(),
             residual: word(held.residual),
             rms: held.rms,
             validation_rms: held.rms,
-            noise_floor_rms: None,
-            options: reread(&Options::default())?,
-            tried: false,
-            fit: reread(&kept)?,
-            by: by.to_owned(),
+            ..version(import.run, &kept, by)?
         };
         let record = self.inner.store.save_model(&new).await?;
         tracing::info!(run.id = import.run, model.id = record.id, "model imported");

@@ -36,9 +36,11 @@ impl LimitsFile {
         Self { sha256, text: text.to_owned() }
     }
 
-    /// From the provenance of a run. `None` for a run without limits.
-    pub fn kept(provenance: &Map<String, Value>) -> Option<Self> {
-        serde_json::from_value(provenance.get(ACCEPTANCE_LIMITS)?.clone()).ok()
+    /// From the provenance of a run. `None` for a run without limits. A file that cannot be read is an error, because the
+    /// run would pass without it.
+    pub fn kept(provenance: &Map<String, Value>) -> Result<Option<Self>, String> {
+        let kept = provenance.get(ACCEPTANCE_LIMITS).cloned().map(serde_json::from_value);
+        kept.transpose().map_err(|fault| format!("the limits that were kept with the run cannot be read: {fault}"))
     }
 
     /// The limits of the file that apply, compared with a result.
@@ -58,7 +60,22 @@ impl LimitsFile {
 }
 
 /// The limits that are kept with a run and apply to it.
-pub fn of_run(run: &Run) -> Vec<Requirement> {
-    let Some(file) = LimitsFile::kept(&run.provenance) else { return Vec::new() };
-    applicable(&file.text, &Measured::new(run.summary.unit.as_ref(), &run.summary.procedure)).unwrap_or_default()
+pub fn of_run(run: &Run) -> Result<Vec<Requirement>, String> {
+    let Some(file) = LimitsFile::kept(&run.provenance)? else { return Ok(Vec::new()) };
+    applicable(&file.text, &Measured::new(run.summary.unit.as_ref(), &run.summary.procedure))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn limits_that_cannot_be_read_are_an_error() {
+        let kept = |limits: Value| LimitsFile::kept(&Map::from_iter([(ACCEPTANCE_LIMITS.to_owned(), limits)]));
+        let file = LimitsFile::of("[[limit]]");
+        assert_eq!(kept(json!(file)), Ok(Some(file)));
+        assert!(kept(json!("[[limit]]")).unwrap_err().contains("cannot be read"));
+        assert_eq!(LimitsFile::kept(&Map::new()), Ok(None));
+    }
 }
