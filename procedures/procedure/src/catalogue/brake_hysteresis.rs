@@ -18,7 +18,7 @@ mod identify;
 
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::brake_model::{BrakeModel, ComparedBrake};
 use crate::findings::verdict;
@@ -32,23 +32,30 @@ use rand_chacha::ChaCha8Rng;
 
 pub(super) struct BrakeHysteresis;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::count("levels", "Current levels", 20, [4, 40]),
-    Parameter::count("loops", "Major loops", 2, [1, 20]),
-    Parameter::count("random_turns", "Reversals of the random history", 16, [4, 100]),
-    Parameter::number("top_current", "Maximum current, fraction of rated", "", 1.0, [0.05, 1.0]),
-    Parameter::number("dwell_s", "Dwell time at each current", "s", 0.9, [0.5, 20.0]),
-    Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
-    ACCELERATION,
-    sample_rate(100.0),
-    Parameter::count("order_seed", "Random seed (history)", 1, [0, 1_000_000]),
-    Parameter::count(
-        "compare_run",
-        "Run of brake_hysteresis of another brake to compare with (0: none)",
-        0,
-        [0, 2_000_000_000],
-    ),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "brake_hysteresis",
+    title: "Brake hysteresis",
+    summary: "Measures the major loop, minor loops and reversal curves of the brake. Identifies a hysteresis model and \
+              its inverse, which gives the current for a torque after any history. Optionally compares two brakes.",
+    kind: Kind::Brake,
+    schema: &[
+        Parameter::count("levels", "Current levels", 20, [4, 40]),
+        Parameter::count("loops", "Major loops", 2, [1, 20]),
+        Parameter::count("random_turns", "Reversals of the random history", 16, [4, 100]),
+        Parameter::number("top_current", "Maximum current, fraction of rated", "", 1.0, [0.05, 1.0]),
+        Parameter::number("dwell_s", "Dwell time at each current", "s", 0.9, [0.5, 20.0]),
+        Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
+        ACCELERATION,
+        sample_rate(100.0),
+        Parameter::count("order_seed", "Random seed (history)", 1, [0, 1_000_000]),
+        Parameter::count(
+            "compare_run",
+            "Run of brake_hysteresis of another brake to compare with (0: none)",
+            0,
+            [0, 2_000_000_000],
+        ),
+    ],
+};
 
 /// Purpose of a sweep, stored in the column `repeat`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,25 +68,8 @@ enum Part {
 }
 
 impl Procedure for BrakeHysteresis {
-    fn id(&self) -> &'static str {
-        "brake_hysteresis"
-    }
-
-    fn title(&self) -> &'static str {
-        "Brake hysteresis"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Measures the major loop, minor loops and reversal curves of the brake. Identifies a hysteresis model and its \
-         inverse, which gives the current for a torque after any history. Optionally compares two brakes."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Brake
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

@@ -7,7 +7,7 @@
 use super::brake_run;
 use super::legs::{ACCELERATION, LAG_S, Legs, RAISE_S, sample_rate};
 use super::remanence;
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::Identification;
@@ -22,15 +22,22 @@ mod ripple;
 
 pub(super) struct BrakePoles;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_current", "Magnetising current, fraction of rated", "", 1.0, [0.05, 1.0]),
-    Parameter::number("speed_rad_s", "Speed of the measured turns (brake)", "rad/s", 0.4, [0.02, 5.0]),
-    Parameter::count("repeats", "Measured turns in each direction, before and after", 3, [2, 20]),
-    Parameter::number("demagnetise_speed_rad_s", "Speed of demagnetising (link)", "rad/s", 1.5, [0.2, 20.0]),
-    Parameter::number("demagnetise_turns", "Link turns while the current decreases", "", 3.0, [1.0, 20.0]),
-    ACCELERATION,
-    sample_rate(250.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "brake_poles",
+    title: "Cogging poles of the brake",
+    summary: "Magnetises the brake at standstill and measures the torque over slow turns without current: number of \
+              poles and their torque. Then demagnetises the brake and measures again.",
+    kind: Kind::Brake,
+    schema: &[
+        Parameter::number("top_current", "Magnetising current, fraction of rated", "", 1.0, [0.05, 1.0]),
+        Parameter::number("speed_rad_s", "Speed of the measured turns (brake)", "rad/s", 0.4, [0.02, 5.0]),
+        Parameter::count("repeats", "Measured turns in each direction, before and after", 3, [2, 20]),
+        Parameter::number("demagnetise_speed_rad_s", "Speed of demagnetising (link)", "rad/s", 1.5, [0.2, 20.0]),
+        Parameter::number("demagnetise_turns", "Link turns while the current decreases", "", 3.0, [1.0, 20.0]),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
 
 /// Turns of a measured leg: one is evaluated, and the rotor winds up before it.
 const TURNS: f64 = 1.2;
@@ -49,29 +56,12 @@ enum Part {
 }
 
 impl Procedure for BrakePoles {
-    fn id(&self) -> &'static str {
-        "brake_poles"
-    }
-
-    fn title(&self) -> &'static str {
-        "Cogging poles of the brake"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Magnetises the brake at standstill and measures the torque over slow turns without current: number of poles and \
-         their torque. Then demagnetises the brake and measures again."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Brake
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn is_modelled(&self) -> bool {
         false
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {

@@ -2,7 +2,7 @@
 
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{Line, Unusable, curve, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
@@ -15,42 +15,38 @@ use rand_chacha::ChaCha8Rng;
 
 pub(super) struct BrakeSpeedIndependence;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("low_speed_rad_s", "Minimum speed (link)", "rad/s", 0.15, [0.11, 10.0]),
-    Parameter::number("top_speed_rad_s", "Maximum speed (link)", "rad/s", 1.5, [0.2, 20.0]),
-    Parameter::count("speeds", "Number of speeds (logarithmically spaced)", 6, [3, 30]),
-    Parameter::count("currents", "Number of currents", 3, [1, 10]),
-    Parameter::number("top_current", "Maximum current, fraction of rated", "", 0.9, [0.05, 1.0]),
-    Parameter::number("dwell_s", "Dwell time at each speed", "s", 1.5, [0.5, 60.0]),
-    Parameter::number("bound", "Speed-independent if torque changes by less than, fraction", "", 0.02, [0.001, 0.5]),
-    ACCELERATION,
-    sample_rate(250.0),
-    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "brake_speed_independence",
+    title: "Brake torque over speed",
+    summary: "Measures the braking torque at constant currents over a range of speeds in both directions. Decides \
+              whether the torque depends on speed.",
+    kind: Kind::Brake,
+    schema: &[
+        Parameter::number("low_speed_rad_s", "Minimum speed (link)", "rad/s", 0.15, [0.11, 10.0]),
+        Parameter::number("top_speed_rad_s", "Maximum speed (link)", "rad/s", 1.5, [0.2, 20.0]),
+        Parameter::count("speeds", "Number of speeds (logarithmically spaced)", 6, [3, 30]),
+        Parameter::count("currents", "Number of currents", 3, [1, 10]),
+        Parameter::number("top_current", "Maximum current, fraction of rated", "", 0.9, [0.05, 1.0]),
+        Parameter::number("dwell_s", "Dwell time at each speed", "s", 1.5, [0.5, 60.0]),
+        Parameter::number(
+            "bound",
+            "Speed-independent if torque changes by less than, fraction",
+            "",
+            0.02,
+            [0.001, 0.5],
+        ),
+        ACCELERATION,
+        sample_rate(250.0),
+        Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
+    ],
+};
 
 /// Last share of a hold, after the wind-up of the brake's rotor.
 const SETTLED: f64 = 0.6;
 
 impl Procedure for BrakeSpeedIndependence {
-    fn id(&self) -> &'static str {
-        "brake_speed_independence"
-    }
-
-    fn title(&self) -> &'static str {
-        "Brake torque over speed"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Measures the braking torque at constant currents over a range of speeds in both directions. Decides whether \
-         the torque depends on speed."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Brake
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

@@ -7,7 +7,7 @@
 
 use super::brake_run::{self, rated_nm};
 use super::legs::{ACCELERATION, Legs, sample_rate};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::brake_model::{BrakeModel, CurrentHistory};
 use crate::catalogue::brake_hysteresis::{BOUND, SETTLED};
@@ -22,21 +22,28 @@ use serde_json::{Value, json};
 
 pub(super) struct BrakeTorque;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::count(
-        "model_run",
-        "Run of brake_hysteresis with the model (0: the applied model, else the latest)",
-        0,
-        [0, 2_000_000_000],
-    ),
-    Parameter::count("histories", "Random histories", 12, [1, 100]),
-    Parameter::count("torques", "Torques in each history", 20, [2, 200]),
-    Parameter::number("dwell_s", "Dwell time at each torque", "s", 0.9, [0.5, 20.0]),
-    Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
-    ACCELERATION,
-    sample_rate(100.0),
-    Parameter::count("order_seed", "Random seed (histories)", 1, [0, 1_000_000]),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "brake_torque",
+    title: "Verify the brake model",
+    summary: "Commands random torques through the inverse of the brake's hysteresis model after random histories. \
+              Reports the error against the torque sensor. Needs a run of brake_hysteresis.",
+    kind: Kind::Brake,
+    schema: &[
+        Parameter::count(
+            "model_run",
+            "Run of brake_hysteresis with the model (0: the applied model, else the latest)",
+            0,
+            [0, 2_000_000_000],
+        ),
+        Parameter::count("histories", "Random histories", 12, [1, 100]),
+        Parameter::count("torques", "Torques in each history", 20, [2, 200]),
+        Parameter::number("dwell_s", "Dwell time at each torque", "s", 0.9, [0.5, 20.0]),
+        Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
+        ACCELERATION,
+        sample_rate(100.0),
+        Parameter::count("order_seed", "Random seed (histories)", 1, [0, 1_000_000]),
+    ],
+};
 
 /// Name of the fact that assigns a torque to each current: a list of pairs for each history.
 const COMMANDED: &str = "commanded_a_nm";
@@ -44,25 +51,8 @@ const COMMANDED: &str = "commanded_a_nm";
 const SAME_A: f64 = 1e-3;
 
 impl Procedure for BrakeTorque {
-    fn id(&self) -> &'static str {
-        "brake_torque"
-    }
-
-    fn title(&self) -> &'static str {
-        "Verify the brake model"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Commands random torques through the inverse of the brake's hysteresis model after random histories. Reports \
-         the error against the torque sensor. Needs a run of brake_hysteresis."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Brake
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn brake_model(&self, values: &Values) -> Option<u32> {

@@ -7,7 +7,7 @@
 //! it looks like a difference of the directions, so that only the mean of both directions is free of it on a short arc.
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{Unusable, verdict};
 use crate::identification::{Identification, Verdict};
@@ -24,40 +24,30 @@ use torques::{BreakawayPoint, Torques, distribution, over_angle};
 
 pub(super) struct Breakaway;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::count("positions", "Number of positions in each direction", 12, [2, 200]),
-    Parameter::number("arc_rad", "Arc of the positions (link)", "rad", TAU, [0.02, TAU]),
-    Parameter::number("top_torque_nm", "Maximum torque of the ramp (motor)", "Nm", 0.08, [1e-3, 100.0]),
-    Parameter::number("ramp_nm_s", "Torque ramp rate (motor)", "Nm/s", 0.005, [1e-4, 10.0]),
-    Parameter::count("increases", "Consecutive encoder increments", 5, [2, 50]),
-    Parameter::number("speed_rad_s", "Approach speed (motor)", "rad/s", 60.0, [1.0, 1000.0]),
-    ACCELERATION,
-    sample_rate(250.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "breakaway",
+    title: "Breakaway",
+    summary: "Ramps the motor current until the joint breaks away, at many positions and in both directions. The \
+              velocity loop takes over as soon as the joint moves.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::count("positions", "Number of positions in each direction", 12, [2, 200]),
+        Parameter::number("arc_rad", "Arc of the positions (link)", "rad", TAU, [0.02, TAU]),
+        Parameter::number("top_torque_nm", "Maximum torque of the ramp (motor)", "Nm", 0.08, [1e-3, 100.0]),
+        Parameter::number("ramp_nm_s", "Torque ramp rate (motor)", "Nm/s", 0.005, [1e-4, 10.0]),
+        Parameter::count("increases", "Consecutive encoder increments", 5, [2, 50]),
+        Parameter::number("speed_rad_s", "Approach speed (motor)", "rad/s", 60.0, [1.0, 1000.0]),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
 
 /// Highest motor speed after the breakaway, at which the velocity loop takes over.
 const RUNAWAY_RAD_S: f64 = 10.0;
 
 impl Procedure for Breakaway {
-    fn id(&self) -> &'static str {
-        "breakaway"
-    }
-
-    fn title(&self) -> &'static str {
-        "Breakaway"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Ramps the motor current until the joint breaks away, at many positions and in both directions. The velocity \
-         loop takes over as soon as the joint moves."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

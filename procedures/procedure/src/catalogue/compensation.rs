@@ -11,7 +11,7 @@ mod method;
 mod reference;
 
 use super::legs::{Legs, sample_rate};
-use super::{Findable, Procedure};
+use super::{Findable, Procedure, ProcedureInfo};
 use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::{FollowUp, Identification, Verdict};
@@ -28,31 +28,44 @@ pub(super) struct Compensation;
 /// The parameter of the dynamic model; 0 omits this method.
 pub(super) const STIFFNESS: &str = "presliding_stiffness_nm_rad";
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("tau_c_nm", "Coulomb friction (motor)", "Nm", 0.030, [0.0, 100.0]),
-    Parameter::number("c_v_nm_s", "Viscous friction (motor)", "Nm·s/rad", 1.512e-4, [0.0, 10.0]),
-    Parameter::number("tau_h_nm", "Friction at zero speed (motor)", "Nm", 0.039, [0.0, 100.0]),
-    Parameter::number("stribeck_speed_rad_s", "Stribeck velocity (link)", "rad/s", 0.06, [0.001, 10.0]),
-    Parameter::number("stribeck_exponent", "Stribeck exponent", "", 0.8, [0.1, 4.0]),
-    Parameter::number(
-        STIFFNESS,
-        "Presliding stiffness for the dynamic model (motor; 0: unknown)",
-        "Nm/rad",
-        0.0,
-        [0.0, 1e6],
-    ),
-    Parameter::number("load_friction", "Friction per Nm of load (motor; 0: unknown)", "", 0.0, [0.0, 0.9]),
-    Parameter::number("load", "Brake current during the reference, fraction of rated", "", 0.0, [0.0, 1.0]),
-    Parameter::number("share", "Fraction of the friction that is compensated", "", 0.95, [0.1, 1.0]),
-    Parameter::number("amplitude_rad_s", "Amplitude of the reference (link)", "rad/s", 0.15, [0.01, 20.0]),
-    Parameter::number("period_s", "Period of the reference", "s", 6.0, reference::PERIOD_S),
-    Parameter::number("ramp_s", "Ramp of a trapezoidal reference (0: sinusoid)", "s", 0.0, [0.0, 30.0]),
-    reference::FROM_FILE,
-    Parameter::count("periods", "Periods with each method; the first is not evaluated", 2, [2, 100]),
-    Parameter::count("rounds", "Rounds of all methods; their scatter gives the intervals", 3, [1, 20]),
-    Parameter::number("acceleration_rad_s2", "Acceleration between methods (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    sample_rate(250.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "compensation",
+    title: "Friction compensation",
+    summary: "Follows a reference with up to ten methods of friction compensation: none, static models, a load term, a \
+              dynamic model and an observer. Compares their tracking errors.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::number("tau_c_nm", "Coulomb friction (motor)", "Nm", 0.030, [0.0, 100.0]),
+        Parameter::number("c_v_nm_s", "Viscous friction (motor)", "Nm·s/rad", 1.512e-4, [0.0, 10.0]),
+        Parameter::number("tau_h_nm", "Friction at zero speed (motor)", "Nm", 0.039, [0.0, 100.0]),
+        Parameter::number("stribeck_speed_rad_s", "Stribeck velocity (link)", "rad/s", 0.06, [0.001, 10.0]),
+        Parameter::number("stribeck_exponent", "Stribeck exponent", "", 0.8, [0.1, 4.0]),
+        Parameter::number(
+            STIFFNESS,
+            "Presliding stiffness for the dynamic model (motor; 0: unknown)",
+            "Nm/rad",
+            0.0,
+            [0.0, 1e6],
+        ),
+        Parameter::number("load_friction", "Friction per Nm of load (motor; 0: unknown)", "", 0.0, [0.0, 0.9]),
+        Parameter::number("load", "Brake current during the reference, fraction of rated", "", 0.0, [0.0, 1.0]),
+        Parameter::number("share", "Fraction of the friction that is compensated", "", 0.95, [0.1, 1.0]),
+        Parameter::number("amplitude_rad_s", "Amplitude of the reference (link)", "rad/s", 0.15, [0.01, 20.0]),
+        Parameter::number("period_s", "Period of the reference", "s", 6.0, reference::PERIOD_S),
+        Parameter::number("ramp_s", "Ramp of a trapezoidal reference (0: sinusoid)", "s", 0.0, [0.0, 30.0]),
+        reference::FROM_FILE,
+        Parameter::count("periods", "Periods with each method; the first is not evaluated", 2, [2, 100]),
+        Parameter::count("rounds", "Rounds of all methods; their scatter gives the intervals", 3, [1, 20]),
+        Parameter::number(
+            "acceleration_rad_s2",
+            "Acceleration between methods (motor)",
+            "rad/s²",
+            400.0,
+            [10.0, 5000.0],
+        ),
+        sample_rate(250.0),
+    ],
+};
 
 /// Brake current at which the load term is compared, fraction of rated.
 const LOAD: f64 = 0.5;
@@ -62,29 +75,12 @@ const CHECKED: u32 = 1000;
 const NO_METHOD: u32 = 99;
 
 impl Procedure for Compensation {
-    fn id(&self) -> &'static str {
-        "compensation"
-    }
-
-    fn title(&self) -> &'static str {
-        "Friction compensation"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Follows a reference with up to ten methods of friction compensation: none, static models, a load term, a dynamic \
-         model and an observer. Compares their tracking errors."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn is_modelled(&self) -> bool {
         false
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
@@ -186,7 +182,7 @@ pub(super) fn of_friction(found: &Identification) -> Option<FollowUp> {
     ];
     let parameters: Map<String, Value> =
         given.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?.into()))).collect();
-    Values::parse(SCHEMA, &parameters).ok()?;
+    Values::parse(INFO.schema, &parameters).ok()?;
     let why = "compare the compensation methods with these values";
     Some(FollowUp { procedure: Compensation.id().to_owned(), parameters, why: why.to_owned() })
 }
@@ -195,7 +191,7 @@ pub(super) fn of_friction(found: &Identification) -> Option<FollowUp> {
 pub(super) fn of_presliding(found: &Identification) -> Option<FollowUp> {
     let stiffness = found.quantity("sigma_0").filter(|_| found.verdict == Verdict::Identified)?;
     let parameters = Map::from_iter([(STIFFNESS.to_owned(), Value::from(four_digits(stiffness.value)))]);
-    Values::parse(SCHEMA, &parameters).ok()?;
+    Values::parse(INFO.schema, &parameters).ok()?;
     let why = "compare the dynamic model with the static ones";
     Some(FollowUp { procedure: Compensation.id().to_owned(), parameters, why: why.to_owned() })
 }
@@ -206,7 +202,7 @@ pub(super) fn of_load(found: &Identification) -> Option<FollowUp> {
     let mut next = of_friction(found)?;
     next.parameters.insert("load_friction".into(), four_digits(grows.value).into());
     next.parameters.insert("load".into(), LOAD.into());
-    Values::parse(SCHEMA, &next.parameters).ok()?;
+    Values::parse(INFO.schema, &next.parameters).ok()?;
     Some(FollowUp { why: "compare the load term with the other methods, under load".to_owned(), ..next })
 }
 
@@ -297,7 +293,7 @@ mod tests {
     fn the_dynamic_model_follows_the_static_one_in_steady_motion_and_lags_it_after_a_reversal() {
         let values = |stiffness_nm_rad: f64| {
             let given = json!({STIFFNESS: stiffness_nm_rad, "ramp_s": 0.1, "period_s": 4.0, "share": 1.0});
-            Values::parse(SCHEMA, given.as_object().unwrap()).unwrap()
+            Values::parse(INFO.schema, given.as_object().unwrap()).unwrap()
         };
         let planned = |method: Method, stiffness_nm_rad: f64| {
             let values = values(stiffness_nm_rad);

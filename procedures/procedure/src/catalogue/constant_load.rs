@@ -10,7 +10,7 @@ mod identify;
 
 use super::brake_run;
 use super::legs::{ACCELERATION, LAG_S, Legs, sample_rate};
-use super::{Findable, PlannedSteps, Procedure, findable};
+use super::{Findable, PlannedSteps, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::deferred_plan::DeferredPlan;
 use crate::findings::verdict;
@@ -26,26 +26,33 @@ use serde_json::Value;
 
 pub(super) struct ConstantLoad;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number(
-        "torque_nm",
-        "Demanded torque (0: half of the torque at maximum current)",
-        "Nm",
-        0.0,
-        [0.0, 1000.0],
-    ),
-    Parameter::number("low_speed_rad_s", "Minimum speed (link)", "rad/s", 0.15, [0.11, 10.0]),
-    Parameter::number("top_speed_rad_s", "Maximum speed (link)", "rad/s", 1.5, [0.2, 20.0]),
-    Parameter::count("speeds", "Number of speeds (logarithmically spaced)", 6, [2, 30]),
-    Parameter::number("top_current", "Maximum current, fraction of rated", "", 0.9, [0.05, 1.0]),
-    Parameter::count("levels", "Currents of the torque curve at each speed", 10, [3, 40]),
-    Parameter::count("repeats", "Holds of the torque at each speed and direction", 3, [2, 50]),
-    Parameter::number("dwell_s", "Dwell time at each current", "s", 0.9, [0.5, 20.0]),
-    Parameter::number("bound", "Reached if the torque differs by less than, fraction", "", 0.02, [0.001, 0.5]),
-    ACCELERATION,
-    sample_rate(100.0),
-    Parameter::count("order_seed", "Random seed (order of the speeds)", 1, [0, 1_000_000]),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "constant_load",
+    title: "Constant load over speed",
+    summary: "Readjusts the brake current at each speed, so that the load torque at the output stays as demanded. \
+              Reports the reached torque and the current of each speed.",
+    kind: Kind::Brake,
+    schema: &[
+        Parameter::number(
+            "torque_nm",
+            "Demanded torque (0: half of the torque at maximum current)",
+            "Nm",
+            0.0,
+            [0.0, 1000.0],
+        ),
+        Parameter::number("low_speed_rad_s", "Minimum speed (link)", "rad/s", 0.15, [0.11, 10.0]),
+        Parameter::number("top_speed_rad_s", "Maximum speed (link)", "rad/s", 1.5, [0.2, 20.0]),
+        Parameter::count("speeds", "Number of speeds (logarithmically spaced)", 6, [2, 30]),
+        Parameter::number("top_current", "Maximum current, fraction of rated", "", 0.9, [0.05, 1.0]),
+        Parameter::count("levels", "Currents of the torque curve at each speed", 10, [3, 40]),
+        Parameter::count("repeats", "Holds of the torque at each speed and direction", 3, [2, 50]),
+        Parameter::number("dwell_s", "Dwell time at each current", "s", 0.9, [0.5, 20.0]),
+        Parameter::number("bound", "Reached if the torque differs by less than, fraction", "", 0.02, [0.001, 0.5]),
+        ACCELERATION,
+        sample_rate(100.0),
+        Parameter::count("order_seed", "Random seed (order of the speeds)", 1, [0, 1_000_000]),
+    ],
+};
 
 /// Purpose of a step, stored in the column `repeat`: from the second one on it is the number of the round.
 const CURVE: u32 = 1;
@@ -53,25 +60,8 @@ const CURVE: u32 = 1;
 const PARAMETERS: &str = "constant_load";
 
 impl Procedure for ConstantLoad {
-    fn id(&self) -> &'static str {
-        "constant_load"
-    }
-
-    fn title(&self) -> &'static str {
-        "Constant load over speed"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Readjusts the brake current at each speed, so that the load torque at the output stays as demanded. Reports the \
-         reached torque and the current of each speed."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Brake
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
@@ -122,7 +112,7 @@ impl Procedure for ConstantLoad {
     fn plan_deferred(&self, run: &RunTable, bench: &BenchFacts) -> Result<PlannedSteps, String> {
         const FOREIGN: &str = "the parameters are not stored with the run";
         let given = run.meta().other.get(PARAMETERS).and_then(Value::as_object).ok_or(FOREIGN)?;
-        let values = Values::parse(SCHEMA, given).map_err(|fault| fault.to_string())?;
+        let values = Values::parse(INFO.schema, given).map_err(|fault| fault.to_string())?;
         let plan = self.build(&values, bench).map_err(|fault| fault.to_string())?;
         let to = plan.deferred.ok_or(FOREIGN)?.to;
         let speeds_rad_s = speeds_rad_s(&values, bench);
@@ -246,7 +236,7 @@ mod tests {
         let run = curves_of(&given);
         let why = ConstantLoad.plan_deferred(&run, &joint_b()).unwrap_err();
         assert!(why.contains("14.00 Nm") && why.contains("rad/s reach"), "{why}");
-        let values = Values::parse(SCHEMA, &given).unwrap();
+        let values = Values::parse(INFO.schema, &given).unwrap();
         let found = ConstantLoad.identify(&values, &run).unwrap();
         assert_eq!(found.verdict, crate::identification::Verdict::Inconclusive, "{}", found.summary);
         assert!(found.summary.contains("14.00 Nm"), "{}", found.summary);

@@ -3,7 +3,7 @@
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::remanence::{self, Remanence};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{Hold, Unusable, holds, verdict};
 use crate::identification::{Figure, Identification, Verdict};
@@ -13,41 +13,31 @@ use jointbench_instrument::{Kind, RunTable};
 
 pub(super) struct Demagnetise;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
-    Parameter::number("turns", "Link turns while the current decreases", "", 3.0, [1.0, 20.0]),
-    Parameter::number("top_current", "Initial current, fraction of rated", "", 1.0, [0.05, 1.0]),
-    ACCELERATION,
-    sample_rate(250.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "demagnetise",
+    title: "Demagnetise the brake",
+    summary: "Magnetises the brake fully, then reduces the current to zero while the shaft turns. One turn without \
+              current measures the remanent torque.",
+    kind: Kind::Brake,
+    schema: &[
+        Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
+        Parameter::number("turns", "Link turns while the current decreases", "", 3.0, [1.0, 20.0]),
+        Parameter::number("top_current", "Initial current, fraction of rated", "", 1.0, [0.05, 1.0]),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
 
 /// The turns that are measured, in the column `repeat`.
 const MEASURED: u32 = 1;
 
 impl Procedure for Demagnetise {
-    fn id(&self) -> &'static str {
-        "demagnetise"
-    }
-
-    fn title(&self) -> &'static str {
-        "Demagnetise the brake"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Magnetises the brake fully, then reduces the current to zero while the shaft turns. One turn without current \
-         measures the remanent torque."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Brake
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn is_modelled(&self) -> bool {
         false
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

@@ -13,7 +13,7 @@
 use super::compensation;
 use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
 use super::warm_up;
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::{FollowUp, Identification, Verdict};
@@ -31,19 +31,26 @@ mod inconclusive;
 
 pub(super) struct Friction;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 180.0, [5.0, 1000.0]),
-    Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
-    Parameter::count("fast_speeds", "Number of speeds above the Stribeck velocity", 5, [2, 20]),
-    Parameter::count("load_levels", "Load levels, including no load", 3, [1, 10]),
-    Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.65, [0.05, 1.0]),
-    Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
-    Parameter::number("dwell_s", "Dwell time at each speed", "s", 1.1, [0.3, 60.0]),
-    Parameter::number("warm_up_s", "Maximum warm-up time", "s", 20.0, [1.0, 3600.0]),
-    ACCELERATION,
-    sample_rate(250.0),
-    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "friction",
+    title: "Friction",
+    summary: "Measures the torque at constant speeds, with more speeds near zero, in both directions and under several \
+              loads. Speed, load, angle and temperature vary independently, so that missing effects can be identified.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 180.0, [5.0, 1000.0]),
+        Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
+        Parameter::count("fast_speeds", "Number of speeds above the Stribeck velocity", 5, [2, 20]),
+        Parameter::count("load_levels", "Load levels, including no load", 3, [1, 10]),
+        Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.65, [0.05, 1.0]),
+        Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
+        Parameter::number("dwell_s", "Dwell time at each speed", "s", 1.1, [0.3, 60.0]),
+        Parameter::number("warm_up_s", "Maximum warm-up time", "s", 20.0, [1.0, 3600.0]),
+        ACCELERATION,
+        sample_rate(250.0),
+        Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
+    ],
+};
 
 /// Speeds below the expected Stribeck velocity, as shares of it: with fewer than four, its exponent is not identified
 /// (diagnosis, pitfalls).
@@ -55,25 +62,8 @@ const FAST_FROM: f64 = 1.3;
 const LOAD_EXPONENT: f64 = 0.7;
 
 impl Procedure for Friction {
-    fn id(&self) -> &'static str {
-        "friction"
-    }
-
-    fn title(&self) -> &'static str {
-        "Friction"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Measures the torque at constant speeds, with more speeds near zero, in both directions and under several \
-         loads. Speed, load, angle and temperature vary independently, so that missing effects can be identified."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

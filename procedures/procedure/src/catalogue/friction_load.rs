@@ -6,7 +6,7 @@
 use super::compensation;
 use super::friction::Friction;
 use super::legs::sample_rate;
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{
     Unusable, bounded, curve, interval_of, legs, parameter, plateaus, quantity, scatter, select_legs, settled, verdict,
@@ -20,38 +20,28 @@ use jointbench_model::{Fit, ModelError, ModelSpec, Options, fit};
 
 pub(super) struct FrictionLoad;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 120.0, [5.0, 1000.0]),
-    Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
-    Parameter::count("speeds", "Number of speeds above the Stribeck velocity", 3, [2, 20]),
-    Parameter::count("load_levels", "Load levels, including no load", 6, [3, 20]),
-    Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.8, [0.05, 1.0]),
-    Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
-    Parameter::number("warm_up_s", "Maximum warm-up time", "s", 20.0, [1.0, 3600.0]),
-    sample_rate(250.0),
-    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "friction_load",
+    title: "Friction under load",
+    summary: "Measures friction on a grid of loads and speeds. Decides whether friction grows with the load, in \
+              proportion or with its square.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 120.0, [5.0, 1000.0]),
+        Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
+        Parameter::count("speeds", "Number of speeds above the Stribeck velocity", 3, [2, 20]),
+        Parameter::count("load_levels", "Load levels, including no load", 6, [3, 20]),
+        Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.8, [0.05, 1.0]),
+        Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
+        Parameter::number("warm_up_s", "Maximum warm-up time", "s", 20.0, [1.0, 3600.0]),
+        sample_rate(250.0),
+        Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
+    ],
+};
 
 impl Procedure for FrictionLoad {
-    fn id(&self) -> &'static str {
-        "friction_load"
-    }
-
-    fn title(&self) -> &'static str {
-        "Friction under load"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Measures friction on a grid of loads and speeds. Decides whether friction grows with the load, in proportion \
-         or with its square."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

@@ -6,7 +6,7 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::warm_up;
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{Plateau, Unusable, interval_of, parameter, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
@@ -19,38 +19,28 @@ use jointbench_model::{Fit, ModelSpec, Options, fit_prepared};
 
 pub(super) struct FrictionTemperature;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_speed_rad_s", "Speed (motor)", "rad/s", 180.0, [1.0, 1000.0]),
-    Parameter::number("heat_s", "Warm-up time", "s", 420.0, [20.0, 14400.0]),
-    Parameter::number("cool_s", "Cool-down time", "s", 420.0, [0.0, 14400.0]),
-    Parameter::number("rest_s", "Pause between measurements during cool-down", "s", 45.0, [1.0, 3600.0]),
-    ACCELERATION,
-    sample_rate(100.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "friction_temperature",
+    title: "Friction over temperature",
+    summary: "Runs the joint until warm, then records the cool-down. Identifies how Coulomb and viscous friction \
+              change with temperature.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::number("top_speed_rad_s", "Speed (motor)", "rad/s", 180.0, [1.0, 1000.0]),
+        Parameter::number("heat_s", "Warm-up time", "s", 420.0, [20.0, 14400.0]),
+        Parameter::number("cool_s", "Cool-down time", "s", 420.0, [0.0, 14400.0]),
+        Parameter::number("rest_s", "Pause between measurements during cool-down", "s", 45.0, [1.0, 3600.0]),
+        ACCELERATION,
+        sample_rate(100.0),
+    ],
+};
 
 /// Reference temperature of the coefficients.
 const REFERENCE_C: f64 = 25.0;
 
 impl Procedure for FrictionTemperature {
-    fn id(&self) -> &'static str {
-        "friction_temperature"
-    }
-
-    fn title(&self) -> &'static str {
-        "Friction over temperature"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Runs the joint until warm, then records the cool-down. Identifies how Coulomb and viscous friction change \
-         with temperature."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {

@@ -19,7 +19,7 @@ use super::friction_temperature::FrictionTemperature;
 use super::legs::sample_rate;
 use super::presliding::Presliding;
 use super::stiffness::Stiffness;
-use super::{Findable, PlannedSteps, Procedure, procedure};
+use super::{Findable, PlannedSteps, Procedure, ProcedureInfo, procedure};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{Unusable, verdict};
 use crate::identification::{Identification, Part, Verdict};
@@ -31,24 +31,38 @@ use serde_json::{Map, Value, json};
 
 pub(super) struct IdentifyJoint;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 180.0, [5.0, 1000.0]),
-    Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
-    Parameter::number("heat_s", "Recorded warm-up and cool-down time, each (0: skip)", "s", 420.0, [0.0, 14400.0]),
-    Parameter::number("warm_up_s", "Maximum warm-up time before the other parts", "s", 20.0, [1.0, 3600.0]),
-    Parameter::number("swing_nm", "Maximum presliding amplitude, below breakaway (motor)", "Nm", 0.028, [1e-4, 100.0]),
-    Parameter::count("load_levels", "Load levels, including no load", 6, [3, 20]),
-    Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.8, [0.05, 1.0]),
-    Parameter::number("bearing_stiffness_nm_rad", "Bearing stiffness (0: unknown)", "Nm/rad", 0.0, [0.0, 1e9]),
-    Parameter::count("repeats", "Repeats of the profiles", 2, [2, 50]),
-    Parameter::count(
-        "periods",
-        "Periods with each compensation method, at least 2, if the drive supports it (0: skip)",
-        2,
-        [0, 100],
-    ),
-    sample_rate(250.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "identify_joint",
+    title: "Identify a joint",
+    summary: "Complete identification of a joint and its brake in one run and one report. Parts: friction over \
+              temperature, friction, breakaway, presliding, friction under load, brake over speed, brake hysteresis, \
+              stiffness, and compensation of the identified friction.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 180.0, [5.0, 1000.0]),
+        Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
+        Parameter::number("heat_s", "Recorded warm-up and cool-down time, each (0: skip)", "s", 420.0, [0.0, 14400.0]),
+        Parameter::number("warm_up_s", "Maximum warm-up time before the other parts", "s", 20.0, [1.0, 3600.0]),
+        Parameter::number(
+            "swing_nm",
+            "Maximum presliding amplitude, below breakaway (motor)",
+            "Nm",
+            0.028,
+            [1e-4, 100.0],
+        ),
+        Parameter::count("load_levels", "Load levels, including no load", 6, [3, 20]),
+        Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.8, [0.05, 1.0]),
+        Parameter::number("bearing_stiffness_nm_rad", "Bearing stiffness (0: unknown)", "Nm/rad", 0.0, [0.0, 1e9]),
+        Parameter::count("repeats", "Repeats of the profiles", 2, [2, 50]),
+        Parameter::count(
+            "periods",
+            "Periods with each compensation method, at least 2, if the drive supports it (0: skip)",
+            2,
+            [0, 100],
+        ),
+        sample_rate(250.0),
+    ],
+};
 
 /// Presliding stiffness with which the dynamic compensation is planned before the run.
 const EXPECTED_STIFFNESS_NM_RAD: f64 = 15.0;
@@ -117,26 +131,8 @@ fn parts(values: &Values, bench: &BenchFacts) -> Vec<(&'static dyn Procedure, Va
 }
 
 impl Procedure for IdentifyJoint {
-    fn id(&self) -> &'static str {
-        "identify_joint"
-    }
-
-    fn title(&self) -> &'static str {
-        "Identify a joint"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Complete identification of a joint and its brake in one run and one report. Parts: friction over temperature, \
-         friction, breakaway, presliding, friction under load, brake over speed, brake hysteresis, stiffness, and \
-         compensation of the identified friction."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
@@ -331,7 +327,7 @@ mod tests {
         let mut trace = Trace::new(["time_s", "motor_position_rad", "motor_current_a"].map(Channel::new).into());
         (0..20).for_each(|i| trace.push_row(&[f64::from(i), 0.0, 0.0]));
         let run = RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap();
-        let found = IdentifyJoint.identify(&Values::parse(SCHEMA, &Map::new()).unwrap(), &run).unwrap();
+        let found = IdentifyJoint.identify(&Values::parse(INFO.schema, &Map::new()).unwrap(), &run).unwrap();
         assert_eq!(found.verdict, Verdict::Failed);
     }
 }

@@ -46,19 +46,52 @@ pub struct PlannedSteps {
     pub message: String,
 }
 
+/// What a procedure is, and the form of its parameters.
+#[derive(Debug)]
+pub struct ProcedureInfo {
+    /// Stable name in files, REST and on the command line: `brake_hysteresis`.
+    pub id: &'static str,
+    /// Name for people: `Brake hysteresis`.
+    pub title: &'static str,
+    /// One or two plain sentences for people.
+    pub summary: &'static str,
+    /// The kind of its run table.
+    pub kind: Kind,
+    /// Its parameters with units, defaults and ranges, in the order of the form.
+    pub schema: &'static [Parameter],
+}
+
 /// A measurement method: it plans the steps of a run, and the engine performs them. Pure and deterministic: the same
 /// parameters on the same bench give the same plan.
 pub trait Procedure: Sync {
-    /// Stable name in files, REST and on the command line.
-    fn id(&self) -> &'static str;
-    /// Name for people.
-    fn title(&self) -> &'static str;
-    /// One or two plain sentences.
-    fn summary(&self) -> &'static str;
-    /// The kind of its run table.
-    fn kind(&self) -> Kind;
-    /// Its parameters, in the order of the form.
-    fn schema(&self) -> &'static [Parameter];
+    /// What it is.
+    fn info(&self) -> &'static ProcedureInfo;
+
+    /// [`ProcedureInfo::id`].
+    fn id(&self) -> &'static str {
+        self.info().id
+    }
+
+    /// [`ProcedureInfo::title`].
+    fn title(&self) -> &'static str {
+        self.info().title
+    }
+
+    /// [`ProcedureInfo::summary`].
+    fn summary(&self) -> &'static str {
+        self.info().summary
+    }
+
+    /// [`ProcedureInfo::kind`].
+    fn kind(&self) -> Kind {
+        self.info().kind
+    }
+
+    /// [`ProcedureInfo::schema`].
+    fn schema(&self) -> &'static [Parameter] {
+        self.info().schema
+    }
+
     /// Plans with checked values.
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault>;
     /// Whether the models of its kind describe its run. False if the run shows something else, such as the zero of a

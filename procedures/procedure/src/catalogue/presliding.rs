@@ -6,7 +6,7 @@
 
 use super::compensation;
 use super::legs::{ACCELERATION, Legs, sample_rate};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::{FollowUp, Identification};
@@ -22,15 +22,22 @@ mod loops;
 
 pub(super) struct Presliding;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_torque_nm", "Maximum amplitude, below breakaway (motor)", "Nm", 0.028, [1e-4, 100.0]),
-    Parameter::count("amplitudes", "Number of amplitudes, evenly spaced up to the maximum", 4, [2, 20]),
-    Parameter::count("swings", "Cycles at each amplitude", 3, [1, 50]),
-    Parameter::number("period_s", "Period of a cycle", "s", 8.0, [0.2, 600.0]),
-    Parameter::count("repeats", "Repeats of the profile, each at different positions", 4, [2, 50]),
-    ACCELERATION,
-    sample_rate(250.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "presliding",
+    title: "Presliding",
+    summary: "Oscillates the motor current below breakaway at several amplitudes. The hysteresis loops give the \
+              presliding stiffness.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::number("top_torque_nm", "Maximum amplitude, below breakaway (motor)", "Nm", 0.028, [1e-4, 100.0]),
+        Parameter::count("amplitudes", "Number of amplitudes, evenly spaced up to the maximum", 4, [2, 20]),
+        Parameter::count("swings", "Cycles at each amplitude", 3, [1, 50]),
+        Parameter::number("period_s", "Period of a cycle", "s", 8.0, [0.2, 600.0]),
+        Parameter::count("repeats", "Repeats of the profile, each at different positions", 4, [2, 50]),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
 
 /// The stroke before an oscillation (motor), long enough to renew every contact.
 const STROKE_RAD: f64 = 1.3;
@@ -42,25 +49,8 @@ const REST_S: f64 = 0.4;
 const UNTIL: EndCondition = EndCondition { increases: 50, speed_rad_s: 10.0 };
 
 impl Procedure for Presliding {
-    fn id(&self) -> &'static str {
-        "presliding"
-    }
-
-    fn title(&self) -> &'static str {
-        "Presliding"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Oscillates the motor current below breakaway at several amplitudes. The hysteresis loops give the presliding \
-         stiffness."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

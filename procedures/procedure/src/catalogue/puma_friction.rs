@@ -12,7 +12,7 @@
 //! scatter between tries and one step of the ramp.
 
 use super::legs::{ACCELERATION, Legs, friction_meta, stroke};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::Identification;
@@ -29,21 +29,29 @@ mod identify;
 
 pub(super) struct PumaFriction;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("lowest_speed_rad_s", "Minimum speed (link)", "rad/s", 0.0873, [0.001, 10.0]),
-    Parameter::number("top_speed_rad_s", "Maximum speed (link)", "rad/s", 0.698, [0.01, 20.0]),
-    Parameter::count("speeds", "Number of speeds in each direction", 8, [3, 40]),
-    Parameter::number("arc_rad", "Arc to either side of the upright pose (link)", "rad", 0.45, [0.02, 3.0]),
-    Parameter::count("repeats", "Repeats of the profile", 3, [1, 50]),
-    Parameter::number("warm_up_s", "Maximum warm-up time", "s", 60.0, [1.0, 3600.0]),
-    Parameter::count("breakaways", "Breakaway measurements in each direction", 4, [2, 50]),
-    Parameter::number("top_torque_nm", "Maximum torque of the ramp (motor)", "Nm", 0.3, [1e-3, 100.0]),
-    Parameter::number("ramp_nm_s", "Torque ramp rate (motor)", "Nm/s", 0.02, [1e-4, 10.0]),
-    Parameter::count("increases", "Consecutive encoder increments", 5, [2, 50]),
-    ACCELERATION,
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 100.0, [40.0, 500.0]),
-    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "puma_friction",
+    title: "Robot-arm friction (Puma)",
+    summary: "Warms up the axis, then measures the mean shunt voltage at constant speeds over a short arc about the \
+              upright pose. Fits a line for each direction and measures breakaway friction. Set the link upright \
+              first.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::number("lowest_speed_rad_s", "Minimum speed (link)", "rad/s", 0.0873, [0.001, 10.0]),
+        Parameter::number("top_speed_rad_s", "Maximum speed (link)", "rad/s", 0.698, [0.01, 20.0]),
+        Parameter::count("speeds", "Number of speeds in each direction", 8, [3, 40]),
+        Parameter::number("arc_rad", "Arc to either side of the upright pose (link)", "rad", 0.45, [0.02, 3.0]),
+        Parameter::count("repeats", "Repeats of the profile", 3, [1, 50]),
+        Parameter::number("warm_up_s", "Maximum warm-up time", "s", 60.0, [1.0, 3600.0]),
+        Parameter::count("breakaways", "Breakaway measurements in each direction", 4, [2, 50]),
+        Parameter::number("top_torque_nm", "Maximum torque of the ramp (motor)", "Nm", 0.3, [1e-3, 100.0]),
+        Parameter::number("ramp_nm_s", "Torque ramp rate (motor)", "Nm/s", 0.02, [1e-4, 10.0]),
+        Parameter::count("increases", "Consecutive encoder increments", 5, [2, 50]),
+        ACCELERATION,
+        Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 100.0, [40.0, 500.0]),
+        Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
+    ],
+};
 
 /// Strokes of one work-out cycle whose currents are compared: two out, two back.
 const CYCLE_STEPS: usize = 4;
@@ -61,29 +69,12 @@ const SETTLE_S: f64 = 0.2;
 const SETTLE_INTERVALS: f64 = 7.0;
 
 impl Procedure for PumaFriction {
-    fn id(&self) -> &'static str {
-        "puma_friction"
-    }
-
-    fn title(&self) -> &'static str {
-        "Robot-arm friction (Puma)"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Warms up the axis, then measures the mean shunt voltage at constant speeds over a short arc about the upright \
-         pose. Fits a line for each direction and measures breakaway friction. Set the link upright first."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {
         Err("its arc is centred on the initial pose: set the link upright and repeat the run")
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

@@ -7,7 +7,7 @@ mod identify;
 mod zones;
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::Identification;
@@ -17,37 +17,27 @@ use jointbench_instrument::{Kind, Meta, RunTable};
 
 pub(super) struct Stiffness;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::count("load_levels", "Load levels, including no load", 8, [3, 40]),
-    Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 1.0, [0.05, 1.0]),
-    Parameter::number("bearing_stiffness_nm_rad", "Bearing stiffness (0: unknown)", "Nm/rad", 0.0, [0.0, 1e9]),
-    Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.5, [0.11, 20.0]),
-    Parameter::number("dwell_s", "Dwell time in each direction", "s", 1.5, [0.5, 60.0]),
-    Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
-    ACCELERATION,
-    sample_rate(250.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "stiffness",
+    title: "Stiffness",
+    summary: "Loads the joint step by step in both directions and compares its two encoders. Identifies stiffness, \
+              directional offset and nonlinearity.",
+    kind: Kind::Stiffness,
+    schema: &[
+        Parameter::count("load_levels", "Load levels, including no load", 8, [3, 40]),
+        Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 1.0, [0.05, 1.0]),
+        Parameter::number("bearing_stiffness_nm_rad", "Bearing stiffness (0: unknown)", "Nm/rad", 0.0, [0.0, 1e9]),
+        Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.5, [0.11, 20.0]),
+        Parameter::number("dwell_s", "Dwell time in each direction", "s", 1.5, [0.5, 60.0]),
+        Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
 
 impl Procedure for Stiffness {
-    fn id(&self) -> &'static str {
-        "stiffness"
-    }
-
-    fn title(&self) -> &'static str {
-        "Stiffness"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Loads the joint step by step in both directions and compares its two encoders. Identifies stiffness, \
-         directional offset and nonlinearity."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Stiffness
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {

@@ -4,7 +4,7 @@
 //! time or its distance is reached, whichever is first.
 
 use super::legs::{Legs, sample_rate};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{
     Line, Plateau, Unusable, curve, jackknife95, legs, plateaus, quantity, scatter, select_legs, settled, solve,
@@ -27,18 +27,25 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 pub(super) struct Strokes;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("low_speed_rad_s", "Minimum stroke speed (motor)", "rad/s", 15.0, [1e-3, 1000.0]),
-    Parameter::number("top_speed_rad_s", "Maximum stroke speed (motor)", "rad/s", 150.0, [1e-3, 1000.0]),
-    Parameter::count("speeds", "Number of speeds (logarithmically spaced)", 4, [1, 20]),
-    Parameter::number("load", "Brake current, fraction of rated", "", 0.0, [0.0, 1.0]),
-    Parameter::count("repeats", "Repeats of the profile", 2, [1, 50]),
-    Parameter::number("dwell_s", "Maximum dwell time at each speed", "s", 3.0, [0.3, 60.0]),
-    Parameter::number("travel_rad", "Maximum stroke length (link)", "rad", 1.2, [1e-3, 100.0]),
-    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [1e-2, 5000.0]),
-    sample_rate(250.0),
-    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "strokes",
+    title: "Constant-speed strokes",
+    summary: "Strokes in both directions at a few constant speeds under one load. A short run that answers one open \
+              question of a longer run.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::number("low_speed_rad_s", "Minimum stroke speed (motor)", "rad/s", 15.0, [1e-3, 1000.0]),
+        Parameter::number("top_speed_rad_s", "Maximum stroke speed (motor)", "rad/s", 150.0, [1e-3, 1000.0]),
+        Parameter::count("speeds", "Number of speeds (logarithmically spaced)", 4, [1, 20]),
+        Parameter::number("load", "Brake current, fraction of rated", "", 0.0, [0.0, 1.0]),
+        Parameter::count("repeats", "Repeats of the profile", 2, [1, 50]),
+        Parameter::number("dwell_s", "Maximum dwell time at each speed", "s", 3.0, [0.3, 60.0]),
+        Parameter::number("travel_rad", "Maximum stroke length (link)", "rad", 1.2, [1e-3, 100.0]),
+        Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [1e-2, 5000.0]),
+        sample_rate(250.0),
+        Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
+    ],
+};
 
 /// Least speed for magnetising and demagnetising the brake, as a share of the highest speed.
 const TURNING_SHARE: f64 = 0.5;
@@ -46,26 +53,10 @@ const TURNING_SHARE: f64 = 0.5;
 /// Shortest dwell, absolute and relative to both ramps together, that contains a detectable steady state.
 const SHORTEST_S: f64 = 0.3;
 const OF_RAMPS: f64 = 1.0;
+
 impl Procedure for Strokes {
-    fn id(&self) -> &'static str {
-        "strokes"
-    }
-
-    fn title(&self) -> &'static str {
-        "Constant-speed strokes"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Strokes in both directions at a few constant speeds under one load. A short run that answers one open \
-         question of a longer run."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

@@ -6,7 +6,7 @@
 //! same torque.
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::column_names::OTHER_RANGE;
 use crate::findings::{Hold, Line, Mean, Unusable, curve, holds, quantity, scatter, verdict};
@@ -17,17 +17,24 @@ use jointbench_instrument::{Kind, RunTable};
 
 pub(super) struct TorqueSensorZero;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("duration_s", "Duration", "s", 300.0, [10.0, 7200.0]),
-    Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.3, [0.05, 20.0]),
-    Parameter::number("dwell_s", "Dwell time in each direction", "s", 2.0, [0.5, 60.0]),
-    Parameter::number("steady_nm_per_min", "Steady when drift is below", "Nm/min", 0.002, [1e-5, 1.0]),
-    Parameter::count("loads", "Loads for the comparison of the ranges", 4, [1, 20]),
-    Parameter::number("top_torque_nm", "Maximum load, within the smaller range (link)", "Nm", 10.0, [0.1, 1000.0]),
-    Parameter::number("agree_nm", "Ranges agree if they differ by less than (link)", "Nm", 0.12, [1e-4, 10.0]),
-    ACCELERATION,
-    sample_rate(100.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "torque_sensor_zero",
+    title: "Zero of the torque sensor",
+    summary: "Moves slowly in both directions without load. The mean of both directions is the zero of the sensor, \
+              which drifts during warm-up. Compares the two ranges of the sensor under load.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::number("duration_s", "Duration", "s", 300.0, [10.0, 7200.0]),
+        Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.3, [0.05, 20.0]),
+        Parameter::number("dwell_s", "Dwell time in each direction", "s", 2.0, [0.5, 60.0]),
+        Parameter::number("steady_nm_per_min", "Steady when drift is below", "Nm/min", 0.002, [1e-5, 1.0]),
+        Parameter::count("loads", "Loads for the comparison of the ranges", 4, [1, 20]),
+        Parameter::number("top_torque_nm", "Maximum load, within the smaller range (link)", "Nm", 10.0, [0.1, 1000.0]),
+        Parameter::number("agree_nm", "Ranges agree if they differ by less than (link)", "Nm", 0.12, [1e-4, 10.0]),
+        ACCELERATION,
+        sample_rate(100.0),
+    ],
+};
 
 /// Steady-state share at the end of a hold, after the wind-up of the brake's rotor.
 const SETTLED: f64 = 0.6;
@@ -35,29 +42,12 @@ const SETTLED: f64 = 0.6;
 const END: f64 = 1.0 / 3.0;
 
 impl Procedure for TorqueSensorZero {
-    fn id(&self) -> &'static str {
-        "torque_sensor_zero"
-    }
-
-    fn title(&self) -> &'static str {
-        "Zero of the torque sensor"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Moves slowly in both directions without load. The mean of both directions is the zero of the sensor, which \
-         drifts during warm-up. Compares the two ranges of the sensor under load."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn is_modelled(&self) -> bool {
         false
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {

@@ -9,7 +9,7 @@
 use super::breakaway::ramps::{Ramps, is_held, ramps};
 use super::breakaway::torques::{BreakawayPoint, Torques, distribution, over_angle};
 use super::legs::{ACCELERATION, Legs, sample_rate};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{Unusable, verdict};
 use crate::identification::{Identification, Verdict};
@@ -22,21 +22,28 @@ use std::ops::Range;
 
 pub(super) struct TransmissionBreakaway;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::count("positions", "Number of positions in each direction", 8, [2, 100]),
-    Parameter::number("arc_rad", "Arc of the positions (link)", "rad", TAU, [0.02, TAU]),
-    Parameter::number(
-        "top_torque_nm",
-        "Maximum torque of the ramp, friction of the joint included (link)",
-        "Nm",
-        15.0,
-        [0.1, 1000.0],
-    ),
-    Parameter::number("ramp_nm_s", "Torque ramp rate (link)", "Nm/s", 1.0, [0.01, 5.0]),
-    Parameter::number("speed_rad_s", "Approach speed (motor)", "rad/s", 60.0, [1.0, 1000.0]),
-    ACCELERATION,
-    sample_rate(250.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "transmission_breakaway",
+    title: "Breakaway of the transmission",
+    summary: "Ramps the motor current until the load gear behind the torque sensor breaks away, at several positions \
+              and in both directions. The torque sensor gives the breakaway torque without the friction of the joint.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::count("positions", "Number of positions in each direction", 8, [2, 100]),
+        Parameter::number("arc_rad", "Arc of the positions (link)", "rad", TAU, [0.02, TAU]),
+        Parameter::number(
+            "top_torque_nm",
+            "Maximum torque of the ramp, friction of the joint included (link)",
+            "Nm",
+            15.0,
+            [0.1, 1000.0],
+        ),
+        Parameter::number("ramp_nm_s", "Torque ramp rate (link)", "Nm/s", 1.0, [0.01, 5.0]),
+        Parameter::number("speed_rad_s", "Approach speed (motor)", "rad/s", 60.0, [1.0, 1000.0]),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
 
 /// End of a ramp: by speed alone. Counts increase in a row before the breakaway too, while joint and teeth yield. After
 /// its own stiction a joint winds up by less than 0.1 rad (motor), at less than half of this speed.
@@ -52,29 +59,12 @@ const JOLT_S: f64 = 0.1;
 const WHAT: &str = "Breakaway torque of the transmission";
 
 impl Procedure for TransmissionBreakaway {
-    fn id(&self) -> &'static str {
-        "transmission_breakaway"
-    }
-
-    fn title(&self) -> &'static str {
-        "Breakaway of the transmission"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Ramps the motor current until the load gear behind the torque sensor breaks away, at several positions and in \
-         both directions. The torque sensor gives the breakaway torque without the friction of the joint."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn is_modelled(&self) -> bool {
         false
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

@@ -1,7 +1,7 @@
 //! Warm-up of the joint until temperature and friction are steady, or the time limit is reached.
 
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
-use super::{Findable, Procedure, findable};
+use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::{Plateau, Unusable, curve, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
@@ -13,20 +13,27 @@ use jointbench_instrument::{Kind, RunTable};
 
 pub(super) struct WarmUp;
 
-const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_speed_rad_s", "Speed (motor)", "rad/s", 180.0, [1.0, 1000.0]),
-    Parameter::number("longest_s", "Maximum duration", "s", 900.0, [20.0, 7200.0]),
-    Parameter::number("steady_c_per_min", "Steady when temperature drift is below", "°C/min", 0.3, [0.01, 10.0]),
-    Parameter::number(
-        "steady_share_per_min",
-        "Steady when relative current drift is below",
-        "1/min",
-        0.01,
-        [1e-4, 1.0],
-    ),
-    ACCELERATION,
-    sample_rate(250.0),
-];
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "warm_up",
+    title: "Warm-up",
+    summary: "Runs the joint without load until temperature and current are steady. Run it before measurements that \
+              are compared.",
+    kind: Kind::Friction,
+    schema: &[
+        Parameter::number("top_speed_rad_s", "Speed (motor)", "rad/s", 180.0, [1.0, 1000.0]),
+        Parameter::number("longest_s", "Maximum duration", "s", 900.0, [20.0, 7200.0]),
+        Parameter::number("steady_c_per_min", "Steady when temperature drift is below", "°C/min", 0.3, [0.01, 10.0]),
+        Parameter::number(
+            "steady_share_per_min",
+            "Steady when relative current drift is below",
+            "1/min",
+            0.01,
+            [1e-4, 1.0],
+        ),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
 
 /// Steps of one cycle: fast and slow, out and back.
 pub(super) const CYCLE_STEPS: usize = 4;
@@ -35,29 +42,12 @@ pub(super) const CYCLE_STEPS: usize = 4;
 pub(super) const SLOW_SHARE: f64 = 0.5;
 
 impl Procedure for WarmUp {
-    fn id(&self) -> &'static str {
-        "warm_up"
-    }
-
-    fn title(&self) -> &'static str {
-        "Warm-up"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Runs the joint without load until temperature and current are steady. Run it before measurements that are \
-         compared."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Friction
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn is_modelled(&self) -> bool {
         false
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        SCHEMA
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {

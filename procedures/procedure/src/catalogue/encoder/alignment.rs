@@ -8,7 +8,7 @@ use super::tolerance::{self, Judgement};
 use super::{ACCELERATION, EncoderLinearity, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
-use crate::catalogue::{Findable, Procedure, findable};
+use crate::catalogue::{Findable, Procedure, ProcedureInfo, findable};
 use crate::findings::solve;
 use crate::identification::{Axis, Figure, FollowUp, Form, Identification, Mark, Quantity, Series};
 use crate::parameter::{Parameter, Values};
@@ -28,48 +28,32 @@ const TURNS_WATCHED: f64 = 1.2;
 /// Largest duration of a stage move for the predicted duration of the run.
 const MOVE_S: f64 = 1.5;
 
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "encoder_alignment",
+    title: "Encoder alignment",
+    summary: "Moves the sensor along each axis of the stage until the encoder reports inconsistent periods \
+              (bisection). This gives the tested tolerance of each axis. Then measures the error over the radial shift \
+              and finds its minimum. Align the stage zero with the sensor position first.",
+    kind: Kind::Encoder,
+    schema: &[
+        Parameter::number("radial_reach_m", "Maximum radial shift", "m", 0.42e-3, [1e-5, 5e-3]),
+        Parameter::number("axial_reach_m", "Maximum axial shift, away from the ring", "m", 0.9e-3, [1e-5, 5e-3]),
+        Parameter::number("vertical_reach_m", "Maximum vertical shift", "m", 1e-3, [1e-5, 5e-3]),
+        Parameter::number("rotation_reach_rad", "Maximum rotation", "rad", 0.028, [1e-3, 0.2]),
+        Parameter::number("tilt_reach_rad", "Maximum tilt", "rad", 0.035, [1e-3, 0.2]),
+        Parameter::count("halvings", "Bisection steps", 4, [0, 12]),
+        Parameter::number("speed_rad_s", "Speed", "rad/s", 20.0, [1.0, 200.0]),
+        Parameter::number("map_reach_m", "Maximum radial shift of the map", "m", 0.2e-3, [1e-5, 5e-3]),
+        Parameter::count("map_positions", "Positions of the map", 5, [3, 50]),
+        Parameter::number("map_turns", "Turns in each direction at a position", "", 4.0, [1.0, 100.0]),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
+
 impl Procedure for EncoderAlignment {
-    fn id(&self) -> &'static str {
-        "encoder_alignment"
-    }
-
-    fn title(&self) -> &'static str {
-        "Encoder alignment"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Moves the sensor along each axis of the stage until the encoder reports inconsistent periods (bisection). This \
-         gives the tested tolerance of each axis. Then measures the error over the radial shift and finds its minimum. \
-         Align the stage zero with the sensor position first."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Encoder
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        const {
-            &[
-                Parameter::number("radial_reach_m", "Maximum radial shift", "m", 0.42e-3, [1e-5, 5e-3]),
-                Parameter::number(
-                    "axial_reach_m",
-                    "Maximum axial shift, away from the ring",
-                    "m",
-                    0.9e-3,
-                    [1e-5, 5e-3],
-                ),
-                Parameter::number("vertical_reach_m", "Maximum vertical shift", "m", 1e-3, [1e-5, 5e-3]),
-                Parameter::number("rotation_reach_rad", "Maximum rotation", "rad", 0.028, [1e-3, 0.2]),
-                Parameter::number("tilt_reach_rad", "Maximum tilt", "rad", 0.035, [1e-3, 0.2]),
-                Parameter::count("halvings", "Bisection steps", 4, [0, 12]),
-                Parameter::number("speed_rad_s", "Speed", "rad/s", 20.0, [1.0, 200.0]),
-                Parameter::number("map_reach_m", "Maximum radial shift of the map", "m", 0.2e-3, [1e-5, 5e-3]),
-                Parameter::count("map_positions", "Positions of the map", 5, [3, 50]),
-                Parameter::number("map_turns", "Turns in each direction at a position", "", 4.0, [1.0, 100.0]),
-                ACCELERATION,
-                sample_rate(250.0),
-            ]
-        }
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

@@ -7,7 +7,7 @@ use super::sweeps::sweeps;
 use super::{ACCELERATION, both_ways, counts, meta, point_rad, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
-use crate::catalogue::{Findable, Procedure, findable};
+use crate::catalogue::{Findable, Procedure, ProcedureInfo, findable};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -16,45 +16,35 @@ use jointbench_instrument::{Kind, RunTable};
 
 pub struct EncoderDelay;
 
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "encoder_delay",
+    title: "Encoder delay",
+    summary: "Turns at several speeds in both directions. The slope of the encoder difference over speed is the delay. \
+              A second run with the filter of the encoder switched on measures the delay of the filter, and how much \
+              it exceeds the data sheet.",
+    kind: Kind::Encoder,
+    schema: &[
+        Parameter::number("top_speed_rad_s", "Maximum speed", "rad/s", 157.0, [5.0, 1256.0]),
+        Parameter::count("speeds", "Number of speeds", 3, [2, 20]),
+        Parameter::number("dwell_s", "Minimum dwell time at each speed", "s", 1.5, [0.2, 60.0]),
+        Parameter::count("repeats", "Repeats", 2, [1, 20]),
+        Parameter::number("delay_without_filter_s", "Delay without filter (0: unknown)", "s", 0.0, [0.0, 1e-2]),
+        Parameter::number(
+            "half_difference_without_filter_s",
+            "Half the delay difference of the directions without filter",
+            "s",
+            0.0,
+            [-1e-2, 1e-2],
+        ),
+        Parameter::number("filter_delay_s", "Filter delay (data sheet)", "s", 10e-6, [0.0, 1e-2]),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
+
 impl Procedure for EncoderDelay {
-    fn id(&self) -> &'static str {
-        "encoder_delay"
-    }
-
-    fn title(&self) -> &'static str {
-        "Encoder delay"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Turns at several speeds in both directions. The slope of the encoder difference over speed is the delay. A \
-         second run with the filter of the encoder switched on measures the delay of the filter, and how much it exceeds \
-         the data sheet."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Encoder
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        const {
-            &[
-                Parameter::number("top_speed_rad_s", "Maximum speed", "rad/s", 157.0, [5.0, 1256.0]),
-                Parameter::count("speeds", "Number of speeds", 3, [2, 20]),
-                Parameter::number("dwell_s", "Minimum dwell time at each speed", "s", 1.5, [0.2, 60.0]),
-                Parameter::count("repeats", "Repeats", 2, [1, 20]),
-                Parameter::number("delay_without_filter_s", "Delay without filter (0: unknown)", "s", 0.0, [0.0, 1e-2]),
-                Parameter::number(
-                    "half_difference_without_filter_s",
-                    "Half the delay difference of the directions without filter",
-                    "s",
-                    0.0,
-                    [-1e-2, 1e-2],
-                ),
-                Parameter::number("filter_delay_s", "Filter delay (data sheet)", "s", 10e-6, [0.0, 1e-2]),
-                ACCELERATION,
-                sample_rate(250.0),
-            ]
-        }
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {

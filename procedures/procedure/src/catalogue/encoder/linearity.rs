@@ -9,7 +9,7 @@ use super::table::{Class, Table, Terms, means};
 use super::{ACCELERATION, both_ways, counts, meta, point_rad, radial, sample_rate, stage};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
-use crate::catalogue::{Findable, Procedure, findable};
+use crate::catalogue::{Findable, Procedure, ProcedureInfo, findable};
 use crate::findings::{jackknife95, solve};
 use crate::identification::{Identification, Quantity, SeriesRole, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -21,37 +21,27 @@ use std::f64::consts::TAU;
 
 pub struct EncoderLinearity;
 
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "encoder_linearity",
+    title: "Encoder linearity",
+    summary: "Measures the error over the turn at two speeds in both directions. Builds a look-up table and reports \
+              the usable bits without and with it, on validation data.",
+    kind: Kind::Encoder,
+    schema: &[
+        Parameter::number("speed_rad_s", "Slow speed", "rad/s", 5.0, [0.5, 50.0]),
+        Parameter::number("fast_rad_s", "Fast speed (for the velocity term)", "rad/s", 50.0, [1.0, 1256.0]),
+        Parameter::number("turns", "Turns in each direction", "", 8.0, [1.0, 200.0]),
+        Parameter::count("repeats", "Repeats (every second one is used for validation)", 2, [2, 20]),
+        Parameter::count("table_size", "Entries of the look-up table", 1024, [32, 16_384]),
+        Parameter::number("radial_shift_m", "Radial shift of the stage", "m", 0.0, [-5e-4, 5e-4]),
+        ACCELERATION,
+        sample_rate(1000.0),
+    ],
+};
+
 impl Procedure for EncoderLinearity {
-    fn id(&self) -> &'static str {
-        "encoder_linearity"
-    }
-
-    fn title(&self) -> &'static str {
-        "Encoder linearity"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Measures the error over the turn at two speeds in both directions. Builds a look-up table and reports the \
-         usable bits without and with it, on validation data."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Encoder
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        const {
-            &[
-                Parameter::number("speed_rad_s", "Slow speed", "rad/s", 5.0, [0.5, 50.0]),
-                Parameter::number("fast_rad_s", "Fast speed (for the velocity term)", "rad/s", 50.0, [1.0, 1256.0]),
-                Parameter::number("turns", "Turns in each direction", "", 8.0, [1.0, 200.0]),
-                Parameter::count("repeats", "Repeats (every second one is used for validation)", 2, [2, 20]),
-                Parameter::count("table_size", "Entries of the look-up table", 1024, [32, 16_384]),
-                Parameter::number("radial_shift_m", "Radial shift of the stage", "m", 0.0, [-5e-4, 5e-4]),
-                ACCELERATION,
-                sample_rate(1000.0),
-            ]
-        }
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {

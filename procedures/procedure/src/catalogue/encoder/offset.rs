@@ -5,7 +5,7 @@ use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
-use crate::catalogue::{Findable, Procedure, findable};
+use crate::catalogue::{Findable, Procedure, ProcedureInfo, findable};
 use crate::findings::t95;
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -16,34 +16,24 @@ use std::f64::consts::TAU;
 
 pub struct EncoderOffset;
 
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "encoder_offset",
+    title: "Encoder offset",
+    summary: "Turns slowly in both directions and averages the difference of both encoders (wrap-around handled). \
+              Repeat it after a power-up, because the offset can change.",
+    kind: Kind::Encoder,
+    schema: &[
+        Parameter::number("speed_rad_s", "Speed", "rad/s", 4.0, [0.5, 50.0]),
+        Parameter::number("turns", "Turns in each direction", "", 2.0, [1.0, 100.0]),
+        Parameter::count("repeats", "Repeats", 4, [2, 50]),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
+
 impl Procedure for EncoderOffset {
-    fn id(&self) -> &'static str {
-        "encoder_offset"
-    }
-
-    fn title(&self) -> &'static str {
-        "Encoder offset"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Turns slowly in both directions and averages the difference of both encoders (wrap-around handled). Repeat it \
-         after a power-up, because the offset can change."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Encoder
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        const {
-            &[
-                Parameter::number("speed_rad_s", "Speed", "rad/s", 4.0, [0.5, 50.0]),
-                Parameter::number("turns", "Turns in each direction", "", 2.0, [1.0, 100.0]),
-                Parameter::count("repeats", "Repeats", 4, [2, 50]),
-                ACCELERATION,
-                sample_rate(250.0),
-            ]
-        }
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {

@@ -6,7 +6,7 @@ use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
-use crate::catalogue::{Findable, Procedure, findable};
+use crate::catalogue::{Findable, Procedure, ProcedureInfo, findable};
 use crate::findings::{Mean, scatter, spread_ci95};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -19,34 +19,25 @@ pub struct EncoderStartup;
 
 /// Pairs of motions at each power-up; their scatter is the repeatability without a power-up.
 const PAIRS: u32 = 2;
+
+static INFO: ProcedureInfo = ProcedureInfo {
+    id: "encoder_startup",
+    title: "Encoder start-up",
+    summary: "Switches the encoder under test off and on several times and measures its offset from the index each \
+              time. A bench without a power switch waits for the operator before each power-up.",
+    kind: Kind::Encoder,
+    schema: &[
+        Parameter::count("power_ups", "Number of power-ups", 12, [3, 200]),
+        Parameter::number("speed_rad_s", "Speed", "rad/s", 4.0, [0.5, 50.0]),
+        Parameter::number("turns", "Turns in each direction", "", 1.2, [1.2, 100.0]),
+        ACCELERATION,
+        sample_rate(250.0),
+    ],
+};
+
 impl Procedure for EncoderStartup {
-    fn id(&self) -> &'static str {
-        "encoder_startup"
-    }
-
-    fn title(&self) -> &'static str {
-        "Encoder start-up"
-    }
-
-    fn summary(&self) -> &'static str {
-        "Switches the encoder under test off and on several times and measures its offset from the index each time. A \
-         bench without a power switch waits for the operator before each power-up."
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Encoder
-    }
-
-    fn schema(&self) -> &'static [Parameter] {
-        const {
-            &[
-                Parameter::count("power_ups", "Number of power-ups", 12, [3, 200]),
-                Parameter::number("speed_rad_s", "Speed", "rad/s", 4.0, [0.5, 50.0]),
-                Parameter::number("turns", "Turns in each direction", "", 1.2, [1.2, 100.0]),
-                ACCELERATION,
-                sample_rate(250.0),
-            ]
-        }
+    fn info(&self) -> &'static ProcedureInfo {
+        &INFO
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {

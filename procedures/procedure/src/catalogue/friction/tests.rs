@@ -179,9 +179,9 @@ proptest::proptest! {
 
     /// Any choice within the schema gives a plan or a refusal, and a plan returns to its start.
     #[test]
-    fn any_choice_is_planned_or_refused(shares in proptest::collection::vec(0.0..=1.0f64, SCHEMA.len())) {
+    fn any_choice_is_planned_or_refused(shares in proptest::collection::vec(0.0..=1.0f64, INFO.schema.len())) {
         let mut given = Map::new();
-        for (parameter, share) in SCHEMA.iter().zip(shares) {
+        for (parameter, share) in INFO.schema.iter().zip(shares) {
             // Limited to a multiple of the default, because the longest plans only cost time.
             let max = parameter.max.min(4.0 * parameter.default);
             let value = parameter.min + share * (max - parameter.min);
