@@ -1,6 +1,7 @@
 //! Facts about a bench that a procedure may use before anything moves.
 
 use crate::brake_model::{BrakeModel, ComparedBrake};
+use crate::plan::PlanFault;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{PositionCounter, SetpointInterval};
 use jointbench_instrument::{Bench, Limits};
@@ -63,6 +64,21 @@ impl BenchFacts {
             compared_brake: None,
             feeds_forward: bench.joint.feeds_forward(),
         }
+    }
+
+    /// An error unless brake and torque sensor are connected.
+    pub(crate) fn check_load(&self, cure: &'static str) -> Result<(), PlanFault> {
+        for (there, role) in [(self.has_brake, "brake"), (self.has_torque_sensor, "torque sensor")] {
+            if !there {
+                return Err(self.missing(role, cure));
+            }
+        }
+        Ok(())
+    }
+
+    /// The bench has no instrument in this role.
+    pub(crate) fn missing(&self, role: &'static str, cure: &'static str) -> PlanFault {
+        PlanFault::MissingInstrument { bench: self.name.clone(), role, cure }
     }
 }
 

@@ -12,13 +12,7 @@ const LOAD_GEAR_RATIO: &str = "load_gear_ratio";
 const RANGE_SHARE: f64 = 0.9;
 
 pub(super) fn check(bench: &BenchFacts) -> Result<(), PlanFault> {
-    let cure = "connect it, because the brake is measured with the torque sensor";
-    for (there, role) in [(bench.has_brake, "brake"), (bench.has_torque_sensor, "torque sensor")] {
-        if !there {
-            return Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure });
-        }
-    }
-    Ok(())
+    bench.check_load("connect it, because the brake is measured with the torque sensor")
 }
 
 pub(super) fn meta(bench: &BenchFacts, rate_hz: f64) -> Meta {

@@ -144,12 +144,11 @@ impl Procedure for Compensation {
 
 impl Compensation {
     fn load_a(&self, values: &Values, bench: &BenchFacts) -> Result<f64, PlanFault> {
-        let missing = |role, cure| PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure };
         if values.number("load") > 0.0 && !bench.has_brake {
-            return Err(missing("brake", "set load to 0"));
+            return Err(bench.missing("brake", "set load to 0"));
         }
         if values.number("load_friction") > 0.0 && !bench.has_torque_sensor {
-            return Err(missing("torque sensor", "set load_friction to 0"));
+            return Err(bench.missing("torque sensor", "set load_friction to 0"));
         }
         Ok(values.number("load") * bench.constants.brake_rated_current_a)
     }

@@ -174,17 +174,10 @@ impl Speeds {
 fn loads(values: &Values, bench: &BenchFacts) -> Result<Vec<f64>, PlanFault> {
     let levels = values.count("load_levels");
     if levels > 1 {
-        let cure = match bench.amperes_per_volt {
+        bench.check_load(match bench.amperes_per_volt {
             Some(_) => "use puma_friction for the axis of an arm",
             None => "set load_levels = 1, or connect it",
-        };
-        let missing = |role| PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure };
-        if !bench.has_brake {
-            return Err(missing("brake"));
-        }
-        if !bench.has_torque_sensor {
-            return Err(missing("torque sensor"));
-        }
+        })?;
     }
     let top_a = values.number("top_load") * bench.constants.brake_rated_current_a;
     let share = |level: u32| f64::from(level) / f64::from((levels - 1).max(1));

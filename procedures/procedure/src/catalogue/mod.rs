@@ -37,6 +37,9 @@ use crate::plan::{Plan, PlanFault, Step};
 use jointbench_instrument::{Kind, RunTable};
 use serde_json::{Map, Value};
 
+/// Why a run that compares two encoders cannot be resumed ([`Procedure::can_resume`]).
+const ZERO_IS_LOST: &str = "the zero of the encoders is lost when an instrument is switched off";
+
 /// Steps that were planned during their run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedSteps {

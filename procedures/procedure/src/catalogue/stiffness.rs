@@ -7,7 +7,7 @@ mod identify;
 mod zones;
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
-use super::{Findable, Procedure, ProcedureInfo, findable};
+use super::{Findable, Procedure, ProcedureInfo, ZERO_IS_LOST, findable};
 use crate::bench_facts::BenchFacts;
 use crate::findings::verdict;
 use crate::identification::Identification;
@@ -41,16 +41,11 @@ impl Procedure for Stiffness {
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {
-        Err("the zero of the encoders is lost when an instrument is switched off")
+        Err(ZERO_IS_LOST)
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
-        for (there, role) in [(bench.has_brake, "brake"), (bench.has_torque_sensor, "torque sensor")] {
-            if !there {
-                let cure = "connect it, because stiffness is torque per torsion";
-                return Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure });
-            }
-        }
+        bench.check_load("connect it, because stiffness is torque per torsion")?;
         let rate_hz = values.number("sample_rate_hz");
         let speed_rad_s = values.number("speed_rad_s") * bench.constants.gear_ratio;
         let top_a = values.number("top_load") * bench.constants.brake_rated_current_a;

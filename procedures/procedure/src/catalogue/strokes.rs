@@ -62,8 +62,7 @@ impl Procedure for Strokes {
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         let brake_a = values.number("load") * bench.constants.brake_rated_current_a;
         if brake_a > 0.0 && !bench.has_brake {
-            let cure = "set load = 0, or connect it";
-            return Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role: "brake", cure });
+            return Err(bench.missing("brake", "set load = 0, or connect it"));
         }
         let speeds = speeds(values, bench)?;
         let turning_rad_s = values.number("top_speed_rad_s").max(TURNING_SHARE * bench.limits.motor_velocity_rad_s);

@@ -56,8 +56,7 @@ impl Procedure for TorqueSensorZero {
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         if !bench.has_torque_sensor {
-            let cure = "connect it";
-            return Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role: "torque sensor", cure });
+            return Err(bench.missing("torque sensor", "connect it"));
         }
         let rate_hz = values.number("sample_rate_hz");
         let speed_rad_s = values.number("speed_rad_s") * bench.constants.gear_ratio;

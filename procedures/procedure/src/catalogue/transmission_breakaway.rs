@@ -68,13 +68,12 @@ impl Procedure for TransmissionBreakaway {
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
-        let missing = |role, cure| PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure };
         if bench.constants.load_gear_ratio.is_none() {
             let cure = "state load_gear_ratio in [bench.constants], or run breakaway to measure the joint";
-            return Err(missing("load gear", cure));
+            return Err(bench.missing("load gear", cure));
         }
         if !bench.has_torque_sensor {
-            return Err(missing("torque sensor", "connect it"));
+            return Err(bench.missing("torque sensor", "connect it"));
         }
         let (rate_hz, top_nm) = (values.number("sample_rate_hz"), values.number("top_torque_nm"));
         if top_nm > bench.limits.link_torque_nm {

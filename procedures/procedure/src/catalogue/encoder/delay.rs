@@ -7,7 +7,7 @@ use super::sweeps::sweeps;
 use super::{ACCELERATION, both_ways, counts, meta, point_rad, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
-use crate::catalogue::{Findable, Procedure, ProcedureInfo, findable};
+use crate::catalogue::{Findable, Procedure, ProcedureInfo, ZERO_IS_LOST, findable};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -48,7 +48,7 @@ impl Procedure for EncoderDelay {
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {
-        Err("the zero of the encoders is lost when an instrument is switched off")
+        Err(ZERO_IS_LOST)
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

@@ -9,7 +9,7 @@ use super::table::{Class, Table, Terms, means};
 use super::{ACCELERATION, both_ways, counts, meta, point_rad, radial, sample_rate, stage};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
-use crate::catalogue::{Findable, Procedure, ProcedureInfo, findable};
+use crate::catalogue::{Findable, Procedure, ProcedureInfo, ZERO_IS_LOST, findable};
 use crate::findings::{jackknife95, solve};
 use crate::identification::{Identification, Quantity, SeriesRole, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -45,7 +45,7 @@ impl Procedure for EncoderLinearity {
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {
-        Err("the zero of the encoders is lost when an instrument is switched off")
+        Err(ZERO_IS_LOST)
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {

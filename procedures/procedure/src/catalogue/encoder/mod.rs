@@ -36,19 +36,15 @@ const SETTLE_S: f64 = 0.4;
 
 /// Counts in a turn of reference and test encoder.
 fn counts(bench: &BenchFacts) -> Result<[f64; 2], PlanFault> {
-    bench.encoder_counts.ok_or_else(|| PlanFault::MissingInstrument {
-        bench: bench.name.clone(),
-        role: "pair of encoders",
-        cure: "add [bench.reference_encoder] and [bench.test_encoder] to the bench file",
-    })
+    let cure = "add [bench.reference_encoder] and [bench.test_encoder] to the bench file";
+    bench.encoder_counts.ok_or_else(|| bench.missing("pair of encoders", cure))
 }
 
 fn stage(bench: &BenchFacts) -> Result<(), PlanFault> {
     if bench.has_stage {
         return Ok(());
     }
-    let (role, cure) = ("stage", "add [bench.stage] to the bench file, or leave the radial shift at 0");
-    Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure })
+    Err(bench.missing("stage", "add [bench.stage] to the bench file, or leave the radial shift at 0"))
 }
 
 fn meta(counts: [f64; 2], rate_hz: f64) -> Meta {

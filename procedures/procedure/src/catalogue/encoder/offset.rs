@@ -5,7 +5,7 @@ use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
-use crate::catalogue::{Findable, Procedure, ProcedureInfo, findable};
+use crate::catalogue::{Findable, Procedure, ProcedureInfo, ZERO_IS_LOST, findable};
 use crate::findings::t95;
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -37,7 +37,7 @@ impl Procedure for EncoderOffset {
     }
 
     fn can_resume(&self) -> Result<(), &'static str> {
-        Err("the zero of the encoders is lost when an instrument is switched off")
+        Err(ZERO_IS_LOST)
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
