@@ -9,6 +9,7 @@
 
 pub mod bench_facts;
 pub mod brake_model;
+mod brake_timing;
 pub mod catalogue;
 mod column_names;
 mod columns;

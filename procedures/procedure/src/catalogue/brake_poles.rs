@@ -5,10 +5,11 @@
 //! coupling or the sensor causes is in both measurements, so that only orders that demagnetising changes are poles.
 
 use super::brake_run;
-use super::legs::{ACCELERATION, LAG_S, Legs, RAISE_S, sample_rate};
+use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::remanence;
 use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
+use crate::brake_timing::{LAG_S, RAISE_S};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};

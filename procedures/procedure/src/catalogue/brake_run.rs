@@ -1,5 +1,6 @@
 //! Shared functions of the brake procedures: requirements on the bench, and the facts of a brake run.
 
+use super::legs::RANGE_SHARE;
 use crate::bench_facts::BenchFacts;
 use crate::plan::PlanFault;
 use jointbench_instrument::{Kind, Meta, RunTable};
@@ -8,8 +9,6 @@ use serde_json::Value;
 /// Names of facts of the bench that a brake run stores.
 const RATED_TORQUE: &str = "rated_torque_nm";
 const LOAD_GEAR_RATIO: &str = "load_gear_ratio";
-/// Largest share of the link's range that one step may use.
-const RANGE_SHARE: f64 = 0.9;
 
 pub(super) fn check(bench: &BenchFacts) -> Result<(), PlanFault> {
     bench.check_load("connect it, because the brake is measured with the torque sensor")

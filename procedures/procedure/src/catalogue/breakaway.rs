@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 pub(super) mod ramps;
 pub(super) mod torques;
 
-use ramps::{Onset, Ramps, onsets, ramp_step_nm};
+use ramps::{Onset, RUNAWAY_RAD_S, Ramps, onsets, ramp_step_nm};
 use torques::{BreakawayPoint, Torques, distribution, over_angle};
 
 pub(super) struct Breakaway;
@@ -41,9 +41,6 @@ static INFO: ProcedureInfo = ProcedureInfo {
         sample_rate(250.0),
     ],
 };
-
-/// Highest motor speed after the breakaway, at which the velocity loop takes over.
-const RUNAWAY_RAD_S: f64 = 10.0;
 
 impl Procedure for Breakaway {
     fn info(&self) -> &'static ProcedureInfo {

@@ -9,9 +9,10 @@ mod curves;
 mod identify;
 
 use super::brake_run;
-use super::legs::{ACCELERATION, LAG_S, Legs, sample_rate};
+use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, PlannedSteps, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
+use crate::brake_timing::LAG_S;
 use crate::deferred_plan::DeferredPlan;
 use crate::findings::verdict;
 use crate::identification::Identification;

@@ -2,6 +2,7 @@
 
 use super::Procedure;
 use crate::bench_facts::BenchFacts;
+use crate::brake_timing::{LAG_S, RAISE_S, UNLOAD_S};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BrakeControl, Drive, InitialState, Phase, Plan, Step};
 use crate::profile::Profile;
@@ -14,14 +15,8 @@ const LONGEST_LEG_S: f64 = 15.0;
 
 /// A shorter leg contains no steady state.
 const SHORTEST_LEG_S: f64 = 0.5;
-/// Largest share of the link's range in one leg.
-const RANGE_SHARE: f64 = 0.9;
-
-/// A rise of the brake current: its ramp, and the delay of supply and coil (118 ms and 80 ms).
-pub(super) const RAISE_S: f64 = 0.8;
-pub(super) const LAG_S: f64 = 0.6;
-/// A fall of the brake current takes at least this time and a whole link turn.
-const UNLOAD_S: f64 = 2.0;
+/// Largest share of the link's range in one step (chosen).
+pub(super) const RANGE_SHARE: f64 = 0.9;
 
 /// The torque sensor sends 1000 samples a second if that gives at least two samples in every row.
 const TORQUE_PERIOD_S: f64 = 1e-3;

@@ -4,6 +4,7 @@
 //! from the same state. The torque is commanded, and the motor encoder measures the displacement. The joint moves by
 //! only a few counts, so that the times at which a reading changes are evaluated.
 
+use super::breakaway::ramps::REST_S;
 use super::compensation;
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, ProcedureInfo, findable};
@@ -43,8 +44,6 @@ static INFO: ProcedureInfo = ProcedureInfo {
 const STROKE_RAD: f64 = 1.3;
 const STROKE_RAD_S: f64 = 10.0;
 const FURTHER: f64 = 1e-3;
-/// Rest without torque after the stroke (s).
-const REST_S: f64 = 0.4;
 /// Limits of a breakaway: this number of consecutive increases, or this motor speed.
 const UNTIL: EndCondition = EndCondition { increases: 50, speed_rad_s: 10.0 };
 

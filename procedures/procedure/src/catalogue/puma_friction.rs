@@ -11,6 +11,7 @@
 //! 3.1 % at the default ramp (30 arms), and 2.1 to 5.7 % at three times the ramp (20 arms). Its interval is the
 //! scatter between tries and one step of the ramp.
 
+use super::breakaway::ramps::{REST_S, RUNAWAY_RAD_S};
 use super::legs::{ACCELERATION, Legs, friction_meta, stroke};
 use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
@@ -55,14 +56,10 @@ static INFO: ProcedureInfo = ProcedureInfo {
 
 /// Strokes of one work-out cycle whose currents are compared: two out, two back.
 const CYCLE_STEPS: usize = 4;
-/// Rest before the current ramp, and distance of the approach (link), so that the joint arrives in the direction of
-/// the ramp.
-const REST_S: f64 = 0.4;
+/// Distance of the approach (link), so that the joint arrives in the direction of the ramp.
 const BACK_OFF_RAD: f64 = 0.02;
-/// Motor speed of motions that are not measured, and highest motor speed after the breakaway, at which the velocity
-/// loop takes over.
+/// Motor speed of motions that are not measured.
 const MOVE_SHARE: f64 = 0.5;
-const RUNAWAY_RAD_S: f64 = 10.0;
 /// Shortest settling time at a constant speed. A position servo whose set-point is renewed before it is reached settles
 /// exponentially with the set-point interval: after this number of intervals to 0.1 %.
 const SETTLE_S: f64 = 0.2;

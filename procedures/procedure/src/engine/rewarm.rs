@@ -2,13 +2,10 @@
 
 use super::ending::Ending;
 use super::session::{PendingRequest, Session};
+use crate::brake_timing::{LAG_S, RAISE_S};
 use crate::plan::{Phase, Step};
 use crate::profile::Profile;
 use crate::steady::{COOLING_S, SteadyDetector};
-
-/// Ramp of a rising brake current, and the delay of supply and coil.
-const RAISE_S: f64 = 0.8;
-const LAG_S: f64 = 0.6;
 
 impl Session<'_> {
     /// After a pause of this duration in the middle of `step`. Returns whether the brake has a new history, which

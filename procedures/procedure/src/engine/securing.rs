@@ -3,6 +3,7 @@
 use super::ending::{Ending, Urgency};
 use super::safe_state::secure;
 use super::session::Session;
+use crate::brake_timing::UNLOAD_S;
 use crate::event::{EventKind, Safe};
 use crate::guard::STANDSTILL_LINK_RAD_S;
 use crate::profile::Profile;
@@ -10,9 +11,7 @@ use jointbench_instrument::Fault;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Least duration of unloading the brake, and one link turn, so that every pole is reached.
-const UNLOAD_S: f64 = 2.0;
-/// Longest duration: a plan that only creeps does not get a whole turn.
+/// Longest duration of unloading the brake: a plan that only creeps does not get a whole turn.
 const LONGEST_UNLOAD_S: f64 = 15.0;
 /// Fastest link speed of unloading: 60 rpm.
 const UNLOAD_LINK_RAD_S: f64 = TAU;

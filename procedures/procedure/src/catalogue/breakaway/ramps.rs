@@ -8,8 +8,10 @@ use crate::profile::Profile;
 use jointbench_instrument::RunTable;
 use std::ops::Range;
 
-/// Rest without torque between the approach and the ramp (s).
-const REST_S: f64 = 0.4;
+/// Rest without torque between the approach and a motor current (s; chosen).
+pub(in crate::catalogue) const REST_S: f64 = 0.4;
+/// Highest motor speed after the breakaway, at which the velocity loop takes over (chosen).
+pub(in crate::catalogue) const RUNAWAY_RAD_S: f64 = 10.0;
 
 /// Ramps in both directions. Each position is one step that includes the approach: the joint always arrives in the
 /// direction in which it will break away.
