@@ -1,13 +1,12 @@
 //! An Advantech ADAM-4015 with up to six resistance thermometers, over Modbus RTU.
 
-use super::{Recovers, same};
+use super::{Recovers, common_answers, same};
 use crate::protocol::modbus::ReadRegisters;
 use crate::transport::{Link, PortSettings};
 use jointbench_instrument::roles::{Identity, Instrument, Thermometer};
 use jointbench_instrument::units::Celsius;
 use jointbench_instrument::{Fault, FaultKind};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use std::time::Duration;
 
 const CHANNELS: u8 = 6;
@@ -116,24 +115,10 @@ impl Recovers for AdamThermometer {
 }
 
 impl Instrument for AdamThermometer {
-    fn name(&self) -> &str {
-        &self.settings.name
-    }
-
-    fn port(&self) -> &str {
-        self.link.address()
-    }
+    common_answers!();
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         if self.link.is_trusted() { self.read_identity() } else { self.resume() }
-    }
-
-    fn recover(&mut self) -> Result<Identity, Fault> {
-        self.resume()
-    }
-
-    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
-        self.link.record(file)
     }
 }
 

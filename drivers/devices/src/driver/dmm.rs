@@ -1,13 +1,12 @@
 //! A SCPI multimeter on the analogue output of a torque sensor, for a sensor without a digital interface.
 
-use super::{Recovers, same};
+use super::{Recovers, common_answers, same};
 use crate::protocol::scpi::{ClearStatus, Identify, ReadVoltage, Set, Terminator};
 use crate::transport::{Command, Link, PortSettings};
 use jointbench_instrument::roles::{Identity, Instrument, TorqueSensor};
 use jointbench_instrument::units::NewtonMetres;
 use jointbench_instrument::{Fault, FaultKind};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use std::time::Duration;
 
 /// Output voltage at the nominal torque. Voltages beyond it are invalid.
@@ -66,26 +65,12 @@ impl Recovers for DmmTorqueSensor {
 }
 
 impl Instrument for DmmTorqueSensor {
-    fn name(&self) -> &str {
-        &self.settings.name
-    }
-
-    fn port(&self) -> &str {
-        self.link.address()
-    }
+    common_answers!();
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         let line_end = self.line_end;
         let found = self.ready()?.request(&Identify(line_end))?;
         same(&mut self.link, &mut self.identity, found)
-    }
-
-    fn recover(&mut self) -> Result<Identity, Fault> {
-        self.resume()
-    }
-
-    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
-        self.link.record(file)
     }
 }
 

@@ -1,12 +1,11 @@
 //! A six-axis alignment stage: a PI hexapod on a C-887 controller.
 
-use super::{Recovers, same};
+use super::{Recovers, common_answers, same};
 use crate::protocol::gcs::{Identify, QueryAxes, QueryError, QueryReachable, Set, StopAll, error_text};
 use crate::transport::{Link, PortSettings};
 use jointbench_instrument::roles::{AlignmentStage, Identity, Instrument, Pose};
 use jointbench_instrument::{Fault, FaultKind};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use std::time::Duration;
 
 const M_PER_MM: f64 = 1e-3;
@@ -81,25 +80,11 @@ impl Recovers for GcsStage {
 }
 
 impl Instrument for GcsStage {
-    fn name(&self) -> &str {
-        &self.settings.name
-    }
-
-    fn port(&self) -> &str {
-        self.link.address()
-    }
+    common_answers!();
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         let found = self.ready()?.request(&Identify)?;
         same(&mut self.link, &mut self.identity, found)
-    }
-
-    fn recover(&mut self) -> Result<Identity, Fault> {
-        self.resume()
-    }
-
-    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
-        self.link.record(file)
     }
 }
 

@@ -1,14 +1,13 @@
 //! A rotating torque sensor with two ranges behind a Lorenz telegram interface.
 
 use super::lorenz_stream::Stream;
-use super::{Recovers, same};
+use super::{Recovers, common_answers, same};
 use crate::protocol::lorenz::{Hello, NOMINAL_COUNTS, ReadConfig, ReadRaw, ReadStatusShort, StopStream, nack_text};
 use crate::transport::{Command, Link, PortSettings};
 use jointbench_instrument::roles::{Identity, Instrument, TorqueSensor, TorqueStream};
 use jointbench_instrument::units::NewtonMetres;
 use jointbench_instrument::{Fault, FaultKind};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use std::time::Duration;
 
 /// Configuration block of the stator: type and serial number.
@@ -127,27 +126,13 @@ impl Recovers for LorenzSensor {
 }
 
 impl Instrument for LorenzSensor {
-    fn name(&self) -> &str {
-        &self.settings.name
-    }
-
-    fn port(&self) -> &str {
-        self.link.address()
-    }
+    common_answers!();
 
     /// Also ends a running stream.
     fn identify(&mut self) -> Result<Identity, Fault> {
         self.stop_stream()?;
         self.ready()?;
         self.read_identity()
-    }
-
-    fn recover(&mut self) -> Result<Identity, Fault> {
-        self.resume()
-    }
-
-    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
-        self.link.record(file)
     }
 }
 

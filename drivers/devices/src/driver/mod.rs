@@ -24,6 +24,29 @@ use crate::transport::Link;
 use jointbench_instrument::roles::Identity;
 use jointbench_instrument::{Fault, FaultKind};
 
+/// The part of `Instrument` that every driver answers in the same way, from its settings and its link.
+macro_rules! common_answers {
+    () => {
+        fn name(&self) -> &str {
+            &self.settings.name
+        }
+
+        fn port(&self) -> &str {
+            self.link.address()
+        }
+
+        fn recover(&mut self) -> Result<Identity, Fault> {
+            self.resume()
+        }
+
+        fn record(&mut self, file: Option<&std::path::Path>) -> Result<(), Fault> {
+            self.link.record(file)
+        }
+    };
+}
+
+use common_answers;
+
 /// The instrument must be the one that answered when the bench was opened. If it is another one, all requests are
 /// refused until the original instrument is back.
 fn same(link: &mut Link, known: &mut Option<Identity>, found: Identity) -> Result<Identity, Fault> {

@@ -1,6 +1,6 @@
 //! An ODrive as the joint's controller. Axis 0 drives the motor; the encoder input of axis 1 may read the link encoder.
 
-use super::{Recovers, same};
+use super::{Recovers, common_answers, same};
 use crate::protocol::odrive::{
     CLOSED_LOOP, ClearErrors, FeedWatchdog, Feedback, IDLE, Part, ReadErrors, ReadFeedback, ReadInfo, ReadNumber,
     RequestState, Set, SetTorque, SetVelocity, TorqueOff,
@@ -12,7 +12,6 @@ use jointbench_instrument::units::{Amperes, Celsius, RadPerSec, Radians, Volts};
 use jointbench_instrument::{Clock, Fault, FaultKind};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -166,25 +165,11 @@ impl Recovers for OdriveJoint {
 }
 
 impl Instrument for OdriveJoint {
-    fn name(&self) -> &str {
-        &self.settings.name
-    }
-
-    fn port(&self) -> &str {
-        self.link.address()
-    }
+    common_answers!();
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         let found = self.ready()?.request(&ReadInfo)?;
         same(&mut self.link, &mut self.identity, found)
-    }
-
-    fn recover(&mut self) -> Result<Identity, Fault> {
-        self.resume()
-    }
-
-    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
-        self.link.record(file)
     }
 }
 

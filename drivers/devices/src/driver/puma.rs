@@ -4,7 +4,7 @@
 //! `ninter` ticks later. If commands arrive faster, the joint follows smoothly with a small delay. The servo reports no
 //! velocity: it is the position difference of two readings over their time difference.
 
-use super::{Recovers, same};
+use super::{Recovers, common_answers, same};
 use crate::protocol::puma::{
     ArmPower, Clear, CurrentMode, DiagRead, DiagWrite, Fact, Identify, Limit, MOST_COUNTS, Numbered, Order,
     PositionMode, ReadCurrent, ReadPosition, ReadStatus, Reply, SetInterval, Stop, VOLTS_PER_COUNT, interval,
@@ -19,7 +19,6 @@ use jointbench_instrument::units::{Amperes, RadPerSec, Radians};
 use jointbench_instrument::{Clock, Fault, FaultKind};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -253,26 +252,12 @@ impl Recovers for PumaAxis {
 }
 
 impl Instrument for PumaAxis {
-    fn name(&self) -> &str {
-        &self.settings.name
-    }
-
-    fn port(&self) -> &str {
-        self.link.address()
-    }
+    common_answers!();
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         self.ready()?;
         let (found, _) = self.facts()?;
         same(&mut self.link, &mut self.identity, found)
-    }
-
-    fn recover(&mut self) -> Result<Identity, Fault> {
-        self.resume()
-    }
-
-    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
-        self.link.record(file)
     }
 }
 

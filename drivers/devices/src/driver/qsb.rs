@@ -1,6 +1,6 @@
 //! An incremental encoder behind a US Digital QSB counter.
 
-use super::{Recovers, same};
+use super::{Recovers, common_answers, same};
 use crate::protocol::qsb::{Held, ReadRegister, Register, StopStreams, Version, WriteRegister};
 use crate::transport::{Command, Link, PortSettings};
 use jointbench_instrument::clock::between;
@@ -9,7 +9,6 @@ use jointbench_instrument::units::Radians;
 use jointbench_instrument::{Clock, Fault, FaultKind};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -132,24 +131,10 @@ impl Recovers for QsbCounter {
 }
 
 impl Instrument for QsbCounter {
-    fn name(&self) -> &str {
-        &self.settings.name
-    }
-
-    fn port(&self) -> &str {
-        self.link.address()
-    }
+    common_answers!();
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         if self.link.is_trusted() { self.read_identity() } else { self.resume() }
-    }
-
-    fn recover(&mut self) -> Result<Identity, Fault> {
-        self.resume()
-    }
-
-    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
-        self.link.record(file)
     }
 }
 

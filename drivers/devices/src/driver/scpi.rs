@@ -1,6 +1,6 @@
 //! A Rigol DP800 or an R&S HMP supply as the current source of a brake's coil: channel 1, current regulated.
 
-use super::{Recovers, same};
+use super::{Recovers, common_answers, same};
 use crate::protocol::scpi::{
     ClearStatus, Dialect, ERROR_QUEUE_DEPTH, Identify, QueryError, QueryFlag, QueryNumber, ReadCondition, ReadMeasured,
     Set, SwitchOff, Terminator,
@@ -10,7 +10,6 @@ use jointbench_instrument::roles::{CurrentSource, Identity, Instrument, Regulati
 use jointbench_instrument::units::{Amperes, Volts};
 use jointbench_instrument::{Fault, FaultKind};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use std::time::Duration;
 
 const VOLTAGE_STEP_V: f64 = 1e-3;
@@ -137,26 +136,12 @@ impl Recovers for ScpiSource {
 }
 
 impl Instrument for ScpiSource {
-    fn name(&self) -> &str {
-        &self.settings.name
-    }
-
-    fn port(&self) -> &str {
-        self.link.address()
-    }
+    common_answers!();
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         let line_end = self.line_end;
         let found = self.ready()?.request(&Identify(line_end))?;
         same(&mut self.link, &mut self.identity, found)
-    }
-
-    fn recover(&mut self) -> Result<Identity, Fault> {
-        self.resume()
-    }
-
-    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
-        self.link.record(file)
     }
 }
 

@@ -3,6 +3,7 @@
 //! Set commands have no reply, so each is sent together with a query of the error register. Every line of a reply
 //! except the last ends with a space before its line feed.
 
+use super::identity;
 use crate::transport::{Command, Request, Scan, shown};
 use jointbench_instrument::FaultKind;
 use jointbench_instrument::roles::Identity;
@@ -59,14 +60,7 @@ macro_rules! query {
 #[derive(Debug, Clone, Copy)]
 pub struct Identify;
 
-query!(Identify, |_this| "*IDN?", Identity, |text| {
-    let fields: Vec<&str> = text.split(',').map(str::trim).collect();
-    let [maker, model, serial, firmware] = fields[..] else {
-        return Err(FaultKind::Garbled { what: format!("`{text}`: expected maker, model, serial number, firmware") });
-    };
-    let owned = str::to_owned;
-    Ok(Identity { maker: owned(maker), model: owned(model), serial: owned(serial), firmware: owned(firmware) })
-});
+query!(Identify, |_this| "*IDN?", Identity, |text| identity(text));
 
 /// The error since the last query; the query clears it.
 #[derive(Debug, Clone, Copy)]

@@ -10,6 +10,8 @@ pub mod qsb;
 pub mod scpi;
 
 use crate::transport::Scan;
+use jointbench_instrument::FaultKind;
+use jointbench_instrument::roles::Identity;
 
 /// CRC-16 of Modbus: polynomial A001, reflected, from FFFF; low byte first.
 fn crc16(bytes: &[u8]) -> [u8; 2] {
@@ -24,4 +26,14 @@ fn scan_line(received: &[u8], limit: usize) -> Scan {
         None if received.len() > limit => Scan::Noise { skip: received.len() },
         None => Scan::Short,
     }
+}
+
+/// The reply to `*IDN?`.
+fn identity(text: &str) -> Result<Identity, FaultKind> {
+    let fields: Vec<&str> = text.split(',').map(str::trim).collect();
+    let [maker, model, serial, firmware] = fields[..] else {
+        return Err(FaultKind::Garbled { what: format!("`{text}`: expected maker, model, serial number, firmware") });
+    };
+    let owned = str::to_owned;
+    Ok(Identity { maker: owned(maker), model: owned(model), serial: owned(serial), firmware: owned(firmware) })
 }

@@ -1,7 +1,7 @@
 //! One type for each command.
 
 use super::dialect::Dialect;
-use crate::protocol::scan_line;
+use crate::protocol::{identity, scan_line};
 use crate::transport::{Address, Command, Request, Scan, shown};
 use jointbench_instrument::FaultKind;
 use jointbench_instrument::roles::Identity;
@@ -98,14 +98,7 @@ macro_rules! query {
 #[derive(Debug, Clone, Copy)]
 pub struct Identify(pub Terminator);
 
-query!(Identify, |_this| "*IDN?", Identity, |text| {
-    let fields: Vec<&str> = text.split(',').map(str::trim).collect();
-    let [maker, model, serial, firmware] = fields[..] else {
-        return Err(FaultKind::Garbled { what: format!("`{text}`: expected maker, model, serial number, firmware") });
-    };
-    let owned = str::to_owned;
-    Ok(Identity { maker: owned(maker), model: owned(model), serial: owned(serial), firmware: owned(firmware) })
-});
+query!(Identify, |_this| "*IDN?", Identity, |text| identity(text));
 
 /// The oldest entry of the error queue.
 #[derive(Debug, Clone, Copy)]
