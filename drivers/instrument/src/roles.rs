@@ -262,8 +262,6 @@ pub struct CounterReading {
     pub uncertainty_s: f64,
     /// Angle from the counter's zero.
     pub position: Radians,
-    /// The counter's own time stamp, in its own unit.
-    pub stamp: u32,
 }
 
 /// Counts the periods of an incremental encoder.

@@ -1,7 +1,7 @@
 //! An incremental encoder behind a US Digital QSB counter.
 
 use super::{Recovers, common_answers, same};
-use crate::protocol::qsb::{Held, ReadRegister, Register, StopStreams, Version, WriteRegister};
+use crate::protocol::qsb::{ReadRegister, Register, StopStreams, Version, WriteRegister};
 use crate::transport::{Command, Link, PortSettings};
 use jointbench_instrument::clock::between;
 use jointbench_instrument::roles::{CounterReading, EncoderStatus, Identity, Instrument, PositionCounter};
@@ -79,7 +79,7 @@ impl QsbCounter {
         ] {
             self.link.probe(&WriteRegister(register, value))?;
         }
-        let value = self.link.probe(&ReadRegister(Register::Encoder))?.value;
+        let value = self.link.probe(&ReadRegister(Register::Encoder))?;
         self.count_from(value);
         (self.configured, self.seeks_index) = (true, false);
         Ok(())
@@ -87,7 +87,7 @@ impl QsbCounter {
 
     /// Identity of the counter, and whether it still has its position reference.
     fn read_identity(&mut self) -> Result<Identity, Fault> {
-        let version = Version::from(self.link.probe(&ReadRegister(Register::Version))?.value);
+        let version = Version::from(self.link.probe(&ReadRegister(Register::Version))?);
         let found = Identity {
             maker: "US Digital".into(),
             model: format!("QSB-{}", version.variant),
@@ -95,7 +95,7 @@ impl QsbCounter {
             firmware: version.firmware.to_string(),
         };
         let identity = same(&mut self.link, &mut self.identity, found)?;
-        let lost = self.link.probe(&ReadRegister(Register::Status))?.value & POWER_WAS_LOST != 0;
+        let lost = self.link.probe(&ReadRegister(Register::Status))? & POWER_WAS_LOST != 0;
         if self.configured && !lost {
             return Ok(identity);
         }
@@ -112,7 +112,7 @@ impl QsbCounter {
         (self.last, self.total) = (value, i64::from(value as i32));
     }
 
-    fn read_register(&mut self, register: Register) -> Result<Held, Fault> {
+    fn read_register(&mut self, register: Register) -> Result<u32, Fault> {
         self.ready()?.request(&ReadRegister(register))
     }
 }
@@ -152,12 +152,12 @@ impl PositionCounter for QsbCounter {
             self.seeks_index = true;
             return Ok(false);
         }
-        if self.read_register(Register::Status)?.value & INDEX_WAS_PASSED == 0 {
+        if self.read_register(Register::Status)? & INDEX_WAS_PASSED == 0 {
             return Ok(false);
         }
         self.ready()?.request(&WriteRegister(Register::CounterMode, FREE_RUNNING_X4))?;
         self.seeks_index = false;
-        let value = self.read_register(Register::Encoder)?.value;
+        let value = self.read_register(Register::Encoder)?;
         self.count_from(value);
         Ok(true)
     }
@@ -165,13 +165,13 @@ impl PositionCounter for QsbCounter {
     fn read(&mut self) -> Result<CounterReading, Fault> {
         self.ready()?;
         let asked_s = self.clock.now_s();
-        let Held { value, stamp } = self.read_register(Register::Encoder)?;
+        let value = self.read_register(Register::Encoder)?;
         let (at_s, uncertainty_s) = between(asked_s, self.clock.now_s());
         // Differences are correct across the wrap at 32 bits.
         self.total += i64::from(value.wrapping_sub(self.last) as i32);
         self.last = value;
         let turns = self.total as f64 / f64::from(self.settings.counts_per_turn);
-        Ok(CounterReading { at_s, uncertainty_s, position: Radians(TAU * turns), stamp })
+        Ok(CounterReading { at_s, uncertainty_s, position: Radians(TAU * turns) })
     }
 
     fn resolution(&self) -> Radians {
@@ -191,7 +191,7 @@ impl EncoderStatus for QsbCounter {
                         encoder";
             return Err(self.link.fault(FaultKind::Refused { what: what.into() }));
         };
-        let inputs = self.read_register(Register::DigitalInputs)?.value;
+        let inputs = self.read_register(Register::DigitalInputs)?;
         Ok(inputs.checked_shr(input.into()).unwrap_or(0) & 1 == 1)
     }
 }

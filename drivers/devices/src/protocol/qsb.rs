@@ -37,15 +37,6 @@ pub enum Register {
     Command = 0x16,
 }
 
-/// The value of a register and its time; the stamp counts 1/512 s.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Held {
-    /// Value of the register, 32 bits.
-    pub value: u32,
-    /// Time of the reply [1/512 s]; it wraps at 32 bits.
-    pub stamp: u32,
-}
-
 /// Identity of a unit, from [`Register::Version`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Version {
@@ -93,13 +84,13 @@ impl Command for ReadRegister {
 }
 
 impl Request for ReadRegister {
-    type Reply = Held;
+    type Reply = u32;
 
     fn scan(&self, received: &[u8]) -> Scan {
         scan_line(received, LINE_LIMIT)
     }
 
-    fn decode(&self, packet: &[u8]) -> Result<Held, FaultKind> {
+    fn decode(&self, packet: &[u8]) -> Result<u32, FaultKind> {
         held(packet, 'r', self.0)
     }
 }
@@ -126,7 +117,7 @@ impl Request for WriteRegister {
     }
 
     fn decode(&self, packet: &[u8]) -> Result<(), FaultKind> {
-        let Held { value, .. } = held(packet, 'w', self.0)?;
+        let value = held(packet, 'w', self.0)?;
         if value == self.1 {
             return Ok(());
         }
@@ -136,13 +127,14 @@ impl Request for WriteRegister {
     }
 }
 
-fn held(packet: &[u8], kind: char, register: Register) -> Result<Held, FaultKind> {
+/// The value of the register. The time stamp of the reply must be there, and is not used.
+fn held(packet: &[u8], kind: char, register: Register) -> Result<u32, FaultKind> {
     let garbled =
         || FaultKind::Garbled { what: format!("{}: expected `{kind} {:02X} …`", shown(packet), register as u8) };
     let text = std::str::from_utf8(packet).map_err(|_| garbled())?;
     let text: String = text.trim_end().strip_suffix('!').ok_or_else(garbled)?.chars().filter(|c| *c != ' ').collect();
     let hex = |from: usize, to: usize| text.get(from..to).and_then(|digits| u32::from_str_radix(digits, 16).ok());
-    let (Some(letter), Some(of), Some(value), Some(stamp)) = (text.chars().next(), hex(1, 3), hex(3, 11), hex(11, 19))
+    let (Some(letter), Some(of), Some(value), Some(_stamp)) = (text.chars().next(), hex(1, 3), hex(3, 11), hex(11, 19))
     else {
         return Err(garbled());
     };
@@ -152,7 +144,7 @@ fn held(packet: &[u8], kind: char, register: Register) -> Result<Held, FaultKind
     match letter {
         'e' => Err(FaultKind::Refused { what: format!("register {of:02X} rejects {value:X}") }),
         'x' => Err(FaultKind::Refused { what: format!("register {of:02X} does not know this command") }),
-        _ if letter == kind => Ok(Held { value, stamp }),
+        _ if letter == kind => Ok(value),
         _ => Err(garbled()),
     }
 }
@@ -178,11 +170,11 @@ mod tests {
     #[test]
     fn published_replies() {
         let version = ReadRegister(Register::Version).decode(b"r 14 00001201 0000ABCE !\r\n").unwrap();
-        assert_eq!(Version::from(version.value), Version { serial: 1, variant: 'S', firmware: 1 });
+        assert_eq!(Version::from(version), Version { serial: 1, variant: 'S', firmware: 1 });
         let format = WriteRegister(Register::Format, FORMAT);
         assert_eq!(format.decode(b"w 15 0000000F 0000ABCD !\r\n"), Ok(()));
         let count = ReadRegister(Register::Encoder).decode(b"r 0E 000012F3 0000ABD0 !\r\n");
-        assert_eq!(count, Ok(Held { value: 0x12F3, stamp: 0xABD0 }));
+        assert_eq!(count, Ok(0x12F3));
     }
 
     #[test]

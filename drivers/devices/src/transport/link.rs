@@ -13,7 +13,7 @@ const QUIET: Duration = Duration::from_millis(20);
 /// More than any reply of any instrument: a longer input is noise.
 const MAX_PENDING: usize = 4096;
 
-/// Limit of one call of [`Link::overhear`]: a flooded line must not block its owner.
+/// Limit of one call of [`Link::receive_unrequested`]: a flooded line must not block its owner.
 const MAX_UNREQUESTED: usize = 1 << 16;
 
 /// Whether the next reply belongs to the next request.

@@ -67,12 +67,10 @@ pub struct EncoderTruth {
     pub startup_spread_rad: f64,
     /// Half the difference between both directions.
     pub hysteresis_rad: f64,
-    /// Errors once per turn, twice per turn, and within each of `pole_pairs`.
+    /// Amplitude of the error once per turn.
     pub eccentricity_rad: f64,
     /// Amplitude of the error twice per turn.
     pub tilt_rad: f64,
-    /// Amplitude of the error within a pole pair.
-    pub pole_rad: f64,
     /// Pole pairs of the ring.
     pub pole_pairs: f64,
     /// Radial shift without eccentricity.
@@ -188,7 +186,6 @@ impl Encoders {
             hysteresis_rad: rad(self.hysteresis_points()),
             eccentricity_rad: rad(ECCENTRIC_POINTS),
             tilt_rad: rad(TILT_POINTS),
-            pole_rad: rad(POLE_POINTS),
             pole_pairs: POLE_PAIRS,
             best_radial_m: -ECCENTRIC_POINTS / ECCENTRIC_POINTS_PER_M,
             radial_m: RADIAL_M,
