@@ -68,6 +68,13 @@ impl Scale {
         Self { scale, unit: format!("{prefix}{unit}") }
     }
 
+    /// The unit of the largest value, or of the smallest if that would be below a tenth of the unit.
+    pub fn of_all(values: &[f64], unit: &str) -> Self {
+        let (small, large) = values.iter().fold((f64::INFINITY, 0.0), |(s, l), v| (v.abs().min(s), v.abs().max(l)));
+        let of_large = Self::of(large, unit);
+        if small * of_large.scale < 0.1 { Self::of(small, unit) } else { of_large }
+    }
+
     /// Three digits and the unit.
     pub fn figure(&self, value: f64) -> String {
         format!("{} {}", self.number(value), self.unit).trim_end().to_owned()
@@ -161,6 +168,8 @@ mod tests {
         assert_eq!((scale.figure(3.24e-3), scale.figure(0.629e-3)), ("3.24 mNm".into(), "0.629 mNm".into()));
         assert_eq!(scale.figure(3.28e-5), "0.0328 mNm");
         assert_eq!(Scale::of(95.1, "1").figure(0.5), "0.500");
+        assert_eq!(Scale::of_all(&[3.24e-3, 6.31e-4], "Nm").figure(6.31e-4), "0.631 mNm");
+        assert_eq!(Scale::of_all(&[1.3, 4.68e-3], "Nm").figure(1.3), "1300 mNm");
         assert_eq!(Scale::of(1.0, "Nm").figure(4e-4), "4.00·10⁻⁴ Nm");
         assert_eq!([small(9.994e-4), small(9.996e-4), small(-1.2e-12)], ["9.99·10⁻⁴", "0.00100", "-1.20·10⁻¹²"]);
         assert_eq!(scientific(2.5e9, 3), "2.500·10⁹");

@@ -54,8 +54,7 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
 /// What the first suggestion does to the error, and where.
 fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
     let first = &suggestions[0];
-    // The smallest error chooses the unit, so that every figure has digits.
-    let unit = Scale::of(fit.validation_rms.min(first.validation_rms).min(complete.validation_rms), &fit.unit);
+    let unit = Scale::of_all(&[fit.validation_rms, first.validation_rms, complete.validation_rms], &fit.unit);
     let effect = marked(&first.effect);
     let (error, with) = (unit.figure(fit.validation_rms), unit.figure(first.validation_rms));
     let floor = floor(found, complete, &unit);
