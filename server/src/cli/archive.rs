@@ -3,7 +3,7 @@
 use super::arguments::Archive;
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::offline::json_out;
+use super::print::json_out;
 use super::units::print_rows;
 use crate::view::{ArchiveState, ArchivedTable};
 use serde::Serialize;

@@ -4,6 +4,7 @@ use super::arguments::Autopilot as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::offline::decided;
+use super::print::json_out;
 use super::progress::RunProgress;
 use super::run::{choose_bench, parameters};
 use super::waiting::POLL_INTERVAL;
@@ -35,8 +36,7 @@ pub fn autopilot(arguments: &Arguments) -> Done {
         autopilot = wait(&client, autopilot.id, !arguments.json)?;
     }
     if arguments.json {
-        let text = serde_json::to_string_pretty(&autopilot).map_err(|fault| Exit::failed(fault.to_string()))?;
-        println!("{text}");
+        json_out(&autopilot)?;
     } else if autopilot.state.is_over() {
         conclude(&client, &autopilot)?;
     }

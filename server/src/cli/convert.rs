@@ -3,7 +3,8 @@
 use super::arguments::Convert;
 use super::exit::{Done, Exit};
 use super::files;
-use super::offline::{json_out, understood};
+use super::offline::understood;
+use super::print::json_out;
 use jointbench_files::{Understood, meta_path_of, paragraph, write};
 use jointbench_instrument::Trace;
 use serde_json::json;

@@ -4,6 +4,7 @@ use super::arguments::{Identify, Report};
 use super::exit::{Done, Exit};
 use super::files::{writable, write};
 use super::pdf::Browser;
+use super::print::json_out;
 use super::serve::runtime;
 use super::transfer::{Target, open};
 use crate::report::with_interval;
@@ -21,8 +22,7 @@ pub fn identify(arguments: &Identify) -> Done {
         Target::Daemon(client) => client.get(&format!("/runs/{run}/identification"))?,
     };
     if arguments.json {
-        let text = serde_json::to_string_pretty(&found).map_err(|fault| Exit::failed(fault.to_string()))?;
-        println!("{text}");
+        json_out(&found)?;
     } else {
         print(&found);
     }

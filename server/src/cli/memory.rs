@@ -3,7 +3,7 @@
 use super::arguments::ServoMemory as Arguments;
 use super::client::Client;
 use super::exit::Done;
-use super::offline::json_out;
+use super::print::json_out;
 use super::run::choose_bench;
 use crate::view::{MemoryVariable, ServoMemory};
 

@@ -3,8 +3,9 @@
 use super::arguments::{Model, ModelCommand, StorePlace};
 use super::exit::{Done, Exit};
 use super::files::{self, write};
-use super::offline::{json_out, read};
+use super::offline::read;
 use super::print;
+use super::print::json_out;
 use super::serve::runtime;
 use super::transfer::{self, Target};
 use crate::lab::LOCAL;

@@ -3,14 +3,13 @@
 use super::arguments::{Columns, Diagnose, Discover, Fit, Measured, Preparation};
 use super::exit::{Done, Exit};
 use super::files::{self, write};
-use super::print;
+use super::print::{self, json_out};
 use crate::lab::{Offer, next_run};
 use crate::view::reread;
 use jointbench_files::{ReadOptions, Understood, paragraph, understand};
 use jointbench_instrument::RunTable;
 use jointbench_model::export::{Format, export};
 use jointbench_model::{ModelSpec, Open, Options};
-use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
@@ -156,10 +155,4 @@ fn options(preparation: &Preparation) -> Result<Options, Exit> {
         alpha: preparation.alpha.unwrap_or(defaults.alpha),
         ..defaults
     })
-}
-
-pub(super) fn json_out(value: &impl Serialize) -> Done {
-    let text = serde_json::to_string_pretty(value).map_err(|fault| Exit::failed(fault.to_string()))?;
-    println!("{text}");
-    Ok(())
 }

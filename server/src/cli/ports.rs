@@ -1,6 +1,7 @@
 //! `jointbench ports`.
 
 use super::exit::{Done, Exit};
+use super::print::json_out;
 use clap::Args;
 use jointbench_devices::transport::{FoundPort, ports as found_ports};
 
@@ -14,8 +15,7 @@ pub struct Ports {
 pub fn ports(arguments: &Ports) -> Done {
     let found = found_ports().map_err(|fault| Exit::failed(format!("the ports cannot be listed: {fault}")))?;
     if arguments.json {
-        let text = serde_json::to_string_pretty(&found).map_err(|fault| Exit::failed(fault.to_string()))?;
-        println!("{text}");
+        json_out(&found)?;
     } else if found.is_empty() {
         println!("no serial port found: connect an instrument; network instruments are tcp://host:port in bench.toml");
     } else {

@@ -5,6 +5,7 @@ mod excluded;
 mod maps;
 mod parameter_cells;
 
+use super::exit::{Done, Exit};
 use jointbench_instrument::Kind;
 use jointbench_model::{
     Comparison, Diagnosis, Discovery, Evaluation, Evidence, Fit, NoiseFloor, Parameter, ParameterPair, ParameterState,
@@ -12,7 +13,15 @@ use jointbench_model::{
 };
 pub use maps::print as maps;
 use parameter_cells::{Cells, cells};
+use serde::Serialize;
 use std::path::Path;
+
+/// Prints a result as JSON.
+pub fn json_out(value: &impl Serialize) -> Done {
+    let text = serde_json::to_string_pretty(value).map_err(|fault| Exit::failed(fault.to_string()))?;
+    println!("{text}");
+    Ok(())
+}
 
 const BAR_WIDTH: f64 = 40.0;
 

@@ -3,7 +3,7 @@
 use super::arguments::{Queue, QueueCommand, UnitArguments};
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::offline::json_out;
+use super::print::json_out;
 use super::queue_entry::show;
 use super::run::{choose_bench, unit};
 use super::units::print_rows;

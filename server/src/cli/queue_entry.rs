@@ -2,7 +2,7 @@
 
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::offline::json_out;
+use super::print::json_out;
 use super::waiting::{POLL_INTERVAL, RENEWALS, RESTARTED};
 use crate::view::{BenchQueue, Lease, NewRun, QueueEntry, QueueState, Run, word};
 use std::time::{Duration, Instant};

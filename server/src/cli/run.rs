@@ -3,8 +3,8 @@
 use super::arguments::{Run as Arguments, UnitArguments};
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::offline::json_out;
 use super::outcome::{Found, title};
+use super::print::json_out;
 use super::waiting::{lost, notify_on_interrupt, wait_at_most};
 use super::{files, identify, queue_entry};
 use crate::limits::{self, Case, CaseOutcome, Made, Measured, Outcome, Requirement};

@@ -2,7 +2,7 @@
 
 use super::arguments::Runs;
 use super::exit::Done;
-use super::offline::json_out;
+use super::print::json_out;
 use super::serve::runtime;
 use super::transfer::{Target, open};
 use crate::lab::{LabError, Order, RunFilter};
@@ -10,6 +10,8 @@ use crate::view::{RunList, RunSummary, word};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use jointbench_model::words;
+use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
+use std::fmt::Display;
 
 /// Header of the list. Times are local; the error is that of the last model version that is not idle.
 const HEAD: &str =
@@ -82,12 +84,8 @@ pub(super) fn local(moment: &str, zone: &TimeZone) -> String {
 }
 
 /// URL-encodes a text.
-pub(super) fn encoded(text: &str) -> String {
-    let byte = |byte: u8| match byte {
-        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' | b'~' => char::from(byte).to_string(),
-        other => format!("%{other:02X}"),
-    };
-    text.bytes().map(byte).collect()
+pub(super) fn encoded(text: &str) -> impl Display {
+    utf8_percent_encode(text, NON_ALPHANUMERIC)
 }
 
 #[cfg(test)]
@@ -104,6 +102,6 @@ mod tests {
 
     #[test]
     fn a_search_may_stand_in_an_address() {
-        assert_eq!(encoded("rows>10 tag:öl"), "rows%3E10%20tag%3A%C3%B6l");
+        assert_eq!(encoded("rows>10 tag:öl").to_string(), "rows%3E10%20tag%3A%C3%B6l");
     }
 }

@@ -2,8 +2,8 @@
 
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::offline::json_out;
 use super::outcome::Found;
+use super::print::json_out;
 use super::queue_entry;
 use super::run::{announce, cases, conclude, end_of, found, worst, write_junit};
 use crate::view::{QueueEntry, Run};

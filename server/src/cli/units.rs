@@ -2,7 +2,7 @@
 
 use super::arguments::Units;
 use super::exit::Done;
-use super::offline::json_out;
+use super::print::json_out;
 use super::runs::{encoded, local};
 use super::serve::runtime;
 use super::transfer::{Target, open};

@@ -2,7 +2,7 @@
 
 use super::arguments::Verify;
 use super::exit::{Done, Exit};
-use super::offline::json_out;
+use super::print::json_out;
 use super::serve::runtime;
 use crate::lab::LabError;
 use crate::store::{VerifyReport, verify as check};

@@ -2,6 +2,7 @@
 
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
+use crate::store::Subject;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::HashMap;
@@ -86,6 +87,18 @@ impl std::io::Write for Gathered {
     }
 }
 
+impl Lab {
+    /// A result that an earlier request has computed. One that this version cannot read is computed again.
+    pub(super) async fn cached<T: DeserializeOwned>(&self, subject: Subject, what: &str) -> Answer<Option<T>> {
+        let kept = self.inner.store.cached_result(subject, what).await?;
+        Ok(kept.and_then(|kept| serde_json::from_slice(&kept).ok()))
+    }
+
+    pub(super) async fn cache(&self, subject: Subject, what: &str, result: &impl Serialize) -> Answer<()> {
+        Ok(self.inner.store.cache_result(subject, what, &json(result)?).await?)
+    }
+}
+
 pub(super) fn json(value: &impl Serialize) -> Answer<Vec<u8>> {
     serde_json::to_vec(value).map_err(|fault| LabError::Internal(fault.to_string()))
 }
@@ -111,7 +124,7 @@ pub(super) async fn with_retries<T, F: Future<Output = Answer<T>>>(mut work: imp
 
 /// Results that only one task computes at a time; other tasks wait and find it in the cache.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Subject {
+pub(super) enum Turn {
     /// The version of a run without a parent.
     First(i64),
     Diagnosis(i64),
@@ -124,12 +137,12 @@ pub(super) enum Subject {
 /// One lock for each subject.
 #[derive(Debug, Default)]
 pub(super) struct Turns {
-    on: Mutex<HashMap<Subject, Weak<tokio::sync::Mutex<()>>>>,
+    on: Mutex<HashMap<Turn, Weak<tokio::sync::Mutex<()>>>>,
 }
 
 impl Turns {
     /// Waits for the lock of this subject.
-    pub async fn of(&self, subject: Subject) -> OwnedMutexGuard<()> {
+    pub async fn of(&self, subject: Turn) -> OwnedMutexGuard<()> {
         let turn = {
             let mut on = self.on.lock().unwrap_or_else(PoisonError::into_inner);
             on.retain(|_, turn| turn.strong_count() > 0);

@@ -1,13 +1,13 @@
 //! Results that a procedure identifies from a stored run.
 
 use super::calibrations::applies;
-use super::computation::{Subject as Turn, parsed, with_retries};
+use super::computation::{Turn, parsed, with_retries};
 use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
 use crate::job::Job;
 use crate::limits::{self, LimitsFile, Measured};
 use crate::store::{RunRecord, Subject};
-use crate::view::{self, Earlier, FollowUp, Identification, LimitCheck, LiveMessage, Quantity, Shown, unit_view, word};
+use crate::view::{self, Earlier, FollowUp, Identification, LimitCheck, LiveMessage, Quantity, Shown, word};
 use jointbench_procedure::RunState;
 use jointbench_procedure::parameter::Values;
 use serde::Serialize;
@@ -77,10 +77,7 @@ impl Lab {
 
     /// The quantities if they are already in the cache.
     async fn quantities_known(&self, run: i64) -> Answer<Option<Vec<Quantity>>> {
-        let kept = self.inner.store.cached_result(Subject::Run(run), QUANTITIES).await?;
-        kept.map(|kept| serde_json::from_slice(&kept))
-            .transpose()
-            .map_err(|fault| LabError::Internal(fault.to_string()))
+        self.cached(Subject::Run(run), QUANTITIES).await
     }
 
     /// The next run that a complete run recommends, with parameters.
@@ -95,18 +92,15 @@ impl Lab {
         what: &str,
         part: impl FnOnce(Identification) -> T,
     ) -> Answer<T> {
-        let damaged = |fault: serde_json::Error| LabError::Internal(fault.to_string());
-        if let Some(kept) = self.inner.store.cached_result(Subject::Run(run), what).await? {
-            return serde_json::from_slice(&kept).map_err(damaged);
+        if let Some(kept) = self.cached(Subject::Run(run), what).await? {
+            return Ok(kept);
         }
         // The result of an active run changes: it is not cached.
         let is_over = self.inner.store.run(run).await?.state.is_final();
         let part = part(self.identification(run).await?);
-        if !is_over {
-            return Ok(part);
+        if is_over {
+            self.cache(Subject::Run(run), what, &part).await?;
         }
-        let json = serde_json::to_vec(&part).map_err(damaged)?;
-        self.inner.store.cache_result(Subject::Run(run), what, &json).await?;
         Ok(part)
     }
 
@@ -259,8 +253,7 @@ fn values_by_name(quantities: &[Quantity]) -> Vec<(String, f64)> {
 fn limit_check(record: &RunRecord, result: &Shown) -> Answer<Option<LimitCheck>> {
     let kept = LimitsFile::kept(&record.provenance).map_err(LabError::Internal)?;
     let Some(file) = kept else { return Ok(None) };
-    let unit = record.unit.clone().map(unit_view);
-    let check = file.check(&Measured::new(unit.as_ref(), &record.procedure), &record.parameters, result);
+    let check = file.check(&Measured::new(record.unit.as_ref(), &record.procedure), &record.parameters, result);
     check.map(Some).map_err(|fault| LabError::Internal(format!("the limits of run {}: {fault}", record.id)))
 }
 

@@ -1,7 +1,7 @@
 //! Effects, model versions and diagnoses.
 
 use super::blocking::blocking;
-use super::computation::{Subject as Turn, json, parsed};
+use super::computation::{Turn, json, parsed};
 use super::exclusions;
 use super::{Answer, Lab, LabError, Offer, next_run};
 use crate::job::Job;

@@ -52,9 +52,7 @@ impl Lab {
         let over = region.as_ref().map_or("any", |region| &region.axis);
         let way = region.as_ref().and_then(|region| region.direction.as_deref()).unwrap_or("both");
         let (subject, what) = (Subject::Model(last.unwrap_or(first).id), format!("map {} {over} {way}", first.id));
-        if let Some(kept) = self.inner.store.cached_result(subject, &what).await?
-            && let Ok(map) = serde_json::from_slice(&kept)
-        {
+        if let Some(map) = self.cached(subject, &what).await? {
             return Ok(Some(map));
         }
         let map: ResidualMap = match self.compute(Job::ResidualMap { models: shown, region }).await {
@@ -62,7 +60,7 @@ impl Lab {
             Err(LabError::Gone(why)) => return Ok(Some(ResidualMap { figure: None, why_not: Some(why) })),
             Err(fault) => return Err(fault),
         };
-        self.inner.store.cache_result(subject, &what, &super::computation::json(&map)?).await?;
+        self.cache(subject, &what, &map).await?;
         Ok(Some(map))
     }
 

@@ -1,7 +1,7 @@
 //! Model versions: comparison, evaluation on other runs, export and import.
 
 use super::blocking::blocking;
-use super::computation::Subject as Turn;
+use super::computation::Turn;
 use super::models::version;
 use super::{Answer, Lab, LabError};
 use crate::job::Job;
@@ -35,12 +35,11 @@ impl Lab {
     /// once for simultaneous requests.
     pub async fn worth(&self, model: i64) -> Answer<Vec<Worth>> {
         let _turn = self.inner.turns.of(Turn::Worth(model)).await;
-        if let Some(kept) = self.inner.store.cached_result(Subject::Model(model), WORTH).await? {
-            return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
+        if let Some(kept) = self.cached(Subject::Model(model), WORTH).await? {
+            return Ok(kept);
         }
         let worth: Vec<Worth> = self.compute(Job::Worth { model }).await?;
-        let json = serde_json::to_vec(&worth).map_err(|fault| LabError::Internal(fault.to_string()))?;
-        self.inner.store.cache_result(Subject::Model(model), WORTH, &json).await?;
+        self.cache(Subject::Model(model), WORTH, &worth).await?;
         Ok(worth)
     }
 
@@ -70,16 +69,15 @@ impl Lab {
     /// Cached, except for users' effects, whose formula may change.
     pub async fn with_effect(&self, model: i64, effect: String) -> Answer<Vec<f64>> {
         let kept_as = format!("with {effect}");
-        if let Some(kept) = self.inner.store.cached_result(Subject::Model(model), &kept_as).await? {
-            return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
+        if let Some(kept) = self.cached(Subject::Model(model), &kept_as).await? {
+            return Ok(kept);
         }
         let record = self.inner.store.model(model).await?;
         let changes =
             self.user_effects_with(&reread(&record.fit)?, &effect).await?.iter().any(|one| one.id() == effect);
         let added: Vec<f64> = self.compute(Job::WithEffect { model, effect }).await?;
         if !changes {
-            let json = serde_json::to_vec(&added).map_err(|fault| LabError::Internal(fault.to_string()))?;
-            self.inner.store.cache_result(Subject::Model(model), &kept_as, &json).await?;
+            self.cache(Subject::Model(model), &kept_as, &added).await?;
         }
         Ok(added)
     }

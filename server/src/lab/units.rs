@@ -3,10 +3,8 @@
 use super::names::{LONGEST_UNIT_TEXT, checked};
 use super::{Answer, Lab, LabError};
 use crate::limits::{self, LimitsFile, Measured};
-use crate::store::{Search, UnitRecord, UnitRunRecord};
-use crate::view::{
-    FirstPassYield, Identified, LimitOutcome, NewRun, Unit, UnitList, UnitSummary, YieldGroup, reread, unit_view,
-};
+use crate::store::{Search, UnitRunRecord};
+use crate::view::{FirstPassYield, Identified, LimitOutcome, NewRun, Unit, UnitList, UnitSummary, YieldGroup, reread};
 use jointbench_instrument::Meta;
 use jointbench_model::stats::proportion::wilson_interval;
 use jointbench_procedure::RunState;
@@ -22,7 +20,7 @@ const OPERATOR: &str = "operator";
 /// The unit under test of a new run, the person who starts it, and the limits of the unit.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct TestedUnit {
-    pub unit: Option<UnitRecord>,
+    pub unit: Option<Unit>,
     pub operator: Option<String>,
     pub limits: Option<LimitsFile>,
 }
@@ -59,7 +57,7 @@ impl TestedUnit {
     /// Adds the unit to the metadata of an export.
     pub fn add_to(self, meta: &mut Meta) -> Answer<()> {
         if let Some(unit) = self.unit {
-            meta.other.insert(UNIT.to_owned(), reread(&unit_view(unit))?);
+            meta.other.insert(UNIT.to_owned(), reread(&unit)?);
         }
         if let Some(operator) = self.operator {
             meta.other.insert(OPERATOR.to_owned(), operator.into());
@@ -68,12 +66,12 @@ impl TestedUnit {
     }
 }
 
-fn checked_unit(unit: &Unit) -> Answer<UnitRecord> {
+fn checked_unit(unit: &Unit) -> Answer<Unit> {
     if unit.serial.trim().is_empty() {
         let missing = "unit: the serial number is missing: enter it, or omit part, revision and batch";
         return Err(LabError::Invalid(missing.to_owned()));
     }
-    Ok(UnitRecord {
+    Ok(Unit {
         serial: checked("serial", &unit.serial, LONGEST_UNIT_TEXT)?.to_owned(),
         part: optional("part", unit.part.as_deref())?,
         revision: optional("revision", unit.revision.as_deref())?,
@@ -128,7 +126,7 @@ fn unit_list(runs: &[UnitRunRecord]) -> UnitList {
 /// `runs`: all runs of one unit, in order.
 fn summary(runs: &[&UnitRunRecord]) -> Option<UnitSummary> {
     let newest = runs.last()?;
-    let named = |text: fn(&UnitRecord) -> &Option<String>| runs.iter().rev().find_map(|run| text(&run.unit).clone());
+    let named = |text: fn(&Unit) -> &Option<String>| runs.iter().rev().find_map(|run| text(&run.unit).clone());
     let mut complete = runs.iter().filter(|run| is_complete(run));
     let first_verdict = complete.clone().next().and_then(|run| verdict(run));
     let newest_complete = complete.next_back();
@@ -209,7 +207,7 @@ mod tests {
     fn run(run: i64, serial: &str, batch: Option<&str>, state: RunState, verdict: Option<&str>) -> UnitRunRecord {
         UnitRunRecord {
             run,
-            unit: UnitRecord {
+            unit: Unit {
                 serial: serial.into(),
                 part: Some("P".into()),
                 revision: None,

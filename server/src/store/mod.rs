@@ -52,7 +52,7 @@ pub use order::Order;
 pub use records::{
     AutopilotRecord, CalibrationRecord, DiagnosisRecord, EffectUse, EventRecord, ModelRecord, NewModel, NewQueueEntry,
     NewRun, NoteRecord, NotificationRecord, NotifyCounts, QueueRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord,
-    UnitRecord, UnitRunRecord, UserEffectRecord, VersionRecord, Window, WindowColumn,
+    Unit, UnitRunRecord, UserEffectRecord, VersionRecord, Window, WindowColumn,
 };
 pub use result_cache::{Subject, packed, unpacked};
 pub use search::Search;

@@ -5,14 +5,33 @@ use jointbench_instrument::Channel;
 use jointbench_procedure::{RunId, RunState, Safe};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+use utoipa::ToSchema;
 
 /// A unit under test. The serial number identifies it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct UnitRecord {
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Unit {
+    /// At most 80 characters, as every text of a unit.
+    #[serde(default)]
+    #[schema(required = true)]
     pub serial: String,
+    /// Part number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub part: Option<String>,
+    /// Revision of the part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub revision: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub batch: Option<String>,
+}
+
+impl Unit {
+    /// For a line of text: `SN123, part P, revision B, batch 7`.
+    pub fn line(&self) -> String {
+        let named = [("part", &self.part), ("revision", &self.revision), ("batch", &self.batch)];
+        let named = named.iter().filter_map(|(name, text)| Some(format!(", {name} {}", text.as_ref()?)));
+        std::iter::once(self.serial.clone()).chain(named).collect()
+    }
 }
 
 /// A new run.
@@ -28,7 +47,7 @@ pub struct NewRun {
     pub provenance: Map<String, Value>,
     /// Metadata of the test conditions, as in `meta.json`.
     pub meta: Map<String, Value>,
-    pub unit: Option<UnitRecord>,
+    pub unit: Option<Unit>,
     /// The person who started the run, as entered.
     pub operator: Option<String>,
 }
@@ -53,7 +72,7 @@ pub struct RunRecord {
     pub parameters: Map<String, Value>,
     pub provenance: Map<String, Value>,
     pub meta: Map<String, Value>,
-    pub unit: Option<UnitRecord>,
+    pub unit: Option<Unit>,
     pub operator: Option<String>,
     /// Empty before the first commit with rows.
     pub channels: Vec<Channel>,
@@ -117,7 +136,7 @@ pub struct RunFilter {
 #[derive(Debug, Clone, PartialEq)]
 pub struct UnitRunRecord {
     pub run: RunId,
-    pub unit: UnitRecord,
+    pub unit: Unit,
     pub procedure: String,
     pub state: RunState,
     pub created_at: String,

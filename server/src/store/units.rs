@@ -3,7 +3,7 @@
 use super::seal::{RUN_UNITS, UNIT_REFERENCES, intact_records};
 use super::search::Search;
 use super::values::{now, word};
-use super::{Store, StoreError, UnitRecord, UnitRunRecord};
+use super::{Store, StoreError, Unit, UnitRunRecord};
 use jointbench_procedure::RunId;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{QueryBuilder, Row, SqliteConnection};
@@ -64,18 +64,18 @@ fn unit_run(row: &SqliteRow) -> Result<Option<UnitRunRecord>, StoreError> {
 }
 
 /// The unit of a row of `runs_told`.
-pub(super) fn unit(row: &SqliteRow) -> Result<Option<UnitRecord>, StoreError> {
+pub(super) fn unit(row: &SqliteRow) -> Result<Option<Unit>, StoreError> {
     RUN_UNITS.check(row)?;
     let Some(serial) = row.try_get("serial")? else { return Ok(None) };
     let (part, revision, batch) = (row.try_get("part")?, row.try_get("revision")?, row.try_get("batch")?);
-    Ok(Some(UnitRecord { serial, part, revision, batch }))
+    Ok(Some(Unit { serial, part, revision, batch }))
 }
 
 /// Stores the unit and the operator of a new run; no row if the run has neither.
 pub(super) async fn insert_unit(
     writer: &mut SqliteConnection,
     run: RunId,
-    unit: Option<&UnitRecord>,
+    unit: Option<&Unit>,
     operator: Option<&str>,
 ) -> Result<(), StoreError> {
     if unit.is_none() && operator.is_none() {

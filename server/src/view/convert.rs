@@ -1,6 +1,6 @@
 //! Converts records of the store and types of the lower crates to views.
 
-use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyRecord, UnitRecord};
+use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyRecord};
 use crate::view::{self, AxisKind};
 use jointbench_instrument::Motion;
 use jointbench_model::Axis;
@@ -44,7 +44,7 @@ pub fn run_summary(record: &RunRecord) -> view::RunSummary {
         duration_s: record.duration_s.and_then(view::finite),
         simulated: record.simulated,
         by: record.provenance.get("by").and_then(Value::as_str).map(str::to_owned),
-        unit: record.unit.clone().map(unit_view),
+        unit: record.unit.clone(),
         operator: record.operator.clone(),
         tags: record.tags.clone(),
         note: record.note.clone(),
@@ -56,11 +56,6 @@ pub fn run_summary(record: &RunRecord) -> view::RunSummary {
         not_stored: None,
         damaged: record.damaged.clone(),
     }
-}
-
-pub fn unit_view(record: UnitRecord) -> view::Unit {
-    let UnitRecord { serial, part, revision, batch } = record;
-    view::Unit { serial, part, revision, batch }
 }
 
 pub fn run_view(record: RunRecord, progress: Option<view::Progress>) -> view::Run {

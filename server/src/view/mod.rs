@@ -53,7 +53,8 @@ pub use token::*;
 pub use unit::*;
 pub use user_effect::*;
 
-/// Types of the lower crates that the API returns as they are.
+/// Types of the lower layers that the API returns as they are.
+pub use crate::store::Unit;
 pub use jointbench_model::{
     Comparison, Definition as EffectDefinition, Diagnosis as Finding, Evaluation, Experiment, Fit,
     Parameter as FittedParameter, ParameterSetting, ParameterState, Region, ResidualKind, Suggestion, Verdict,

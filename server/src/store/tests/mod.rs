@@ -11,7 +11,7 @@ mod sorting;
 mod verifying;
 mod viewing;
 
-use super::{NewRun, Store, UnitRecord};
+use super::{NewRun, Store, Unit};
 use jointbench_instrument::{Channel, Trace};
 use jointbench_procedure::{Event, EventKind, RunId, RunState};
 use std::future::Future;
@@ -58,7 +58,7 @@ fn new_run() -> NewRun {
 
 fn new_run_of_unit(serial: &str) -> NewRun {
     let part = Some("P".to_owned());
-    let unit = UnitRecord { serial: serial.into(), part, revision: None, batch: Some("7".into()) };
+    let unit = Unit { serial: serial.into(), part, revision: None, batch: Some("7".into()) };
     NewRun { unit: Some(unit), operator: Some("A. Smith".into()), ..new_run() }
 }
 
