@@ -155,7 +155,7 @@ impl Lab {
         check_plan(bench, &plan)?;
         Ok(NewQueueEntry {
             bench: new.bench.clone(),
-            proceed_if: word(proceed_if),
+            proceed_if,
             request: reread(&NewRun { queue: false, priority: 0, ..new.clone() })?,
             who: by.to_owned(),
             priority,
@@ -212,8 +212,7 @@ impl Lab {
 
     pub(super) async fn take_from_queue(&self, id: i64, reason: &str) -> Answer<QueueEntry> {
         let entry = self.queue_entry(id).await?;
-        let (waiting, removed) = (word(QueueState::Waiting), word(QueueState::Removed));
-        if !self.inner.store.set_queue_state(id, &waiting, &removed, Some(reason)).await? {
+        if !self.inner.store.set_queue_state(id, QueueState::Waiting, QueueState::Removed, Some(reason)).await? {
             return Err(has_left(&self.queue_entry(id).await?));
         }
         tracing::info!(entry = id, bench = entry.request.bench, reason, "removed from the queue");
@@ -228,8 +227,7 @@ impl Lab {
         self.handle(bench)?;
         let _adding = self.inner.queues.adding.lock().await;
         self.check_room(bench, 1).await?;
-        let (removed, waiting) = (word(QueueState::Removed), word(QueueState::Waiting));
-        if !self.inner.store.set_queue_state(id, &removed, &waiting, None).await? {
+        if !self.inner.store.set_queue_state(id, QueueState::Removed, QueueState::Waiting, None).await? {
             let state = word(self.queue_entry(id).await?.state);
             return Err(LabError::Over(format!("queue entry {id} is {state}: only a removed one can be restored")));
         }
@@ -286,15 +284,15 @@ fn queue_entry(record: QueueRecord, starts_in_s: Option<f64>) -> Answer<QueueEnt
     Ok(QueueEntry {
         id: record.id,
         plan: record.plan,
-        proceed_if: reread(&record.new.proceed_if)?,
+        proceed_if: record.new.proceed_if,
         request: reread(&record.new.request)?,
         by: record.new.who,
         priority: record.new.priority,
-        state: reread(&record.state)?,
+        state: record.state,
         planned_s: record.new.planned_s,
         starts_in_s,
         run: record.run,
-        run_state: record.run_state.map(|state| reread(&state)).transpose()?,
+        run_state: record.run_state,
         reason: record.reason,
         created_at: record.created_at,
         ended_at: record.ended_at,

@@ -48,7 +48,7 @@ impl Lab {
         let record = self.inner.store.run(run).await?;
         if let Some(entry) = self.inner.store.queue_entry_of_run(run).await?
             && let Some(plan) = entry.plan
-            && let Some(reason) = self.ends_plan(run, record.state, reread(&entry.new.proceed_if)?).await?
+            && let Some(reason) = self.ends_plan(run, record.state, entry.new.proceed_if).await?
         {
             self.inner.store.remove_rest_of_plan(plan, &reason).await?;
             self.queue_changed(bench.name());
@@ -98,16 +98,16 @@ impl Lab {
         }
         let Some(entry) = self.inner.store.waiting(name).await?.into_iter().next() else { return Ok(None) };
         let (id, plan) = (entry.id, entry.plan);
-        let (waiting, started) = (word(QueueState::Waiting), word(QueueState::Started));
+        let (waiting, started) = (QueueState::Waiting, QueueState::Started);
         // A daemon that ends between here and the start of the run does not start it again.
-        if !self.inner.store.set_queue_state(id, &waiting, &started, None).await? {
+        if !self.inner.store.set_queue_state(id, waiting, started, None).await? {
             return Ok(None);
         }
         let request: NewRun = reread(&entry.new.request)?;
         let run = match self.start_run(&request, &entry.new.who).await {
             Ok(run) => run.summary.id,
             Err(fault @ (LabError::Conflict(_) | LabError::Busy(_) | LabError::Bench(_))) => {
-                self.inner.store.set_queue_state(id, &started, &waiting, None).await?;
+                self.inner.store.set_queue_state(id, started, waiting, None).await?;
                 // Another run has started in the meantime: the queue waits for its end.
                 if !bench.is_busy() {
                     self.hold_queue(name, &fault.to_string()).await?;
@@ -115,8 +115,8 @@ impl Lab {
                 return Ok(None);
             }
             Err(fault) => {
-                let failed = word(QueueState::Failed);
-                self.inner.store.set_queue_state(id, &started, &failed, Some(&fault.to_string())).await?;
+                let reason = fault.to_string();
+                self.inner.store.set_queue_state(id, started, QueueState::Failed, Some(&reason)).await?;
                 if let Some(plan) = plan {
                     let reason = format!("queue entry {id} of the test plan could not start");
                     self.inner.store.remove_rest_of_plan(plan, &reason).await?;

@@ -51,11 +51,12 @@ pub use keeper::Loss;
 pub use order::Order;
 pub use records::{
     AutopilotRecord, CalibrationRecord, DiagnosisRecord, EffectUse, EventRecord, ModelRecord, NewModel, NewQueueEntry,
-    NewRun, NoteRecord, NotificationRecord, NotifyCounts, QueueRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord,
-    Unit, UnitRunRecord, UserEffectRecord, VersionRecord, Window, WindowColumn,
+    NewRun, NoteRecord, NotificationRecord, NotifyCounts, ProceedIf, QueueRecord, QueueState, RunFilter, RunRecord,
+    SafetyRecord, TokenRecord, UnitRunRecord, UserEffectRecord, VersionRecord, Window, WindowColumn,
 };
 pub use result_cache::{Subject, packed, unpacked};
 pub use search::Search;
+pub use units::Unit;
 pub use verify::{Readable, VerifyReport, verify};
 
 use keeper::Keeper;

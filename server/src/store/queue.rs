@@ -1,7 +1,7 @@
 //! The queues of the benches. The words of the states are those of the table.
 
-use super::values::{json, now};
-use super::{NewQueueEntry, QueueRecord, Store, StoreError};
+use super::values::{json, now, text, word};
+use super::{NewQueueEntry, QueueRecord, QueueState, Store, StoreError};
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
@@ -26,7 +26,7 @@ impl Store {
                  VALUES (?, ?, ?, ?, ?, ?, ?, 'waiting', ?)",
             )
             .bind(&new.bench)
-            .bind(&new.proceed_if)
+            .bind(text(new.proceed_if)?)
             .bind(serde_json::to_string(&new.request)?)
             .bind(&new.who)
             .bind(new.priority)
@@ -89,19 +89,19 @@ impl Store {
     pub async fn set_queue_state(
         &self,
         id: i64,
-        from: &str,
-        state: &str,
+        from: QueueState,
+        state: QueueState,
         reason: Option<&str>,
     ) -> Result<bool, StoreError> {
-        let ended_at = matches!(state, "failed" | "removed").then(now);
+        let ended_at = matches!(state, QueueState::Failed | QueueState::Removed).then(now);
         let changed = sqlx::query(
             "UPDATE queue SET state = ?, reason = ?, ended_at = ? WHERE id = ? AND state = ? AND run IS NULL",
         )
-        .bind(state)
+        .bind(text(state)?)
         .bind(reason)
         .bind(ended_at)
         .bind(id)
-        .bind(from)
+        .bind(text(from)?)
         .execute(&self.writer)
         .await?;
         Ok(changed.rows_affected() > 0)
@@ -184,16 +184,16 @@ fn record(row: &SqliteRow) -> Result<QueueRecord, StoreError> {
         plan: row.try_get("plan")?,
         new: NewQueueEntry {
             bench: row.try_get("bench")?,
-            proceed_if: row.try_get("proceed_if")?,
+            proceed_if: word(row.try_get("proceed_if")?)?,
             request: json(row, "request")?,
             who: row.try_get("who")?,
             priority: row.try_get("priority")?,
             planned_s: row.try_get("planned_s")?,
             key: row.try_get("key")?,
         },
-        state: row.try_get("state")?,
+        state: word(row.try_get("state")?)?,
         run: row.try_get("run")?,
-        run_state: row.try_get("run_state")?,
+        run_state: row.try_get::<Option<&str>, _>("run_state")?.map(word).transpose()?,
         reason: row.try_get("reason")?,
         created_at: row.try_get("created_at")?,
         ended_at: row.try_get("ended_at")?,

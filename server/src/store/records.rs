@@ -1,38 +1,11 @@
 //! Input and output types of the store.
 
-use super::Order;
+use super::{Order, Unit};
 use jointbench_instrument::Channel;
 use jointbench_procedure::{RunId, RunState, Safe};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
-
-/// A unit under test. The serial number identifies it.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Unit {
-    /// At most 80 characters, as every text of a unit.
-    #[serde(default)]
-    #[schema(required = true)]
-    pub serial: String,
-    /// Part number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub part: Option<String>,
-    /// Revision of the part.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub revision: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub batch: Option<String>,
-}
-
-impl Unit {
-    /// For a line of text: `SN123, part P, revision B, batch 7`.
-    pub fn line(&self) -> String {
-        let named = [("part", &self.part), ("revision", &self.revision), ("batch", &self.batch)];
-        let named = named.iter().filter_map(|(name, text)| Some(format!(", {name} {}", text.as_ref()?)));
-        std::iter::once(self.serial.clone()).chain(named).collect()
-    }
-}
 
 /// A new run.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -265,11 +238,37 @@ pub struct AutopilotRecord {
     pub finished_at: Option<String>,
 }
 
+/// State of an entry of a queue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum QueueState {
+    Waiting,
+    /// `run` is the run, as soon as it exists.
+    Started,
+    /// The run could not be started; `reason` is the cause.
+    Failed,
+    /// By a person, or because its test plan did not proceed.
+    Removed,
+}
+
+/// What a run of a test plan needs before the next one starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ProceedIf {
+    /// The run is complete.
+    #[default]
+    Completed,
+    /// Its result is identified, with or without a warning.
+    Identified,
+    /// Its result is identified, and all limits are met.
+    Pass,
+}
+
 /// A run that waits for its bench, before it has an id.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewQueueEntry {
     pub bench: String,
-    pub proceed_if: String,
+    pub proceed_if: ProceedIf,
     pub request: Value,
     pub who: String,
     pub priority: i32,
@@ -283,9 +282,9 @@ pub struct QueueRecord {
     pub id: i64,
     pub plan: Option<i64>,
     pub new: NewQueueEntry,
-    pub state: String,
+    pub state: QueueState,
     pub run: Option<i64>,
-    pub run_state: Option<String>,
+    pub run_state: Option<RunState>,
     pub reason: Option<String>,
     pub created_at: String,
     pub ended_at: Option<String>,

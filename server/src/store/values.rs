@@ -2,6 +2,7 @@
 
 use super::StoreError;
 use jiff::Timestamp;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use sqlx::Row;
@@ -15,6 +16,11 @@ pub(super) fn now() -> String {
 /// Parses a word of the store (`"safe_verified"`).
 pub(super) fn word<T: DeserializeOwned>(text: &str) -> Result<T, StoreError> {
     Ok(serde_json::from_value(Value::from(text))?)
+}
+
+/// The word of the store for a value without fields.
+pub(super) fn text(value: impl Serialize) -> Result<String, StoreError> {
+    Ok(serde_json::from_value(serde_json::to_value(value)?)?)
 }
 
 /// A column that holds JSON.

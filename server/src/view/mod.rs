@@ -54,7 +54,7 @@ pub use unit::*;
 pub use user_effect::*;
 
 /// Types of the lower layers that the API returns as they are.
-pub use crate::store::Unit;
+pub use crate::store::{ProceedIf, QueueState, Unit};
 pub use jointbench_model::{
     Comparison, Definition as EffectDefinition, Diagnosis as Finding, Evaluation, Experiment, Fit,
     Parameter as FittedParameter, ParameterSetting, ParameterState, Region, ResidualKind, Suggestion, Verdict,

@@ -1,33 +1,8 @@
 //! Runs that wait for their bench.
 
-use super::{NewRun, RunState};
+use super::{NewRun, ProceedIf, QueueState, RunState};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum QueueState {
-    Waiting,
-    /// `run` is the run, as soon as it exists.
-    Started,
-    /// The run could not be started; `reason` is the cause.
-    Failed,
-    /// By a person, or because its test plan did not proceed.
-    Removed,
-}
-
-/// What a run of a test plan needs before the next one starts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ProceedIf {
-    /// The run is complete.
-    #[default]
-    Completed,
-    /// Its result is identified, with or without a warning.
-    Identified,
-    /// Its result is identified, and all limits are met.
-    Pass,
-}
 
 /// A run that waits or waited for its bench.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
