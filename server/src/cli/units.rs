@@ -7,7 +7,7 @@ use super::runs::{encoded, local};
 use super::serve::runtime;
 use super::transfer::{Target, open};
 use crate::lab::LOCAL;
-use crate::view::{FirstPassYield, Identified, UnitList, UnitReference, UnitSummary, word};
+use crate::view::{FirstPassYield, Identified, UnitList, UnitReference, UnitSummary, spoken, word};
 use jiff::tz::TimeZone;
 
 pub fn units(arguments: &Units) -> Done {
@@ -76,8 +76,7 @@ const YIELD_HEAD: [&str; 7] = ["by", "part", "revision", "batch", "procedure", "
 
 fn cells(unit: &UnitSummary) -> [String; 11] {
     let text = |text: &Option<String>| text.clone().unwrap_or_default();
-    let verdict =
-        |verdict: Option<Identified>| verdict.map(|verdict| word(verdict).replace('_', " ")).unwrap_or_default();
+    let verdict = |verdict: Option<Identified>| verdict.map(spoken).unwrap_or_default();
     [
         unit.serial.clone(),
         if unit.reference { "yes" } else { "" }.to_owned(),

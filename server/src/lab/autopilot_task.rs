@@ -199,8 +199,7 @@ impl AutopilotTask {
         let summary = &run.summary;
         let duration_s = summary.duration_s.unwrap_or(0.0);
         self.bench_time_s += duration_s;
-        let state = word(summary.state);
-        let text = format!("run {id} {state}: {} rows in {duration_s:.0} s of bench time", summary.rows);
+        let text = format!("run {id} {}: {} rows in {duration_s:.0} s of bench time", summary.state, summary.rows);
         let step = AutopilotStep::new(AutopilotAction::Measured, text.clone());
         self.keep(AutopilotStep { run: Some(id), bench_time_s: Some(duration_s), ..step }).await?;
         if let Some(end) = self.is_stopped() {
@@ -211,9 +210,10 @@ impl AutopilotTask {
                 self.runs.push(id);
                 Ok(Through::Done(run))
             }
-            RunState::Stopped | RunState::Aborted => {
-                Ok(Through::Cut(End::new(AutopilotState::Stopped, format!("run {id} was {state} by the operator"))))
-            }
+            RunState::Stopped | RunState::Aborted => Ok(Through::Cut(End::new(
+                AutopilotState::Stopped,
+                format!("run {id} was {} by the operator", summary.state),
+            ))),
             _ => Err(LabError::Bench(match &summary.reason {
                 Some(reason) => format!("{text}: {reason}"),
                 None => text,

@@ -2,7 +2,7 @@
 
 use super::LIMIT;
 use crate::config::Server;
-use crate::view::{Notification, word};
+use crate::view::{Notification, spoken};
 use lettre::message::header::ContentType;
 use lettre::message::{Mailbox, Message};
 use lettre::transport::smtp::authentication::Credentials;
@@ -40,30 +40,30 @@ fn transport(server: &Server) -> Result<SmtpTransport, String> {
 fn subject(message: &Notification) -> String {
     let bench = message.bench.as_ref().map(|bench| format!(" {bench}:")).unwrap_or_default();
     let run = message.run.map(|run| format!(" run {run}")).unwrap_or_default();
-    let verdict = message.verdict.map(|verdict| format!(", {}", spoken(&word(verdict)))).unwrap_or_default();
-    format!("[jointbench]{bench}{run} {}{verdict}", spoken(&message.event))
+    let verdict = message.verdict.map(|verdict| format!(", {}", spoken(verdict))).unwrap_or_default();
+    format!("[jointbench]{bench}{run} {}{verdict}", event(&message.event))
 }
 
 fn text(message: &Notification) -> String {
     let facts = [
-        ("Event", Some(spoken(&message.event))),
+        ("Event", Some(event(&message.event))),
         ("Time", Some(message.time.clone())),
         ("Bench", message.bench.clone()),
         ("Run", message.run.map(|run| run.to_string())),
         ("Procedure", message.procedure.clone()),
         ("Unit under test", message.unit.clone()),
-        ("State", message.state.map(|state| spoken(&word(state)))),
-        ("Verdict", message.verdict.map(|verdict| spoken(&word(verdict)))),
-        ("Limits", message.limits.map(|limits| spoken(&word(limits)))),
+        ("State", message.state.map(spoken)),
+        ("Verdict", message.verdict.map(spoken)),
+        ("Limits", message.limits.map(spoken)),
         ("Link", message.link.clone()),
     ];
     let facts = facts.into_iter().filter_map(|(name, value)| Some(format!("{name}: {}\n", value?)));
     format!("{}.\n\n{}", message.summary, facts.collect::<String>())
 }
 
-fn spoken(word: &str) -> String {
+fn event(word: &str) -> String {
     match word {
         "needs_hand" => "needs a person".to_owned(),
-        word => word.replace('_', " "),
+        word => spoken(word),
     }
 }

@@ -4,7 +4,7 @@
 use super::figure::small_svg;
 use super::number::with_interval;
 use super::{Report, limits, sign_off};
-use crate::view::{Figure, Identified, LimitCheck, Quantity, Shown, word};
+use crate::view::{Figure, Identified, LimitCheck, Quantity, Shown, spoken};
 use jointbench_model::words::Scale;
 use maud::{Markup, PreEscaped, html};
 
@@ -49,13 +49,13 @@ impl Report {
         let signed = self.signed();
         let line = summary.unit.as_ref().map(crate::view::Unit::line);
         let file = self.file().map(str::to_owned);
-        let safe = summary.safe.map(|safe| format!(", bench {}", word(safe).replace('_', " "))).unwrap_or_default();
+        let safe = summary.safe.map(|safe| format!(", bench {}", spoken(safe))).unwrap_or_default();
         let facts = [
             ("Unit under test", line),
             ("Operator", signed.operator.map(str::to_owned)),
             ("Procedure", Some(summary.procedure_title().to_owned())),
             ("Measured", Some(summary.created_at.clone())),
-            ("End state", Some(format!("{}{safe}", word(summary.state).replace('_', " ")))),
+            ("End state", Some(format!("{}{safe}", summary.state))),
             ("Data of the file", file),
         ];
         html! {

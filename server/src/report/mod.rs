@@ -14,7 +14,7 @@ mod result;
 mod sign_off;
 mod style;
 
-use crate::view::{Diagnosis, Figure, Identification, Model, Run, word};
+use crate::view::{Diagnosis, Figure, Identification, Model, Run, spoken};
 pub use figure::svg;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub use number::{in_one_unit, with_interval};
@@ -106,9 +106,9 @@ impl Report {
                 }
             }
             p.quiet {
-                (summary.created_at) " · " (word(summary.state).replace('_', " ")) " · " (summary.rows) " samples"
+                (summary.created_at) " · " (summary.state) " · " (summary.rows) " samples"
                 @if let Some(duration_s) = summary.duration_s { (format!(" in {duration_s:.1} s of bench time")) }
-                @if let Some(safe) = summary.safe { " · bench " (word(safe).replace('_', " ")) }
+                @if let Some(safe) = summary.safe { " · bench " (spoken(safe)) }
             }
             @if let Some(unit) = &summary.unit { p { "Unit under test " b { (unit.line()) } } }
             @if let Some(operator) = &summary.operator { p.quiet { "Operator " (operator) } }

@@ -2,7 +2,6 @@
 
 use super::Report;
 use super::pairs::{pairs, plain, title};
-use crate::view::word;
 use jointbench_procedure::procedure;
 use maud::{Markup, html};
 use serde_json::{Map, Value};
@@ -60,7 +59,7 @@ impl Report {
         ];
         let more = [
             ("Finished", summary.finished_at.clone()),
-            ("End state", Some(word(summary.state).replace('_', " "))),
+            ("End state", Some(summary.state.to_string())),
             ("Samples", Some(format!("{} rows, {} channels", summary.rows, self.run.channels.len()))),
             ("Data integrity", Some("stored records have checksums, verified at each read".to_owned())),
             ("User", of("by").or_else(|| summary.by.clone())),

@@ -88,3 +88,8 @@ pub fn command(procedure: &str, parameters: &serde_json::Map<String, serde_json:
 pub fn word(value: impl serde::Serialize) -> String {
     serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
 }
+
+/// The same for people: `safe verified`.
+pub fn spoken(value: impl serde::Serialize) -> String {
+    word(value).replace('_', " ")
+}
