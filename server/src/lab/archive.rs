@@ -1,5 +1,6 @@
 //! The archive: one task writes what ended runs owe, one table after the other. No run, stop or request waits for it.
 
+use super::background::{LOOK, Tasks, pause};
 use super::computation::json;
 use super::{Answer, Lab, LabError};
 use crate::config::{Archive, ArchiveContent};
@@ -7,16 +8,8 @@ use crate::job::{ArchiveRequest, ArchivedFile, Job};
 use crate::store::{ArchiveEnd, ArchiveRecord, Store};
 use crate::view::{ArchiveState, ArchivedTable, archived_table, reread};
 use jiff::{SignedDuration, Timestamp};
-use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
 use tokio::sync::Notify;
-use tokio::task::JoinSet;
 
-/// Time between two looks for tables that are owed.
-const LOOK: Duration = Duration::from_secs(1);
-/// Time before the second attempt, doubled for each further one up to the longest.
-const FIRST_PAUSE: Duration = Duration::from_secs(1);
-const LONGEST_PAUSE: Duration = Duration::from_secs(3600);
 /// A table that exceeds the limit of memory or time as often as this is given up.
 const MOST_TOO_LARGE: u32 = 8;
 
@@ -24,7 +17,7 @@ const MOST_TOO_LARGE: u32 = 8;
 #[derive(Default)]
 pub(super) struct Archiving {
     archive: Option<Archive>,
-    task: Mutex<JoinSet<()>>,
+    task: Tasks,
     /// A person asked for an attempt now.
     released: Notify,
 }
@@ -42,15 +35,14 @@ impl Archiving {
     }
 
     pub fn abort(&self) {
-        self.task.lock().unwrap_or_else(PoisonError::into_inner).abort_all();
+        self.task.abort();
     }
 }
 
 impl Lab {
     pub(super) fn open_archive(&self) {
-        let mut task = self.inner.archiving.task.lock().unwrap_or_else(PoisonError::into_inner);
         let lab = self.clone();
-        task.spawn(async move {
+        self.inner.archiving.task.spawn(async move {
             if let Err(fault) = lab.inner.store.complete_drops().await {
                 tracing::error!(%fault, "the removal of archived samples is not complete");
             }
@@ -188,9 +180,4 @@ impl Lab {
         let dropped = tables.into_iter().find(|table| table.content == ArchiveContent::Samples);
         dropped.ok_or_else(|| LabError::no_run(id))
     }
-}
-
-/// Time before the next attempt.
-fn pause(attempts: u32) -> Duration {
-    FIRST_PAUSE.saturating_mul(1 << attempts.min(30)).min(LONGEST_PAUSE)
 }

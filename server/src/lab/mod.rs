@@ -4,6 +4,7 @@ mod archive;
 mod archive_files;
 mod autopilot;
 mod autopilot_task;
+mod background;
 mod benches;
 mod blocking;
 mod calibrations;

@@ -1,30 +1,24 @@
 //! Notifications: one task for each target delivers the messages of the outbox in order. No run, guard or stop waits for
 //! it, and no target waits for another one.
 
+use super::background::{LOOK, Tasks, pause};
 use super::{Answer, Lab, LabError};
 use crate::config::{Notify, NotifyTarget};
 use crate::notify::deliver;
 use crate::store::{NotificationRecord, Store};
 use crate::view::{Notification, NotificationTarget, NotificationTest, word};
 use jiff::{SignedDuration, Timestamp};
-use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
-use tokio::task::JoinSet;
 
-/// Time between two looks into the outbox.
-const LOOK: Duration = Duration::from_secs(1);
 /// A message is given up after this time.
 const PATIENCE: SignedDuration = SignedDuration::from_hours(24);
-/// Time before the second attempt, doubled for each further one up to the longest.
-const FIRST_PAUSE: Duration = Duration::from_secs(1);
-const LONGEST_PAUSE: Duration = Duration::from_secs(3600);
 
 /// The targets and their tasks.
 #[derive(Default)]
 pub(super) struct Notifications {
     dashboard: Option<String>,
     targets: Vec<NotifyTarget>,
-    tasks: Mutex<JoinSet<()>>,
+    tasks: Tasks,
 }
 
 impl Notifications {
@@ -39,12 +33,12 @@ impl Notifications {
         if removed > 0 {
             tracing::warn!(removed, "waiting notifications of targets that the bench description no longer has");
         }
-        Ok(Self { dashboard, targets, tasks: Mutex::default() })
+        Ok(Self { dashboard, targets, tasks: Tasks::default() })
     }
 
     /// Ends all deliveries; the messages are kept.
     pub fn abort(&self) {
-        self.tasks.lock().unwrap_or_else(PoisonError::into_inner).abort_all();
+        self.tasks.abort();
     }
 
     fn link(&self, page: &str) -> Option<String> {
@@ -55,9 +49,8 @@ impl Notifications {
 impl Lab {
     /// Starts the task of each target.
     pub(super) fn open_notifications(&self) {
-        let mut tasks = self.inner.notifications.tasks.lock().unwrap_or_else(PoisonError::into_inner);
         for target in &self.inner.notifications.targets {
-            tasks.spawn(self.clone().serve_target(target.clone()));
+            self.inner.notifications.tasks.spawn(self.clone().serve_target(target.clone()));
         }
     }
 
@@ -98,7 +91,7 @@ impl Lab {
             }
             Err(fault) => {
                 tracing::warn!(target.name, event, fault, "notification not delivered, it is repeated");
-                store.retry_notification(id, Timestamp::now() + pause(record.attempts), &fault).await?;
+                store.retry_notification(id, Timestamp::now() + jittered_pause(record.attempts), &fault).await?;
             }
         }
         Ok(true)
@@ -201,21 +194,7 @@ fn is_old(record: &NotificationRecord) -> bool {
     created.is_none_or(|created| Timestamp::now().duration_since(created) > PATIENCE)
 }
 
-/// Time before the next attempt. It is random by ± 20 %, so that targets behind one server do not come together.
-fn pause(attempts: u32) -> Duration {
-    let pause = FIRST_PAUSE.saturating_mul(1 << attempts.min(30)).min(LONGEST_PAUSE);
-    pause.mul_f64(rand::random_range(0.8..1.2))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pauses_double_up_to_an_hour() {
-        for (attempts, expected_s) in [(0, 1.0), (1, 2.0), (5, 32.0), (12, 3600.0), (u32::MAX, 3600.0)] {
-            let pause_s = pause(attempts).as_secs_f64();
-            assert!((0.8 * expected_s..1.2 * expected_s).contains(&pause_s), "{attempts}: {pause_s}");
-        }
-    }
+/// Time before the next attempt, random by ± 20 %, so that targets behind one server do not come together.
+fn jittered_pause(attempts: u32) -> Duration {
+    pause(attempts).mul_f64(rand::random_range(0.8..1.2))
 }

@@ -4,6 +4,7 @@
 //! way, when the next run needs another unit, when the bench is not ready, and at the start of the daemon: nothing moves
 //! until a person or a script resumes it.
 
+use super::background::Tasks;
 use super::leases::checked_lease;
 use super::names::{LONGEST_NAME, LONGEST_NOTE, checked, checked_text};
 use super::runs::check_plan;
@@ -15,9 +16,8 @@ use crate::view::{
     BenchQueue, LiveMessage, NewRun, NewTestPlan, ProceedIf, QueueEntry, QueuePause, QueueState, reread, word,
 };
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use tokio::sync::Notify;
-use tokio::task::JoinSet;
 
 /// Limit of the waiting entries of a bench.
 const MOST_WAITING: usize = 500;
@@ -34,7 +34,7 @@ pub(super) struct Queues {
     pub(super) changed: HashMap<String, Arc<Notify>>,
     /// One request at a time, so that a repeated one finds its entry.
     adding: tokio::sync::Mutex<()>,
-    tasks: Mutex<JoinSet<()>>,
+    tasks: Tasks,
 }
 
 impl Queues {
@@ -49,7 +49,7 @@ impl Queues {
 
     /// Ends all queues; the waiting entries are kept.
     pub fn abort(&self) {
-        self.tasks.lock().unwrap_or_else(PoisonError::into_inner).abort_all();
+        self.tasks.abort();
     }
 }
 
@@ -63,9 +63,8 @@ impl Lab {
                 checked_lease(request.lease_s)?.inspect(|lease| self.watch_entry(entry.id, *lease));
             }
         }
-        let mut tasks = self.inner.queues.tasks.lock().unwrap_or_else(PoisonError::into_inner);
         for bench in &self.inner.benches {
-            tasks.spawn(self.clone().serve_queue(bench.clone()));
+            self.inner.queues.tasks.spawn(self.clone().serve_queue(bench.clone()));
         }
         Ok(())
     }
