@@ -1212,6 +1212,7 @@ class QueuePriority(BaseModel):
 
 
 QueueState = TypeAliasType("QueueState", Literal['waiting', 'started', 'failed', 'removed'])
+"""State of an entry of a queue."""
 
 
 RefusalReason = TypeAliasType("RefusalReason", Literal['missing_instrument', 'parameter', 'contradiction', 'limit'])
