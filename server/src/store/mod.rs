@@ -36,6 +36,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 mod tokens;
+mod unit;
 mod units;
 mod user_effects;
 mod values;
@@ -56,7 +57,7 @@ pub use records::{
 };
 pub use result_cache::{Subject, packed, unpacked};
 pub use search::Search;
-pub use units::Unit;
+pub use unit::Unit;
 pub use verify::{Readable, VerifyReport, verify};
 
 use keeper::Keeper;

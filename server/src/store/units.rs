@@ -3,12 +3,10 @@
 use super::seal::{RUN_UNITS, UNIT_REFERENCES, intact_records};
 use super::search::Search;
 use super::values::{now, word};
-use super::{Store, StoreError, UnitRunRecord};
+use super::{Store, StoreError, Unit, UnitRunRecord};
 use jointbench_procedure::RunId;
-use serde::{Deserialize, Serialize};
 use sqlx::sqlite::SqliteRow;
 use sqlx::{QueryBuilder, Row, SqliteConnection};
-use utoipa::ToSchema;
 
 const UNIT_RUN: &str = "SELECT id, serial, part, revision, batch, operator, unit_checksum, procedure, state, created_at, \
     (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict, \
@@ -16,33 +14,6 @@ const UNIT_RUN: &str = "SELECT id, serial, part, revision, batch, operator, unit
     (SELECT is_reference FROM unit_references WHERE unit_references.serial = runs_told.serial ORDER BY unit_references.id DESC LIMIT 1) \
     AS is_reference \
     FROM runs_told WHERE serial ";
-
-/// A unit under test. The serial number identifies it.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Unit {
-    /// At most 80 characters, as every text of a unit.
-    #[serde(default)]
-    #[schema(required = true)]
-    pub serial: String,
-    /// Part number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub part: Option<String>,
-    /// Revision of the part.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub revision: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub batch: Option<String>,
-}
-
-impl Unit {
-    /// For a line of text: `SN123, part P, revision B, batch 7`.
-    pub fn line(&self) -> String {
-        let named = [("part", &self.part), ("revision", &self.revision), ("batch", &self.batch)];
-        let named = named.iter().filter_map(|(name, text)| Some(format!(", {name} {}", text.as_ref()?)));
-        std::iter::once(self.serial.clone()).chain(named).collect()
-    }
-}
 
 impl Store {
     /// All runs of one unit, in order.
