@@ -199,11 +199,10 @@ fn suggestions(
         let info = scored.term.effect.info();
         let confounded_with = found.ties_of(id);
         let tie = tie(found, id, &confounded_with, spec, options)?;
-        let evidence = evidence_sentence(found, scored, importance, apart);
+        let sentence = evidence_sentence(found, scored, importance, apart);
         let written = found.end().main.terms.iter().find(|term| term.id() == id).and_then(written);
         let instead = confounding::instead(scored.term.effect, found.start.prepared);
         let also: String = written.into_iter().chain(instead).map(|text| format!(" {text}.")).collect();
-        let reasons = format!("{evidence}{tie}{also}");
         let reduction_ci95 = (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten();
         let together = found.lost_without(id, options)?;
         let figures = match (scored.is_without_form_error, fit.effects_rms, with.effects_rms) {
@@ -211,6 +210,10 @@ fn suggestions(
             (true, Some(before), Some(after)) => (1.0 - after / before, None),
             _ => (reduction, reduction_ci95),
         };
+        let has_size = has_size(complete, found, id);
+        let (evidence, weak) = Evidence::of(scored.p_value, figures.0, figures.1, together, has_size);
+        let weak = weak.map(|why| format!(" Weak evidence: {why}.")).unwrap_or_default();
+        let reasons = format!("{sentence}{weak}{tie}{also}");
         out.push(Suggestion {
             effect: id.into(),
             validation_rms: with.validation_rms,
@@ -219,7 +222,7 @@ fn suggestions(
             error_reduction_ci95: reduction_ci95,
             bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),
             p_value: scored.p_value,
-            evidence: Evidence::of(scored.p_value, figures.0, figures.1, together, has_size(complete, found, id)),
+            evidence,
             p_at_most: found.decided.is_none() && scored.p_value * (options.flips + 1) as f64 <= 1.001,
             error_reduction_together: together,
             parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),

@@ -12,13 +12,12 @@ use crate::words::{figure, list, percent, spoken_axis};
 /// Where the residual is largest.
 pub fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
     let error = figure(end.validation_rms, &end.unit);
-    let repeats = match found.floor.repeatable_share {
-        Some(share) if share < NOTHING_IN_COMMON => {
-            format!("; where readings repeat, less than {} of the squared error does", percent(NOTHING_IN_COMMON))
-        }
-        Some(share) => format!("; where readings repeat, {} of the squared error does", percent(share)),
-        None => String::new(),
+    let repeatable = match found.floor.repeatable_share {
+        Some(share) if share < NOTHING_IN_COMMON => Some(format!("less than {}", percent(NOTHING_IN_COMMON))),
+        share => share.map(percent),
     };
+    let repeats = repeatable.map(|share| format!("; of the squared error of repeated readings, {share} is repeatable"));
+    let repeats = repeats.unwrap_or_default();
     if lack_of_fit::structured(&found.maps).is_none()
         && let Some(event) = found.events.first()
     {

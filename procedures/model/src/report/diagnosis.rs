@@ -139,15 +139,25 @@ pub enum Evidence {
 }
 
 impl Evidence {
-    /// From the figures of a suggestion.
-    pub fn of(p_value: f64, alone: f64, ci95: Option<[f64; 2]>, together: f64, has_size: bool) -> Self {
+    /// From the figures of a suggestion; weak evidence with its reason.
+    pub fn of(
+        p_value: f64,
+        alone: f64,
+        ci95: Option<[f64; 2]>,
+        together: f64,
+        has_size: bool,
+    ) -> (Self, Option<String>) {
         // Effects that mask each other have a small individual reduction.
         let may_be_nothing = together <= MASKED_RATIO * alone && ci95.is_some_and(|[low, _]| low <= 0.0);
         let most = alone.max(together);
+        let weak = |why: &str| (Self::Weak, Some(why.to_owned()));
         match () {
-            () if p_value > STRONG_P_VALUE || may_be_nothing || most <= 0.0 || !has_size => Self::Weak,
-            () if most < SMALL_REDUCTION => Self::Small,
-            () => Self::Strong,
+            () if p_value > STRONG_P_VALUE => weak(&format!("p exceeds {STRONG_P_VALUE}")),
+            () if most <= 0.0 => weak("the error is not smaller with it"),
+            () if may_be_nothing => weak("the interval of the error reduction includes zero"),
+            () if !has_size => weak("the intervals of all its coefficients include zero"),
+            () if most < SMALL_REDUCTION => (Self::Small, None),
+            () => (Self::Strong, None),
         }
     }
 }
@@ -331,13 +341,18 @@ mod tests {
 
     #[test]
     fn evidence_is_as_strong_as_its_figures() {
-        assert_eq!(Evidence::of(0.002, 0.3, Some([0.2, 0.4]), 0.3, true), Evidence::Strong);
-        assert_eq!(Evidence::of(0.03, 0.3, Some([0.2, 0.4]), 0.3, true), Evidence::Weak);
-        assert_eq!(Evidence::of(0.002, 0.15, Some([-0.01, 0.3]), 0.16, true), Evidence::Weak);
-        assert_eq!(Evidence::of(0.002, 0.01, Some([-0.01, 0.03]), 0.3, true), Evidence::Strong, "masked by another");
-        assert_eq!(Evidence::of(0.002, 0.02, Some([0.01, 0.03]), 0.02, true), Evidence::Small);
-        assert_eq!(Evidence::of(0.002, 0.3, None, 0.0, true), Evidence::Strong, "where the RMS does not look");
-        assert_eq!(Evidence::of(0.002, -0.04, Some([-0.07, -0.01]), -0.03, true), Evidence::Weak, "a larger error");
-        assert_eq!(Evidence::of(0.002, 0.3, Some([0.2, 0.4]), 0.3, false), Evidence::Weak, "no coefficient has a sign");
+        let class = |p_value, alone, ci95, together, has_size| Evidence::of(p_value, alone, ci95, together, has_size).0;
+        assert_eq!(class(0.002, 0.3, Some([0.2, 0.4]), 0.3, true), Evidence::Strong);
+        assert_eq!(class(0.03, 0.3, Some([0.2, 0.4]), 0.3, true), Evidence::Weak);
+        assert_eq!(class(0.002, 0.15, Some([-0.01, 0.3]), 0.16, true), Evidence::Weak);
+        assert_eq!(class(0.002, 0.01, Some([-0.01, 0.03]), 0.3, true), Evidence::Strong, "masked by another");
+        assert_eq!(class(0.002, 0.02, Some([0.01, 0.03]), 0.02, true), Evidence::Small);
+        assert_eq!(class(0.002, 0.3, None, 0.0, true), Evidence::Strong, "where the RMS does not look");
+        assert_eq!(class(0.002, -0.04, Some([-0.07, -0.01]), -0.03, true), Evidence::Weak, "a larger error");
+        let (weak, why) = Evidence::of(0.002, 0.3, Some([0.2, 0.4]), 0.3, false);
+        assert_eq!(
+            (weak, why.as_deref()),
+            (Evidence::Weak, Some("the intervals of all its coefficients include zero"))
+        );
     }
 }

@@ -7,7 +7,6 @@
 use crate::hysteresis_operators::{dahl, stop};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::non_negative::non_negative;
-use crate::preprocess::INFORMATIVE_ROWS;
 use crate::report::fit::Bristles;
 use crate::stats::summary::{quantile, range};
 use crate::view::Start;
@@ -24,15 +23,26 @@ const TURN: f64 = TAU;
 const STEPS: f64 = 3.0;
 const LEAST_OF_RANGE: f64 = 1e-5;
 const LEAST_OF_LONGEST: f64 = 1e-4;
+/// Smaller differences are numerical.
+const LEAST_STEP_RAD: f64 = 1e-7;
 /// Least return motion of a reversal, in encoder steps and as a share of the whole range.
 const TURN_STEPS: f64 = 6.0;
 const TURN_SHARE: f64 = 1e-3;
 
-/// The step of the encoder: nearly the smallest difference between neighbouring samples of a moving joint.
+/// The step of the encoder: the smallest difference between neighbouring samples. A joint that is fast most of the time
+/// passes single counts only at its reversals.
 pub fn encoder_step(position: &[f64]) -> f64 {
-    let every = position.len().div_ceil(INFORMATIVE_ROWS);
-    let steps = position.windows(2).step_by(every).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 1e-7);
-    quantile(steps, 0.01).max(1e-7)
+    steps(position).reduce(f64::min).unwrap_or(LEAST_STEP_RAD)
+}
+
+/// The motion in a sample where the joint is slowest. Presliding over less is not distinguished from a direction that
+/// changes between two samples.
+pub fn slowest_step(position: &[f64]) -> f64 {
+    quantile(steps(position), 0.01).max(LEAST_STEP_RAD)
+}
+
+fn steps(position: &[f64]) -> impl Iterator<Item = f64> {
+    position.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > LEAST_STEP_RAD)
 }
 
 /// Smallest motion that differs from encoder noise.
@@ -151,6 +161,16 @@ mod tests {
         let found = turns(&x, &[0], 1e-4);
         assert_eq!(found.len(), 6, "{found:?}");
         assert!(found.iter().all(|i| x[*i].abs() > 0.999));
+    }
+
+    #[test]
+    fn a_joint_that_is_fast_most_of_the_time_shows_the_count_of_its_encoder() {
+        let count = TAU / 65_536.0;
+        let angle = |i: i32| (f64::from(i) * 1e-3).sin() * 50.0;
+        let x: Vec<f64> = (0..20_000).map(|i| (angle(i) / count).round() * count).collect();
+        let found = encoder_step(&x);
+        assert!((0.9 * count..8.1 * count).contains(&found), "{} counts", found / count);
+        assert!(slowest_step(&x) > 5.0 * found);
     }
 
     #[test]

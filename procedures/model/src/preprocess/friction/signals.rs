@@ -29,6 +29,7 @@ pub struct Work {
     /// Samples at which the joint reverses or rests.
     pub stills: Vec<usize>,
     pub encoder_step: f64,
+    pub slowest_step: f64,
     pub fastest: f64,
 }
 
@@ -105,7 +106,8 @@ pub fn read(run: &RunTable) -> Result<Work, ModelError> {
     let slope = |values: &[f64]| by_recording(values, &even.starts, |range, v| derivative(&even.time_s[range], v));
     let velocity = slope(&position);
     let acceleration = slope(&velocity);
-    let encoder_step = bristles::encoder_step(run.column("motor_position_rad").unwrap_or_default());
+    let readings = run.column("motor_position_rad").unwrap_or_default();
+    let (encoder_step, slowest_step) = (bristles::encoder_step(readings), bristles::slowest_step(readings));
     let turns = bristles::turns(&position, &even.starts, encoder_step);
     let only_direction = match turns.is_empty() {
         true => bristles::only_direction(&position, &even.starts, encoder_step),
@@ -118,5 +120,5 @@ pub fn read(run: &RunTable) -> Result<Work, ModelError> {
     signals.set(Signal::Position, position);
     signals.set(Signal::Time, even.time_s.iter().map(|t| t - even.time_s[0]).collect());
     let torque = current.iter().map(|i| km * i).collect();
-    Ok(Work { signals, torque, even, turns, only_direction, stills: Vec::new(), encoder_step, fastest })
+    Ok(Work { signals, torque, even, turns, only_direction, stills: Vec::new(), encoder_step, slowest_step, fastest })
 }

@@ -134,7 +134,7 @@ fn constants(work: &Work, bristles: &Bristles, cutoff_hz: f64, run: &RunTable) -
         weight: unmeasured_gravity::unmeasured(&work.signals, &work.torque),
         followed_hz: Some(2.0 * cutoff_hz),
         speeds: Some(work.fastest),
-        reaches: ends.map(|(low, high)| [low.max(10.0 * work.encoder_step).min(*high), *high]),
+        reaches: ends.map(|(low, high)| [low.max(10.0 * work.slowest_step).min(*high), *high]),
         ..Constants::default()
     }
 }
