@@ -13,7 +13,7 @@ import { role } from './role.svelte';
 /** After this time without a message the page sends a request. */
 const QUIET_MS = 1500;
 /** After this time without a message the contact is lost. */
-export const STALE_MS = 4000;
+const STALE_MS = 4000;
 
 /** Feeds of ended runs that stay in memory. */
 const MOST_FEEDS = 2;
@@ -58,6 +58,10 @@ class LabState {
 		sessionStorage.setItem(BENCH_KEY, name);
 	}
 	bench: Bench | null = $derived(this.benches?.find((bench) => bench.name === this.chosen) ?? this.benches?.[0] ?? null);
+	/** The bench of a run, else the bench of the pages. */
+	benchOf(run: { bench: string } | undefined): Bench | null {
+		return this.benches?.find(({ name }) => name === run?.bench) ?? this.bench;
+	}
 	/** Milliseconds since the last message of the daemon. */
 	silence_ms = $derived(Math.max(0, this.now_ms - this.lastMessage_ms));
 	contactLost = $derived(!this.connected || this.silence_ms > STALE_MS);

@@ -67,3 +67,17 @@ export function resource<K, T>(key: () => K | null, load: (key: K, signal: Abort
 		},
 	};
 }
+
+/** Pause before a request for what was not computed yet. */
+export const RELOAD_MS = 1000;
+
+/**
+ * Requests a resource again after a pause while its answer is incomplete. Call during component initialization.
+ */
+export function reloadWhile(source: Pick<Resource<unknown>, 'loading' | 'reload'>, isIncomplete: () => boolean): void {
+	$effect(() => {
+		if (source.loading || !isIncomplete()) return;
+		const timer = setTimeout(source.reload, RELOAD_MS);
+		return () => clearTimeout(timer);
+	});
+}
