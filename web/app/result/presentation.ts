@@ -58,6 +58,9 @@ export function formatResult(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci
 	};
 }
 
+/** Title of a quantity without its configuration: equal in all runs, also where a title contains a measured speed. */
+export const baseTitle = ({ base_title, title }: Pick<IdentifiedQuantity, 'base_title' | 'title'>): string => base_title ?? title;
+
 /** Results for several directions, methods or speeds. */
 export interface ResultTable {
 	configurations: string[];
@@ -72,13 +75,13 @@ const withoutDirection = (symbol: string) => symbol.replace(/[⁺⁻]$/, '');
 export function configurationTable(quantities: readonly IdentifiedQuantity[]): ResultTable | null {
 	const byTitle = new Map<string, IdentifiedQuantity[]>();
 	for (const one of quantities.filter(({ configuration }) => configuration)) {
-		const key = `${withoutDirection(one.symbol)} ${one.base_title ?? one.title}`;
+		const key = `${withoutDirection(one.symbol)} ${baseTitle(one)}`;
 		byTitle.set(key, [...(byTitle.get(key) ?? []), one]);
 	}
 	const groups = [...byTitle];
 	const configurations = (groups.toSorted(([, a], [, b]) => b.length - a.length)[0]?.[1] ?? []).flatMap(({ configuration }) => configuration ?? []);
 	const hasEach = (of: IdentifiedQuantity[]) => of.length === configurations.length && of.every((one, i) => one.configuration === configurations[i]);
-	const rows = groups.filter(([, of]) => hasEach(of)).map(([key, of]) => ({ key, symbol: withoutDirection(of[0]!.symbol), title: of[0]!.base_title ?? of[0]!.title, of }));
+	const rows = groups.filter(([, of]) => hasEach(of)).map(([key, of]) => ({ key, symbol: withoutDirection(of[0]!.symbol), title: baseTitle(of[0]!), of }));
 	return configurations.length > 1 && rows.length > 1 ? { configurations, rows } : null;
 }
 
@@ -89,7 +92,7 @@ export interface Part extends Omit<CampaignPart, 'quantities' | 'figures'> {
 }
 
 /** A quantity below the title of its part does not repeat it. */
-const withoutPart = (one: IdentifiedQuantity): IdentifiedQuantity => ({ ...one, title: [one.base_title ?? one.title, one.configuration].filter(Boolean).join(', ') });
+const withoutPart = (one: IdentifiedQuantity): IdentifiedQuantity => ({ ...one, title: [baseTitle(one), one.configuration].filter(Boolean).join(', ') });
 
 export function campaignParts({ quantities, figures, parts = [] }: Pick<Identification, 'quantities' | 'figures' | 'parts'>): Part[] {
 	return parts.map((part) => ({

@@ -58,10 +58,6 @@ class LabState {
 		sessionStorage.setItem(BENCH_KEY, name);
 	}
 	bench: Bench | null = $derived(this.benches?.find((bench) => bench.name === this.chosen) ?? this.benches?.[0] ?? null);
-	/** The bench of a run, else the bench of the pages. */
-	benchOf(run: { bench: string } | undefined): Bench | null {
-		return this.benches?.find(({ name }) => name === run?.bench) ?? this.bench;
-	}
 	/** Milliseconds since the last message of the daemon. */
 	silence_ms = $derived(Math.max(0, this.now_ms - this.lastMessage_ms));
 	contactLost = $derived(!this.connected || this.silence_ms > STALE_MS);
@@ -73,6 +69,11 @@ class LabState {
 	updateBench(bench: Bench): void {
 		this.reported_ms.set(bench, performance.now());
 		this.benches = withBench(this.benches ?? [], bench);
+	}
+
+	/** The bench of a run, else the bench of the pages. */
+	benchOf(run: { bench: string } | undefined): Bench | null {
+		return this.benches?.find(({ name }) => name === run?.bench) ?? this.bench;
 	}
 
 	start(): () => void {
