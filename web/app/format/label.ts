@@ -27,6 +27,7 @@ const TITLES: Record<string, string> = {
 	way_since_reversal_rad: 'travel since reversal',
 	run_order: 'order in the run',
 	direction: 'direction of motion',
+	velocity_setpoint_rad_s: 'velocity set point',
 };
 
 export interface Label {
@@ -78,10 +79,10 @@ export const inSentence = (title: string): string => title.replace(/^(?!Coul|Str
 
 /**
  * A sentence of the daemon for display: effects by their titles, other ids as words without their unit, with a capital
- * at its start.
+ * at its start. The keys of a bench file stay as they are written: `gear_ratio in [bench.constants]`.
  */
 export function displayText(sentence: string, effects: Titles = []): string {
-	const replaced = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])/g, (id) => {
+	const replaced = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*(?:[=(]| in \[))/g, (id) => {
 		const title = effects.find((one) => one.id === id)?.title;
 		return title === undefined ? idText(id.replace(UNIT_SUFFIX, '')) : inSentence(title);
 	});

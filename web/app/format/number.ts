@@ -89,8 +89,11 @@ export function formatPercent(share: number, digits = 0): string {
 	return `${Number(text) === 0 ? text.replace('-', '') : text.replace('-', MINUS)} %`;
 }
 
-/** Relative change: `+0.3 %`, `−83 %`. */
-export const formatChange = (share: number) => (share >= 0 ? '+' : '') + formatPercent(share, Math.abs(share) < 0.1 ? 1 : 0);
+/** Relative change: `+0.3 %`, `−83 %`; a change that rounds to zero has no sign. */
+export function formatChange(share: number): string {
+	const text = formatPercent(share, Math.abs(share) < 0.1 ? 1 : 0);
+	return share > 0 && Number.parseFloat(text) > 0 ? `+${text}` : text;
+}
 
 /** `1 step`, `1,204 steps` */
 export function formatCount(n: number, one: string): string {

@@ -1,5 +1,5 @@
 import type { CampaignPart, Identification, IdentifiedQuantity, LimitCheck } from '../api/types';
-import { type Scale, formatInterval, formatEstimate, formatNumber, prefixSize, scaleFor } from '../format/number';
+import { type Scale, formatAllDigits, formatInterval, formatEstimate, formatNumber, prefixSize, scaleFor } from '../format/number';
 import type { StatusLabel } from '../ui/states';
 
 const VERDICTS: Record<Identification['verdict'], StatusLabel> = {
@@ -35,6 +35,9 @@ export function resultVerdict({ verdict, passes, summary, lead, parts = [] }: Pi
 	return { ...VERDICTS[verdict], text: parts.length > 0 ? (lead ?? summary) : summary };
 }
 
+/** A value without an interval. A count has no decimals. */
+export const formatWithoutInterval = (value: number, unit: string, digits = 4): string => (unit === '' && Number.isInteger(value) ? formatAllDigits(value) : formatNumber(value, digits));
+
 /**
  * A quantity with one prefix for value and interval: `32.1 ± 0.4 µNm·s/rad`; an asymmetric interval is given by its
  * ends.
@@ -44,7 +47,7 @@ export function formatResult(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci
 	const [low, high] = (of.ci95 ?? []).map((end) => end * shown.factor);
 	if (low === undefined || high === undefined) {
 		const scale = scaleFor(unit, value);
-		return { value: unit === '' && Number.isInteger(value) ? String(value) : formatEstimate(value * scale.factor, []), interval: '', unit: scale.unit };
+		return { value: formatWithoutInterval(value * scale.factor, scale.unit), interval: '', unit: scale.unit };
 	}
 	const scale = scaleFor(unit, prefixSize(value, [low, high]));
 	const scaled = [low * scale.factor, high * scale.factor] as const;
