@@ -135,34 +135,14 @@ export function reachOf(series: readonly Series[]): Span {
 	return spanOf(series.some((one) => one.mark === 'bars') ? [0, ...ends] : ends);
 }
 
-export interface Row {
-	series: string;
-	x: number | string;
-	y: number;
-	low: number | null;
-	high: number | null;
-}
-
-/** The displayed data, one row per point. */
-export function rowsOf(figure: Figure): Row[] {
-	return figure.series.flatMap((one) =>
-		one.x.map((x, i) => ({
-			series: one.label,
-			x: figure.x.names?.[x] ?? x,
-			y: one.y[i]!,
-			low: one.band?.[i]?.[0] ?? null,
-			high: one.band?.[i]?.[1] ?? null,
-		})),
-	);
-}
-
 const withUnit = (label: string, unit: string) => (unit ? `${label} [${unit}]` : label);
 export const axisName = (axis: Axis) => withUnit(axis.label, axis.unit);
 
+/** The displayed data, one row per point. */
 export function tableOf(figure: Figure): Table {
 	const y = axisName(figure.y);
 	return {
 		head: ['series', axisName(figure.x), y, `${y}, lower`, `${y}, upper`],
-		rows: rowsOf(figure).map((row) => [row.series, row.x, row.y, row.low, row.high]),
+		rows: figure.series.flatMap(({ label, x, y, band }) => x.map((at, i) => [label, figure.x.names?.[at] ?? at, y[i]!, band?.[i]?.[0] ?? null, band?.[i]?.[1] ?? null])),
 	};
 }

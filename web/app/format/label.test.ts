@@ -20,6 +20,7 @@ it('says ids of a sentence as words', () => {
 	expect(displayText('Missing effects: load_linear, then load_viscous.', [{ id: 'load_linear', title: 'Load-dependent friction' }])).toBe('Missing effects: load-dependent friction, then load viscous.');
 	expect(['Viscous friction', 'Stribeck effect'].map(inSentence)).toEqual(['viscous friction', 'Stribeck effect']);
 	expect(displayText('motor_current_a is -1.5 times what 0-3 gives, by time_s')).toBe('Motor current is −1.5 times what 0-3 gives, by time');
+	expect(displayText('bench a has no gear: state load_gear_ratio in [bench.constants]')).toBe('Bench a has no gear: state load_gear_ratio in [bench.constants]');
 	expect(displayText('repeat with a lower stribeck_speed_rad_s, for tau_c')).toBe('Repeat with a lower stribeck speed, for tau c');
 });
 

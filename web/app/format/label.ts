@@ -27,6 +27,7 @@ const TITLES: Record<string, string> = {
 	way_since_reversal_rad: 'travel since reversal',
 	run_order: 'order in the run',
 	direction: 'direction of motion',
+	velocity_setpoint_rad_s: 'velocity set point',
 };
 
 export interface Label {
@@ -60,6 +61,11 @@ export function idText(id: string): string {
 	return ID_TEXTS[id] ?? id.replaceAll('_', ' ');
 }
 
+type Titles = readonly { id: string; title: string }[];
+
+/** The title of an effect, or its id as words. */
+export const effectTitle = (effects: Titles | undefined, id: string): string => effects?.find((one) => one.id === id)?.title ?? idText(id);
+
 /** A suffix that can only be a unit; `tau_c` is not a temperature. */
 const UNIT_SUFFIX = /_(nm_rad|rad_s2?|rad|nm|hz)$|(?<=current)_a$|(?<=temperature)_c$|(?<=time)_s$/;
 /** A minus sign before a number that is not after another number. */
@@ -73,10 +79,10 @@ export const inSentence = (title: string): string => title.replace(/^(?!Coul|Str
 
 /**
  * A sentence of the daemon for display: effects by their titles, other ids as words without their unit, with a capital
- * at its start.
+ * at its start. The keys of a bench file stay as they are written: `gear_ratio in [bench.constants]`.
  */
-export function displayText(sentence: string, effects: readonly { id: string; title: string }[] = []): string {
-	const replaced = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])/g, (id) => {
+export function displayText(sentence: string, effects: Titles = []): string {
+	const replaced = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*(?:[=(]| in \[))/g, (id) => {
 		const title = effects.find((one) => one.id === id)?.title;
 		return title === undefined ? idText(id.replace(UNIT_SUFFIX, '')) : inSentence(title);
 	});

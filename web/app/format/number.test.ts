@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { formatInterval, formatPValue, formatCount, formatEstimate, formatNumber, formatPercent, formatQuantity, scaleFor, formatAllDigits } from './number';
+import { formatChange, parseNumber, formatInterval, formatPValue, formatCount, formatEstimate, formatNumber, formatPercent, formatQuantity, scaleFor, formatAllDigits } from './number';
 
 describe('numbers as an instrument shows them', () => {
 	it.each([
@@ -17,6 +17,13 @@ describe('numbers as an instrument shows them', () => {
 		expect([0.0406, 177.8, 1.2e-5, 45, -0.5, 31.41592653589793].map(formatAllDigits)).toEqual(['0.0406', '177.8', '1.2·10⁻⁵', '45', '−0.5', '31.41593']);
 	});
 
+	it('reads what users type and files contain', () => {
+		expect(['0,5', ' −1.2 ', '-3e−5', '7'].map(parseNumber)).toEqual([0.5, -1.2, -3e-5, 7]);
+		expect(['', '  ', '1,2,3', 'n/a', '1.2.3'].map(parseNumber)).toEqual(Array.from({ length: 5 }, () => Number.NaN));
+	});
+	it('has no sign before a change of nothing', () => {
+		expect([0.0004, -0.0004, 0, 0.003, 0.17, -0.83].map(formatChange)).toEqual(['0.0 %', '0.0 %', '0.0 %', '+0.3 %', '+17 %', '−83 %']);
+	});
 	it('has no minus before a share of nothing', () => {
 		expect([-0.0004, 0.0004, -0.04].map((share) => formatPercent(share, 1))).toEqual(['0.0 %', '0.0 %', '−4.0 %']);
 	});

@@ -2,6 +2,15 @@
 
 const MINUS = '−';
 
+/** A number as text with a decimal comma or a true minus sign, in the notation of the daemon. */
+export const plainNumber = (text: string): string => text.trim().replace(',', '.').replaceAll(MINUS, '-');
+
+/** A number as typed by a user or read from a file. NaN for any other text. */
+export function parseNumber(text: string): number {
+	const plain = plainNumber(text);
+	return plain === '' ? Number.NaN : Number(plain);
+}
+
 /** `digits` significant digits, no exponent from `least` to 1e6. */
 export function formatNumber(value: number | null | undefined, digits = 4, least = 1e-4): string {
 	if (value == null || !Number.isFinite(value)) return '–';
@@ -12,7 +21,7 @@ export function formatNumber(value: number | null | undefined, digits = 4, least
 	return value.toFixed(Math.min(decimals, 8)).replace('-', MINUS);
 }
 
-function exponent(value: number, decimals: number): string {
+function exponent(value: number, decimals?: number): string {
 	const [mantissa = '', power = ''] = value.toExponential(decimals).split('e');
 	return `${mantissa.replace('-', MINUS)}·10${superscript(Number(power))}`;
 }
@@ -22,13 +31,12 @@ export function formatAllDigits(value: number): string {
 	const own = Number(value.toPrecision(7));
 	const size = Math.abs(own);
 	if (size === 0 || (size >= 1e-4 && size < 1e6)) return String(own).replace('-', MINUS);
-	const [mantissa = '', power = ''] = own.toExponential().split('e');
-	return `${mantissa.replace('-', MINUS)}·10${superscript(Number(power))}`;
+	return exponent(own);
 }
 
 const RAISED = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 
-export function superscript(power: number): string {
+function superscript(power: number): string {
 	const digits = String(Math.abs(power)).replace(/\d/g, (digit) => RAISED[Number(digit)] ?? '');
 	return power < 0 ? `⁻${digits}` : digits;
 }
@@ -81,8 +89,11 @@ export function formatPercent(share: number, digits = 0): string {
 	return `${Number(text) === 0 ? text.replace('-', '') : text.replace('-', MINUS)} %`;
 }
 
-/** Relative change: `+0.3 %`, `−83 %`. */
-export const formatChange = (share: number) => (share >= 0 ? '+' : '') + formatPercent(share, Math.abs(share) < 0.1 ? 1 : 0);
+/** Relative change: `+0.3 %`, `−83 %`; a change that rounds to zero has no sign. */
+export function formatChange(share: number): string {
+	const text = formatPercent(share, Math.abs(share) < 0.1 ? 1 : 0);
+	return share > 0 && Number.parseFloat(text) > 0 ? `+${text}` : text;
+}
 
 /** `1 step`, `1,204 steps` */
 export function formatCount(n: number, one: string): string {

@@ -1,7 +1,7 @@
 import type { Scale } from './number';
 
 /** Display unit of speeds. Other units are unchanged. */
-export const RPM_PER_RAD_S = 30 / Math.PI;
+const RPM_PER_RAD_S = 30 / Math.PI;
 
 export function speedScale(unit: string, rpm: boolean): Scale {
 	return rpm && unit === 'rad/s' ? { factor: RPM_PER_RAD_S, unit: 'rpm' } : { factor: 1, unit };

@@ -1,3 +1,5 @@
+import { parseNumber } from '../format/number';
+
 /** Set-points over time: pairs of a time in s and a value. */
 export type Curve = [number, number][];
 
@@ -14,7 +16,7 @@ export function parseCurve(text: string): { points: Curve; error: string | null 
 	for (const [index, line] of lines.entries()) {
 		if (line.trim() === '' || line.trim().startsWith('#')) continue;
 		const cells = line.trim().split(/;|\t/.test(line) ? /\s*[;\t]\s*/ : /\s*,\s*|\s+/);
-		const [time, value] = cells.slice(0, 2).map((cell) => (cell === '' ? Number.NaN : Number(cell.replace(',', '.').replace('−', '-'))));
+		const [time, value] = cells.slice(0, 2).map(parseNumber);
 		if (time !== undefined && value !== undefined && Number.isFinite(time) && Number.isFinite(value)) points.push([time, value]);
 		else if (points.length > 0) return { points, error: `line ${index + 1}: two numbers are needed, time in s and value` };
 	}

@@ -1,4 +1,4 @@
-import { formatAllDigits } from '../format/number';
+import { formatAllDigits, parseNumber } from '../format/number';
 import type { ProcedureParameter } from '../api/types';
 import { isCurve } from './curve';
 
@@ -8,10 +8,9 @@ export interface ParsedValue {
 	error: string | null;
 }
 
-/** Converts the user's text to the number of the procedure. A decimal comma is accepted. */
+/** Converts the user's text to the number of the procedure. */
 export function parseValue({ type, min, max }: ProcedureParameter, text: string): ParsedValue {
-	const plain = text.trim().replace(',', '.');
-	const value = plain === '' ? Number.NaN : Number(plain);
+	const value = parseNumber(text);
 	return { value, error: wrong() };
 
 	function wrong(): string | null {

@@ -1,7 +1,7 @@
 import type { NewRun } from '../api/types';
 
 /** The fields of the unit under test in the start form, in the order of Enter. */
-export const UNIT_FIELDS = ['serial', 'part', 'revision', 'batch', 'operator'] as const;
+const UNIT_FIELDS = ['serial', 'part', 'revision', 'batch', 'operator'] as const;
 export type UnitField = (typeof UNIT_FIELDS)[number];
 export type UnitTexts = Record<UnitField, string>;
 
@@ -9,8 +9,8 @@ export type UnitTexts = Record<UnitField, string>;
 export const MAX_LENGTH = 80;
 
 const STORAGE_KEY = 'jointbench.unit';
-/** Every unit has another serial number, so the browser does not store it. */
-const STORED = UNIT_FIELDS.filter((field) => field !== 'serial');
+/** The folded fields. The browser stores them, but no serial number, because every unit has another one. */
+export const DETAIL_FIELDS = UNIT_FIELDS.filter((field) => field !== 'serial');
 
 export function loadUnitTexts(storage: Pick<Storage, 'getItem'>): UnitTexts {
 	let stored: Record<string, unknown> = {};
@@ -24,7 +24,7 @@ export function loadUnitTexts(storage: Pick<Storage, 'getItem'>): UnitTexts {
 }
 
 export function saveUnitTexts(texts: UnitTexts, storage: Pick<Storage, 'setItem'>): void {
-	storage.setItem(STORAGE_KEY, JSON.stringify(Object.fromEntries(STORED.map((field) => [field, texts[field]]))));
+	storage.setItem(STORAGE_KEY, JSON.stringify(Object.fromEntries(DETAIL_FIELDS.map((field) => [field, texts[field]]))));
 }
 
 /** The field that Enter moves to. Enter in the last field stays there: a scanner may send it twice, and no run must start. */
@@ -41,5 +41,5 @@ export function unitOf(texts: UnitTexts): Pick<NewRun, 'unit' | 'operator'> {
 
 /** The folded fields in a line. */
 export function foldedText(texts: UnitTexts): string {
-	return STORED.flatMap((field) => (texts[field].trim() ? [`${field} ${texts[field].trim()}`] : [])).join(' · ') || 'Part, revision, batch, operator';
+	return DETAIL_FIELDS.flatMap((field) => (texts[field].trim() ? [`${field} ${texts[field].trim()}`] : [])).join(' · ') || 'Part, revision, batch, operator';
 }

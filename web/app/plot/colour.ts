@@ -30,7 +30,7 @@ export function curveStyle(i: number): { stroke: string; dash: number[] } {
 	return { stroke, dash };
 }
 
-export function rgb(hex: string): [number, number, number] {
+function rgb(hex: string): [number, number, number] {
 	const value = Number.parseInt(hex.replace('#', ''), 16);
 	return [(value >> 16) & 255, (value >> 8) & 255, value & 255];
 }

@@ -1,5 +1,5 @@
 import type { CampaignPart, Identification, IdentifiedQuantity, LimitCheck } from '../api/types';
-import { type Scale, formatInterval, formatEstimate, formatNumber, prefixSize, scaleFor } from '../format/number';
+import { type Scale, formatAllDigits, formatInterval, formatEstimate, formatNumber, prefixSize, scaleFor } from '../format/number';
 import type { StatusLabel } from '../ui/states';
 
 const VERDICTS: Record<Identification['verdict'], StatusLabel> = {
@@ -35,6 +35,9 @@ export function resultVerdict({ verdict, passes, summary, lead, parts = [] }: Pi
 	return { ...VERDICTS[verdict], text: parts.length > 0 ? (lead ?? summary) : summary };
 }
 
+/** A value without an interval. A count has no decimals. */
+export const formatWithoutInterval = (value: number, unit: string, digits = 4): string => (unit === '' && Number.isInteger(value) ? formatAllDigits(value) : formatNumber(value, digits));
+
 /**
  * A quantity with one prefix for value and interval: `32.1 ± 0.4 µNm·s/rad`; an asymmetric interval is given by its
  * ends.
@@ -44,7 +47,7 @@ export function formatResult(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci
 	const [low, high] = (of.ci95 ?? []).map((end) => end * shown.factor);
 	if (low === undefined || high === undefined) {
 		const scale = scaleFor(unit, value);
-		return { value: unit === '' && Number.isInteger(value) ? String(value) : formatEstimate(value * scale.factor, []), interval: '', unit: scale.unit };
+		return { value: formatWithoutInterval(value * scale.factor, scale.unit), interval: '', unit: scale.unit };
 	}
 	const scale = scaleFor(unit, prefixSize(value, [low, high]));
 	const scaled = [low * scale.factor, high * scale.factor] as const;
@@ -57,6 +60,9 @@ export function formatResult(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci
 		unit: scale.unit,
 	};
 }
+
+/** Title of a quantity without its configuration: equal in all runs, also where a title contains a measured speed. */
+export const baseTitle = ({ base_title, title }: Pick<IdentifiedQuantity, 'base_title' | 'title'>): string => base_title ?? title;
 
 /** Results for several directions, methods or speeds. */
 export interface ResultTable {
@@ -72,13 +78,13 @@ const withoutDirection = (symbol: string) => symbol.replace(/[⁺⁻]$/, '');
 export function configurationTable(quantities: readonly IdentifiedQuantity[]): ResultTable | null {
 	const byTitle = new Map<string, IdentifiedQuantity[]>();
 	for (const one of quantities.filter(({ configuration }) => configuration)) {
-		const key = `${withoutDirection(one.symbol)} ${one.base_title ?? one.title}`;
+		const key = `${withoutDirection(one.symbol)} ${baseTitle(one)}`;
 		byTitle.set(key, [...(byTitle.get(key) ?? []), one]);
 	}
 	const groups = [...byTitle];
 	const configurations = (groups.toSorted(([, a], [, b]) => b.length - a.length)[0]?.[1] ?? []).flatMap(({ configuration }) => configuration ?? []);
 	const hasEach = (of: IdentifiedQuantity[]) => of.length === configurations.length && of.every((one, i) => one.configuration === configurations[i]);
-	const rows = groups.filter(([, of]) => hasEach(of)).map(([key, of]) => ({ key, symbol: withoutDirection(of[0]!.symbol), title: of[0]!.base_title ?? of[0]!.title, of }));
+	const rows = groups.filter(([, of]) => hasEach(of)).map(([key, of]) => ({ key, symbol: withoutDirection(of[0]!.symbol), title: baseTitle(of[0]!), of }));
 	return configurations.length > 1 && rows.length > 1 ? { configurations, rows } : null;
 }
 
@@ -89,7 +95,7 @@ export interface Part extends Omit<CampaignPart, 'quantities' | 'figures'> {
 }
 
 /** A quantity below the title of its part does not repeat it. */
-const withoutPart = (one: IdentifiedQuantity): IdentifiedQuantity => ({ ...one, title: [one.base_title ?? one.title, one.configuration].filter(Boolean).join(', ') });
+const withoutPart = (one: IdentifiedQuantity): IdentifiedQuantity => ({ ...one, title: [baseTitle(one), one.configuration].filter(Boolean).join(', ') });
 
 export function campaignParts({ quantities, figures, parts = [] }: Pick<Identification, 'quantities' | 'figures' | 'parts'>): Part[] {
 	return parts.map((part) => ({

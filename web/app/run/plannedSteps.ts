@@ -81,7 +81,7 @@ const PLANNED = [
 	['brake_current_a', 'brake_current_command_a'],
 ] as const;
 
-export const SET_POINT = 'set point';
+const SET_POINT = 'set point';
 
 /** Set-points of the plan for these channels, in the displayed unit. */
 export function setPointLines(plan: Preview | undefined, made: readonly ExecutedStep[], names: readonly string[], { factor }: Scale): BackdropLine[] {

@@ -1,3 +1,5 @@
+import { toggled } from '../state/toggled';
+
 /** Compared runs, as in the address: `compare=12,9`. More than six curves are not distinguishable. */
 export const MAX_COMPARED = 6;
 export const COMPARE_LIMIT = `2 to ${MAX_COMPARED} runs can be compared`;
@@ -11,8 +13,8 @@ export function readComparedRuns(text: string | null): number[] {
 export const withBase = (marked: readonly number[], id: number): number[] => [id, ...marked.filter((one) => one !== id)];
 
 export function toggleComparedRun(marked: readonly number[], id: number): number[] {
-	if (marked.includes(id)) return marked.filter((one) => one !== id);
-	return marked.length < MAX_COMPARED ? [...marked, id] : [...marked];
+	const next = toggled(marked, id);
+	return next.length <= MAX_COMPARED ? next : [...marked];
 }
 
 /** The workbench with one model of all runs; the first run stores it. */

@@ -10,8 +10,11 @@ export interface Estimate {
 export function changeFrom(base: Estimate | null, one: Estimate | null, factor = 1): string {
 	if (!base || !one || base.value === 0) return '';
 	const grown = one.value - base.value;
-	return Math.abs(base.value) < (halfWidth(base) ?? 0) ? `${grown >= 0 ? '+' : ''}${formatNumber(grown * factor, 2)}` : formatChange(grown / Math.abs(base.value));
+	return mayBeZero(base) ? `${grown >= 0 ? '+' : ''}${formatNumber(grown * factor, 2)}` : formatChange(grown / Math.abs(base.value));
 }
+
+/** A change relative to such a value has no meaning. */
+export const mayBeZero = (base: Estimate): boolean => Math.abs(base.value) < (halfWidth(base) ?? 0);
 
 function halfWidth({ ci95 }: Estimate): number | null {
 	const [low, high] = ci95 ?? [];

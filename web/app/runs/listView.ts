@@ -1,5 +1,6 @@
 import type { IdentifiedQuantity, RunSummary, Table } from '../api/types';
 import { withQuery } from '../state/route';
+import { toggled } from '../state/toggled';
 
 /**
  * Columns of the list in addition to the number and state of a run and to quantities of its result. The user selects
@@ -24,8 +25,7 @@ export function readHidden(address: string | null, kept: Pick<Storage, 'getItem'
 
 /** Shows or hides a column and stores it. Returns the value for the address. */
 export function toggleColumn(hidden: readonly Column[], column: Column, kept: Pick<Storage, 'setItem'>): string {
-	const next = hidden.includes(column) ? hidden.filter((one) => one !== column) : [...hidden, column];
-	const text = next.join(',') || 'none';
+	const text = toggled(hidden, column).join(',') || 'none';
 	kept.setItem(HIDDEN, text);
 	return text;
 }
@@ -38,7 +38,7 @@ export function readQuantities(address: string | null, kept: Pick<Storage, 'getI
 
 /** Adds or removes a column and stores it. Returns the value for the address. */
 export function toggleQuantity(shown: readonly string[], name: string, kept: Pick<Storage, 'setItem'>): string {
-	const text = (shown.includes(name) ? shown.filter((one) => one !== name) : [...shown, name]).join() || 'none';
+	const text = toggled(shown, name).join(',') || 'none';
 	kept.setItem(QUANTITIES, text);
 	return text;
 }
@@ -120,8 +120,7 @@ function savedView(line: string): string {
 export const readSavedViews = (kept: Pick<Storage, 'getItem'>): string[] => [...new Set((kept.getItem(VIEWS) ?? '').split('\n').filter(Boolean).map(savedView))];
 
 export function toggleSavedView(view: string, kept: Pick<Storage, 'getItem' | 'setItem'>): void {
-	const views = readSavedViews(kept);
-	kept.setItem(VIEWS, (views.includes(view) ? views.filter((one) => one !== view) : [...views, view]).join('\n'));
+	kept.setItem(VIEWS, toggled(readSavedViews(kept), view).join('\n'));
 }
 
 const FIELDS = ['id', 'state', 'procedure', 'kind', 'bench', 'simulated', 'created_at', 'duration_s', 'rows', 'safe', 'reason', 'tags', 'note'] as const;

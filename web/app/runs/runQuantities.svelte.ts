@@ -2,8 +2,9 @@ import { api } from '../api/client';
 import { ApiError } from '../api/apiError';
 import type { RunSummary } from '../api/types';
 import { formatCount } from '../format/number';
+import { parameterSymbol } from '../format/symbol';
 import { lab } from '../state/lab.svelte';
-import { resource } from '../state/resource.svelte';
+import { RELOAD_MS, reloadWhile, resource } from '../state/resource.svelte';
 import { router } from '../state/router.svelte';
 import { readQuantities, toggleQuantity } from './listView';
 import { type Results, idRanges, ofModel, quantitiesOf, repetition, withAnswer } from './resultRequests';
@@ -11,7 +12,6 @@ import { trendQuantities } from './trendFigure';
 
 /** Results of complete runs do not change, so each is requested once. */
 let known: Results = $state.raw(new Map());
-const AGAIN_MS = 1000;
 
 const hasResult = ({ state, procedure }: RunSummary) => state === 'completed' && procedure !== 'import';
 const unknownOf = (runs: readonly RunSummary[]) => [...new Set(runs.filter(hasResult).map(({ id }) => id))].filter((id) => !known.has(id));
@@ -34,7 +34,7 @@ export async function allQuantities(runs: readonly RunSummary[]): Promise<Result
 		const pending = await request(ids);
 		const left = unknownOf(runs);
 		if (left.length > 0 && !isRepeated(left, pending)) throw new ApiError({ detail: `Nothing is exported: the results of ${formatCount(left.length, 'run')} are not computed yet.` });
-		if (left.length === ids.length) await new Promise((done) => setTimeout(done, AGAIN_MS));
+		if (left.length === ids.length) await new Promise((done) => setTimeout(done, RELOAD_MS));
 		ids = left;
 	}
 	return new Map(runs.map((run) => [run.id, quantitiesOf(known, run)]));
@@ -55,15 +55,11 @@ export function quantityColumns(visible: () => readonly RunSummary[]) {
 			return isRepeated(unknownOf(visible()), pending);
 		},
 	);
-	$effect(() => {
-		if (!requested.data || requested.loading || requested.error) return;
-		const again = setTimeout(requested.reload, AGAIN_MS);
-		return () => clearTimeout(again);
-	});
+	reloadWhile(requested, () => requested.data === true && requested.error === null);
 	/** Of all runs that were visible, so that a column keeps its title. */
 	const available = $derived(trendQuantities([...known.values(), ...visible().map(ofModel)]));
 	const names = $derived(readQuantities(router.query.get('columns'), localStorage));
-	const shown = $derived(names.map((name) => available.find((one) => one.name === name) ?? { name, title: name, base_title: name, symbol: '' }));
+	const shown = $derived(names.map((name) => available.find((one) => one.name === name) ?? { name, title: name, base_title: name, symbol: parameterSymbol(name) }));
 	return {
 		requested,
 		get shown() {
@@ -73,6 +69,7 @@ export function quantityColumns(visible: () => readonly RunSummary[]) {
 			return available.filter(({ name }) => !names.includes(name));
 		},
 		toggle: (name: string) => router.set({ columns: toggleQuantity(names, name, localStorage) }),
+		isPending: (run: RunSummary) => hasResult(run) && !known.has(run.id),
 		of: (run: RunSummary, name: string) => quantitiesOf(known, run).find((one) => one.name === name),
 	};
 }

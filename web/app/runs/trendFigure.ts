@@ -2,6 +2,7 @@ import type { IdentifiedQuantity, Trends } from '../api/types';
 import type { Figure, Series } from '../figure/figure';
 import type { Scale } from '../format/number';
 import { formatDateTime } from '../format/time';
+import { baseTitle } from '../result/presentation';
 
 export const AXES = ['run', 'time', 'temperature', 'unit', 'bench', 'tag'] as const;
 export type TrendAxis = (typeof AXES)[number];
@@ -20,9 +21,6 @@ export interface TrendQuantity {
 	/** Number of runs with this quantity. */
 	n: number;
 }
-
-/** Title of a quantity without its configuration: equal in all runs, also where a title contains a measured speed. */
-export const baseTitle = ({ base_title, title }: Pick<IdentifiedQuantity, 'base_title' | 'title'>): string => base_title ?? title;
 
 /**
  * Every quantity of at least one run, the most frequent first. Runs may use one name for two quantities: the title is

@@ -13,7 +13,7 @@ import { role } from './role.svelte';
 /** After this time without a message the page sends a request. */
 const QUIET_MS = 1500;
 /** After this time without a message the contact is lost. */
-export const STALE_MS = 4000;
+const STALE_MS = 4000;
 
 /** Feeds of ended runs that stay in memory. */
 const MOST_FEEDS = 2;
@@ -69,6 +69,11 @@ class LabState {
 	updateBench(bench: Bench): void {
 		this.reported_ms.set(bench, performance.now());
 		this.benches = withBench(this.benches ?? [], bench);
+	}
+
+	/** The bench of a run, else the bench of the pages. */
+	benchOf(run: { bench: string } | undefined): Bench | null {
+		return this.benches?.find(({ name }) => name === run?.bench) ?? this.bench;
 	}
 
 	start(): () => void {

@@ -1,9 +1,11 @@
 import { api } from '../api/client';
-import { idText } from '../format/label';
+import type { ProcedureParameter } from '../api/types';
+import { axisTitle, idText } from '../format/label';
 
-/** Titles of the procedures by id, as in the form that starts them. */
+/** Titles of the procedures and of their settings, as in the form that starts them. */
 class ProcedureTitles {
 	private titles: Record<string, string> = $state.raw({ import: 'Import' });
+	private parameters: Record<string, readonly ProcedureParameter[]> = $state.raw({});
 	private isRequested = false;
 
 	/** Requests the titles once; a failed request is repeated with the next contact. */
@@ -13,9 +15,16 @@ class ProcedureTitles {
 		try {
 			const procedures = await api.procedures();
 			this.titles = { ...this.titles, ...Object.fromEntries(procedures.map(({ id, title }) => [id, title])) };
+			this.parameters = Object.fromEntries(procedures.map(({ id, parameters }) => [id, parameters]));
 		} catch {
 			this.isRequested = false;
 		}
+	}
+
+	/** A setting with its unit, as in the form; the name in words for any other fact of a run. */
+	setting(procedure: string, name: string): string {
+		const field = this.parameters[procedure]?.find((one) => one.name === name);
+		return field ? [field.title, field.unit && `[${field.unit}]`].filter(Boolean).join(' ') : axisTitle(name);
 	}
 
 	/** The id in words until the titles are there, and for a procedure that the daemon no longer has. */

@@ -20,32 +20,44 @@ export function resource<K, T>(key: () => K | null, load: (key: K, signal: Abort
 	let loading = $state(false);
 	let turn = $state(0);
 
+	let abort = new AbortController();
+	let present: { key: K; turn: number } | null = null;
+
 	$effect(() => {
 		void turn;
 		const wanted = key();
+		untrack(() => request(wanted));
+	});
+	$effect(() => () => abort.abort());
+
+	function request(wanted: K | null): void {
+		// What the key reads may change without the key. A failed request is repeated then.
+		if (present?.key === wanted && present.turn === turn && error === null) return;
+		abort.abort();
+		abort = new AbortController();
+		present = wanted === null ? null : { key: wanted, turn };
 		if (wanted === null) {
 			data = undefined;
 			error = null;
 			loading = false;
 			return;
 		}
-		const abort = new AbortController();
+		const { signal } = abort;
 		loading = true;
-		untrack(() => load(wanted, abort.signal)).then(
+		load(wanted, signal).then(
 			(value) => {
-				if (abort.signal.aborted) return;
+				if (signal.aborted) return;
 				data = value;
 				error = null;
 				loading = false;
 			},
 			(failure: unknown) => {
-				if (abort.signal.aborted) return;
+				if (signal.aborted) return;
 				error = toApiError(failure);
 				loading = false;
 			},
 		);
-		return () => abort.abort();
-	});
+	}
 
 	return {
 		get data() {
@@ -66,4 +78,18 @@ export function resource<K, T>(key: () => K | null, load: (key: K, signal: Abort
 			error = null;
 		},
 	};
+}
+
+/** Pause before a request for what was not computed yet. */
+export const RELOAD_MS = 1000;
+
+/**
+ * Requests a resource again after a pause while its answer is incomplete. Call during component initialization.
+ */
+export function reloadWhile(source: Pick<Resource<unknown>, 'loading' | 'reload'>, isIncomplete: () => boolean): void {
+	$effect(() => {
+		if (source.loading || !isIncomplete()) return;
+		const timer = setTimeout(source.reload, RELOAD_MS);
+		return () => clearTimeout(timer);
+	});
 }

@@ -1,5 +1,6 @@
 import type { Gesture } from '../plot/gestures';
 import { type Route, parseRoute, withQuery } from './route';
+import { toggled } from './toggled';
 
 /**
  * A browser accepts 200 changes of the address in ten seconds; a wheel makes more. Only the last change in this time is
@@ -43,6 +44,16 @@ class Router {
 		const wait_ms = this.replaced_ms + REST_MS - performance.now();
 		if (wait_ms <= 0) this.write();
 		else this.pendingWrite ??= setTimeout(() => this.write(), wait_ms);
+	}
+
+	/** Names in the address, separated by commas. */
+	list(key: string): string[] {
+		return this.query.get(key)?.split(',').filter(Boolean) ?? [];
+	}
+
+	/** Adds a name to a list in the address, or removes it. */
+	toggle(key: string, name: string): void {
+		this.set({ [key]: toggled(this.list(key), name).join(',') });
 	}
 
 	private moved_ms = Number.NEGATIVE_INFINITY;

@@ -4,16 +4,10 @@ import type { Table } from '../api/types';
 import { pngFile, svgFile } from '../figure/exportImage';
 import { router } from '../state/router.svelte';
 
-const tableFiles = () => router.query.get('table')?.split(',').filter((one) => one !== '') ?? [];
-
 /** Plots that are displayed as tables; the address stores their names. */
-export const isShownAsTable = (file: string | undefined): boolean => file !== undefined && tableFiles().includes(file);
+export const isShownAsTable = (file: string): boolean => router.list('table').includes(file);
 
-export function tableToggleItem(file: string | undefined) {
-	const table = isShownAsTable(file);
-	const turn = () => router.set({ table: (table ? tableFiles().filter((one) => one !== file) : [...tableFiles(), file]).join(',') || null });
-	return { name: table ? 'View as plot' : 'View as table', run: turn };
-}
+export const tableToggleItem = (file: string) => ({ name: isShownAsTable(file) ? 'View as plot' : 'View as table', run: () => router.toggle('table', file) });
 
 /** Without loopback or TLS, a browser blocks access to its clipboard. */
 export const linkItems = () => (navigator.clipboard ? [{ name: 'Copy the link to this view', run: () => void navigator.clipboard.writeText(location.href) }] : []);

@@ -33,8 +33,9 @@ export function stateLabel(state: string): StatusLabel {
 	return STATES[state] ?? { label: state.replaceAll('_', ' ').toUpperCase(), icon: '?', tone: 'warn' };
 }
 
-const FINAL = new Set(['completed', 'stopped', 'aborted', 'failed', 'interrupted']);
+const EARLY_ENDS = ['stopped', 'aborted', 'failed', 'interrupted'];
+export const FINAL_STATES = ['completed', ...EARLY_ENDS];
 
-export function isFinal(state: string): boolean {
-	return FINAL.has(state);
-}
+export const isFinal = (state: string): boolean => FINAL_STATES.includes(state);
+/** The run ended before its last step. */
+export const isEarlyEnd = (state: string): boolean => EARLY_ENDS.includes(state);

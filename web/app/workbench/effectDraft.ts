@@ -1,5 +1,5 @@
 import type { EffectCheck, EffectDefinition, FormulaPosition } from '../api/types';
-import { formatChange, formatQuantity } from '../format/number';
+import { formatChange, formatQuantity, parseNumber } from '../format/number';
 import { classifyGain, gainText } from './versionTree';
 
 /** One parameter as typed by the user. */
@@ -29,10 +29,7 @@ export function effectId(title: string): string {
 }
 
 /** A bound as typed; `null` for an empty text, NaN for an invalid number. */
-function bound(text: string): number | null {
-	const plain = text.trim().replace(',', '.');
-	return plain === '' ? null : Number(plain);
-}
+const bound = (text: string): number | null => (text.trim() === '' ? null : parseNumber(text));
 
 /** The first error that the page finds itself, before a request to the daemon. */
 export function draftError(draft: EffectDraft): string | null {

@@ -1,4 +1,5 @@
 import type { Fit, ParameterSetting } from '../api/types';
+import { parseNumber } from '../format/number';
 
 /** The values of the editor as text, in the displayed unit. */
 export interface SettingDraft {
@@ -35,10 +36,10 @@ export function settingDraft(setting: ParameterSetting | undefined, value: numbe
 export function readDraft(draft: SettingDraft, of: Named, factor: number): ParameterSetting | null | { invalid: keyof SettingDraft } {
 	const setting: ParameterSetting = { effect: of.effect, name: of.name };
 	for (const field of draft.isFixed ? (['fixed', 'min', 'max'] as const) : (['min', 'max', 'start'] as const)) {
-		const text = draft[field].trim().replace('−', '-');
+		const text = draft[field].trim();
 		if (text === '' && field !== 'fixed') continue;
-		const value = Number(text) / factor;
-		if (text === '' || !Number.isFinite(value)) return { invalid: field };
+		const value = parseNumber(text) / factor;
+		if (!Number.isFinite(value)) return { invalid: field };
 		setting[field] = value;
 	}
 	return Object.keys(setting).length > 2 ? setting : null;

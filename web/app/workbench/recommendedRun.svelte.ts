@@ -17,8 +17,7 @@ export function recommendedRun(workbench: Workbench) {
 		() => `${lab.autopilots} ${lab.connected}`,
 		(_key, signal) => api.autopilots(signal),
 	);
-	/** The bench of the run, else the current bench. */
-	const bench = $derived(lab.benches?.find((one) => one.name === workbench.run.data?.bench) ?? lab.bench);
+	const bench = $derived(lab.benchOf(workbench.run.data));
 	const diagnosis = $derived(workbench.diagnosisIsCurrent ? (workbench.diagnosis.data?.id ?? null) : null);
 	const autopilot = $derived(diagnosis === null ? null : (autopilots.data?.find((one) => requestedDiagnosis(one) === diagnosis) ?? null));
 

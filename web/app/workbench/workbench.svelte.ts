@@ -3,7 +3,7 @@ import { api } from '../api/client';
 import { type ApiError, toApiError } from '../api/apiError';
 import type { Exclusion, Model, ParameterSetting, Run } from '../api/types';
 import { formatChange, formatQuantity } from '../format/number';
-import { idText } from '../format/label';
+import { effectTitle } from '../format/label';
 import { parameterSymbol } from '../format/symbol';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
@@ -99,7 +99,7 @@ export function openWorkbench(id: number) {
 	const isOwn = (effect: string) => effects.data?.some((one) => one.id === effect && one.definition) ?? false;
 	/** The symbol of a parameter; a user's effect has the names of its formula. */
 	const symbolOf = ({ effect, name }: { effect: string; name: string }) => (isOwn(effect) ? name : parameterSymbol(name));
-	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? idText(effect);
+	const titleOf = (effect: string) => effectTitle(effects.data, effect);
 
 	/** One fit at a time; its result is a version. */
 	async function runFit(what: string, fit: () => Promise<Model>): Promise<Model | null> {
