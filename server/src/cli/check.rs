@@ -4,9 +4,10 @@ use super::arguments::Check;
 use super::exit::{Done, Exit};
 use super::serve::describe;
 use crate::bench::{InstrumentCheck, check_instruments, reach};
-use crate::config::{BenchDescription, Description, READY_MADE, unread};
+use crate::config::{BenchDescription, Description, READY_MADE, S3, unread};
 use jiff::Zoned;
 use jointbench_instrument::roles::Identity;
+use std::path::Path;
 
 /// The usual interval between two calibrations.
 const LONG_AGO_DAYS: i32 = 366;
@@ -28,7 +29,8 @@ pub fn check(arguments: &Check) -> Done {
         println!("notify {} ({}): description is valid", target.name, target.channel.kind());
     }
     if let Some(archive) = &archive {
-        let folder = if archive.folder.is_dir() { "" } else { ", but its folder does not exist" };
+        let is_there = archive.folder.starts_with(S3) || Path::new(&archive.folder).is_dir();
+        let folder = if is_there { "" } else { ", but its folder does not exist" };
         println!("archive {}: description is valid{folder}", archive.url);
     }
     let not_ready: usize = benches.iter().map(check_bench).sum();

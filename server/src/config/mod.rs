@@ -12,7 +12,7 @@ mod secret;
 mod tests;
 mod values;
 
-pub use archive::{Archive, ArchiveContent};
+pub use archive::{Archive, ArchiveContent, NO_S3, S3};
 pub use error::{ConfigError, ConfigErrors};
 pub use notify::{Channel, Notify, NotifyEvent, NotifyTarget, Server, SigningKey};
 pub use secret::{Secret, read_secret};

@@ -320,15 +320,12 @@ fn an_archive_is_a_folder() {
     let bench = "[[bench]]\nname = \"a\"\nmock.joint = \"a\"\n";
     let archive = |lines: &str| super::parse("b.toml", &format!("{bench}[archive]\n{lines}\n"));
     let given = archive("url = \"file:///srv/joint%20bench\"").unwrap().archive.unwrap();
-    assert_eq!((given.folder.as_path(), given.raw), (std::path::Path::new("/srv/joint bench"), false));
+    assert_eq!((given.folder.as_str(), given.raw), ("/srv/joint bench", false));
     assert_eq!(given.contents().len(), 1);
     assert!(archive("url = \"file:///srv/jointbench\"\nraw = true").unwrap().archive.unwrap().raw);
     assert_eq!(super::parse("b.toml", bench).unwrap().archive, None);
     for (lines, expected) in [
-        (
-            "url = \"s3://bucket/joint\"",
-            "line 5: archive.url \"s3://bucket/joint\": an archive at s3:// is not supported",
-        ),
+        ("url = \"gs://bucket/joint\"", "line 5: archive.url: an archive at gs:// is not supported"),
         ("url = \"/srv/jointbench\"", "line 5: archive.url \"/srv/jointbench\": write file:// and an absolute path"),
         ("url = \"file://host/srv\"", "write file:// and an absolute path"),
         ("url = \"file:///\"", "write file:// and an absolute path"),
@@ -336,5 +333,28 @@ fn an_archive_is_a_folder() {
     ] {
         let message = archive(lines).unwrap_err().to_string();
         assert!(message.contains(expected), "{expected} in\n{message}");
+    }
+}
+
+#[test]
+fn an_archive_in_a_bucket_needs_the_feature() {
+    let bench = "[[bench]]\nname = \"a\"\nmock.joint = \"a\"\n";
+    let archive = |url: &str| super::parse("b.toml", &format!("{bench}[archive]\nurl = \"{url}\"\n"));
+    let given = archive("s3://bucket/lab-1");
+    assert_eq!(given.is_ok(), cfg!(feature = "s3"));
+    match given {
+        Ok(given) => assert_eq!(given.archive.unwrap().folder, "s3://bucket/lab-1"),
+        Err(fault) => {
+            let expected = "b.toml, line 5: archive.url \"s3://bucket/lab-1\": this build of jointbench has no object \
+                storage: build it with `--features s3`";
+            assert!(fault.to_string().contains(expected), "{fault}");
+        }
+    }
+    for wrong in ["s3://", "s3://key:secret@bucket", "s3://bucket/", "s3://bucket//a", "s3://bucket/../a"] {
+        let message = archive(wrong).unwrap_err().to_string();
+        assert!(
+            message.contains("line 5: archive.url: write s3://BUCKET or") && !message.contains("secret"),
+            "{message}"
+        );
     }
 }

@@ -75,13 +75,13 @@ pub struct ExportRequest {
 pub struct ArchiveRequest {
     pub run: i64,
     pub content: ArchiveContent,
-    pub folder: PathBuf,
+    pub folder: String,
 }
 
 /// A file of the archive, to be compared with its digest.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ArchivedFile {
-    pub folder: PathBuf,
+    pub folder: String,
     pub path: String,
     pub sha256: String,
 }

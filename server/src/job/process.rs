@@ -116,7 +116,7 @@ impl Jobs {
         let request = Request { data: inner.data.clone(), limits: inner.limits, job };
         let mut line = serde_json::to_vec(&request).map_err(|fault| LabError::Internal(fault.to_string()))?;
         line.push(b'\n');
-        let mut process = Process::spawn(inner, turn)?;
+        let mut process = Process::spawn(inner, turn, job.queue())?;
         process.ask(&line).await?;
         Ok(process)
     }
@@ -136,15 +136,20 @@ struct Process {
 }
 
 impl Process {
-    fn spawn(inner: &Inner, turn: Turn) -> Result<Process, LabError> {
+    fn spawn(inner: &Inner, turn: Turn, queue: Queue) -> Result<Process, LabError> {
         let mut command = Command::new(&inner.program);
         #[cfg(unix)]
         command.arg0("jointbench");
-        let piped = command.arg("job").stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        // The environment may contain tokens.
-        let spawned = piped.env_clear().kill_on_drop(true).spawn();
-        let mut child =
-            spawned.map_err(|fault| LabError::Internal(format!("the computation cannot be started: {fault}")))?;
+        command.arg("job").stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        // The environment may contain tokens. Object storage needs its own ones.
+        command.env_clear();
+        if queue == Queue::Archiving {
+            command.envs(std::env::vars_os().filter(|(name, _)| name.as_encoded_bytes().starts_with(b"AWS_")));
+        }
+        let mut child = command
+            .kill_on_drop(true)
+            .spawn()
+            .map_err(|fault| LabError::Internal(format!("the computation cannot be started: {fault}")))?;
         let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         let (Some(stdin), Some(stdout), Some(stderr)) = pipes else { unreachable!("all three are piped") };
         Ok(Process {

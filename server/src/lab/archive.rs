@@ -172,7 +172,7 @@ impl Lab {
                 Err(LabError::NotFound(_) | LabError::Invalid(_)) => None,
                 Err(fault) => return Err(fault),
             };
-            self.compute::<()>(Job::CheckArchived(ArchivedFile { folder: folder.into(), path, sha256 })).await?;
+            self.compute::<()>(Job::CheckArchived(ArchivedFile { folder, path, sha256 })).await?;
             tracing::warn!(run.id = id, by, "archived samples are removed from the store");
         }
         self.inner.store.drop_samples(id, result.as_deref()).await?;

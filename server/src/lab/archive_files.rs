@@ -40,7 +40,7 @@ impl Lab {
     /// Writes a table of a run, and reads it back. A file that exists is only compared.
     pub(super) async fn archive_here(&self, request: &ArchiveRequest) -> Answer<ArchiveEnd> {
         let ArchiveRequest { run, content, folder } = request;
-        let archive = Archive::open(folder.clone())?;
+        let archive = Archive::open(folder)?;
         let (mut meta, record) = self.export_facts(*run).await?;
         let table = match self.archived_table(*content, &record).await? {
             Ok(table) => table,
@@ -63,13 +63,13 @@ impl Lab {
             self.upload_table(&archive, &path, &table, (&meta, *run), more).await?;
         }
         let bytes = compare(&archive, &path, &sha256).await?;
-        Ok(ArchiveEnd::Archived { folder: folder.display().to_string(), path, bytes, sha256 })
+        Ok(ArchiveEnd::Archived { folder: folder.clone(), path, bytes, sha256 })
     }
 
     /// Compares a file of the archive with its digest.
     pub(super) async fn check_archived_here(&self, file: &ArchivedFile) -> Answer<()> {
         let ArchivedFile { folder, path, sha256 } = file;
-        compare(&Archive::open(folder.clone())?, path, sha256).await.map(drop)
+        compare(&Archive::open(folder)?, path, sha256).await.map(drop)
     }
 
     /// The table, or why the run has none.
@@ -125,7 +125,8 @@ impl Lab {
                 }
             }
             parquet.finish().map_err(failed)?;
-            upload.write(encoded.take()).await
+            upload.write(encoded.take()).await?;
+            upload.flush().await
         };
         if let Err(fault) = written.await {
             upload.abort().await;
