@@ -13,6 +13,7 @@ use crate::live::Hub;
 use crate::store::{SafetyRecord, Store};
 use jointbench_model::export::OnlinePrediction;
 use jointbench_procedure::{BenchFacts, Demand, Plan, RunId, Safe};
+use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::histogram::Histogram;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -138,6 +139,11 @@ impl BenchHandle {
     /// How long storing took [s].
     pub fn commit_times(&self) -> Histogram {
         self.shared.commit_times.clone()
+    }
+
+    /// Late set-points of all finished steps since the start of the daemon.
+    pub fn late_ticks(&self) -> Counter {
+        self.shared.late_ticks.clone()
     }
 
     /// `false` if the run was not active.

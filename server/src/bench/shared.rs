@@ -10,6 +10,7 @@ use crate::store::{SafetyRecord, Store};
 use crate::view::{BenchState, Blocked, LiveMessage};
 use jiff::Timestamp;
 use jointbench_procedure::RunId;
+use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::histogram::{Histogram, exponential_buckets};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -45,6 +46,8 @@ pub(super) struct Shared {
     pub disk_changed: Notify,
     /// Duration of each attempt to store [s].
     pub commit_times: Histogram,
+    /// Late set-points of all finished steps since the start of the daemon.
+    pub late_ticks: Counter,
     orders: Mutex<Option<ChildStdin>>,
     tickets: Mutex<HashMap<u64, oneshot::Sender<Option<MemoryRead>>>>,
     last_ticket: AtomicU64,
@@ -77,6 +80,7 @@ impl Shared {
             disk_is_full: AtomicBool::new(false),
             disk_changed: Notify::new(),
             commit_times: Histogram::new(exponential_buckets(0.001, 4.0, 8)),
+            late_ticks: Counter::default(),
             orders: Mutex::default(),
             tickets: Mutex::default(),
             last_ticket: AtomicU64::new(0),

@@ -10,7 +10,7 @@ use super::wire::{self, Entry, Order, Report, Setup};
 use crate::store::SafetyRecord;
 use crate::view::{self, BenchState, InstrumentFault, LiveMessage};
 use jiff::Timestamp;
-use jointbench_procedure::{EventKind, RunEnd, RunId, RunState, Safe};
+use jointbench_procedure::{Event, EventKind, RunEnd, RunId, RunState, Safe};
 use std::io::{self, BufReader};
 use std::process::{Child, ChildStdout, Stdio};
 use std::sync::atomic::Ordering;
@@ -197,6 +197,7 @@ impl Supervisor {
             faults.filter_map(|fault| status.record_fault(&fault)).collect()
         });
         self.keep_faults(new);
+        shared.late_ticks.inc_by(late_ticks(&commit.events));
         if !commit.state.is_final() && commit.events.iter().any(|event| matches!(event.kind, EventKind::State { .. })) {
             // The keeper publishes the end with its reason when it is stored.
             shared.hub.publish(LiveMessage::State {
@@ -330,5 +331,27 @@ fn wait(child: &mut Child) -> String {
             Err(fault) => return fault.to_string(),
         }
         std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Late ticks of the steps that finished.
+fn late_ticks(events: &[Event]) -> u64 {
+    let late = |event: &Event| match event.kind {
+        EventKind::StepFinished { late_ticks, .. } => late_ticks,
+        _ => 0,
+    };
+    events.iter().map(late).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn late_ticks_of_all_finished_steps_count() {
+        let finished = |late_ticks| EventKind::StepFinished { step: 0, segment: 0, rows: 9, late_ticks };
+        let note = EventKind::Note { text: String::new() };
+        let events = [finished(2), note, finished(3)].map(|kind| Event { at_s: 0.0, kind });
+        assert_eq!(late_ticks(&events), 5);
     }
 }

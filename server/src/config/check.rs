@@ -186,7 +186,7 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     }
     let ninter = ninter(raw.ninter.as_ref(), wrong);
     let gains = raw.servo.as_ref().map(|given| *given.get_ref()).unwrap_or_default();
-    let supplies = [("dp821a", Supply::Dp821a), ("hmp4040", Supply::Hmp4040)];
+    let supplies = [("dp821a", Supply::Dp821a), ("hmp4040", Supply::Hmp4040), ("kepco_bop", Supply::KepcoBop)];
     let supply =
         raw.supply.as_ref().map_or(Some(Supply::default()), |supply| choice(supply, "supply", &supplies, wrong));
     let pace = raw.pace.as_ref().and_then(|pace| positive(pace, "pace", wrong));

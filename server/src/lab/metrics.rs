@@ -109,7 +109,7 @@ impl Lab {
         let mut registry = Registry::with_prefix("jointbench");
         registry.register_collector(Box::new(metrics));
         for bench in benches {
-            commit_times(&mut registry, bench);
+            bench_totals(&mut registry, bench);
         }
         let mut text = String::new();
         text::encode(&mut text, &registry).map_err(|fault| LabError::Internal(fault.to_string()))?;
@@ -152,12 +152,14 @@ impl Lab {
     }
 }
 
-/// Time of a transaction of the store, for each bench.
-fn commit_times(registry: &mut Registry, bench: &BenchHandle) {
+/// What a bench counts since the start of the daemon.
+fn bench_totals(registry: &mut Registry, bench: &BenchHandle) {
     let labels = [("bench".into(), bench.name().to_owned().into())];
     let registry = registry.sub_registry_with_labels(labels.into_iter());
     let help = "Duration of a transaction of the store";
     registry.register_with_unit("commit", help, Unit::Seconds, bench.commit_times());
+    let help = "Set-points of finished steps that were sent more than one period after their time";
+    registry.register("late_ticks", help, bench.late_ticks());
 }
 
 fn bench_metrics(metrics: &mut Metrics, benches: &[Bench]) {

@@ -27,6 +27,7 @@ fn benches_queues_runs_and_the_store_are_metrics() {
     let commits = format!("jointbench_commit_seconds_count{{bench=\"{BENCH}\"}} ");
     let count: u64 = text.lines().find_map(|line| line.strip_prefix(&commits)).unwrap().parse().unwrap();
     assert!(count > 0 && text.ends_with("# EOF\n"), "{text}");
+    assert!(text.contains(&format!("jointbench_late_ticks_total{{bench=\"{BENCH}\"}} ")), "{text}");
 
     daemon.post(&format!("/api/v1/bench/{BENCH}/stop"), "");
     assert!(scraped(&daemon).contains(&format!("jointbench_bench_blocked{{bench=\"{BENCH}\"}} 1.0")));

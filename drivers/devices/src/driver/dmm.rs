@@ -59,7 +59,7 @@ impl Recovers for DmmTorqueSensor {
         let found = self.link.probe(&Identify(self.line_end))?;
         let identity = same(&mut self.link, &mut self.identity, found)?;
         // Configured on every identification, because earlier settings are unknown or lost with the power.
-        self.link.probe(&Set(self.line_end, "CONF:VOLT:DC 10".into()))?;
+        self.link.probe(&Set(self.line_end, "CONF:VOLT:DC 10".into(), "\n"))?;
         Ok(identity)
     }
 }

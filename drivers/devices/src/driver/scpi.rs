@@ -1,4 +1,4 @@
-//! A Rigol DP800 or an R&S HMP supply as the current source of a brake's coil: channel 1, current regulated.
+//! A Rigol DP800, R&S HMP or Kepco BOP supply as the current source of a brake's coil: channel 1, current regulated.
 
 use super::{Recovers, common_answers, same};
 use crate::protocol::scpi::{
@@ -11,8 +11,6 @@ use jointbench_instrument::units::{Amperes, Volts};
 use jointbench_instrument::{Fault, FaultKind};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
-
-const VOLTAGE_STEP_V: f64 = 1e-3;
 
 /// Connection of a supply; the model is taken from its identity.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -51,8 +49,9 @@ impl ScpiSource {
     /// Sends a command and reads the error queue. Reports all its entries and empties it.
     fn set(&mut self, command: String) -> Result<(), Fault> {
         let line_end = self.line_end;
-        let link = self.ready()?;
-        let Err(mut fault) = link.request(&Set(line_end, command)) else { return Ok(()) };
+        self.ready()?;
+        let set = Set(line_end, command, self.dialect.separator());
+        let Err(mut fault) = self.link.request(&set) else { return Ok(()) };
         if let FaultKind::Refused { what } = &mut fault.kind {
             for _ in 0..ERROR_QUEUE_DEPTH {
                 match self.link.probe(&QueryError(line_end)) {
@@ -124,7 +123,8 @@ impl Recovers for ScpiSource {
         self.link.drain(&clear, false)?;
         let found = self.link.probe(&Identify(self.line_end))?;
         let Some(dialect) = Dialect::of(&found) else {
-            let (expected, found) = ("Rigol DP8xx or R&S HMP".into(), format!("{} {}", found.maker, found.model));
+            let (expected, found) =
+                ("Rigol DP8xx, R&S HMP or Kepco BOP".into(), format!("{} {}", found.maker, found.model));
             return Err(self.link.fault(FaultKind::WrongInstrument { expected, found }));
         };
         self.dialect = dialect;
@@ -148,10 +148,13 @@ impl Instrument for ScpiSource {
 impl CurrentSource for ScpiSource {
     fn prepare(&mut self, compliance: Volts) -> Result<(), Fault> {
         self.on = false;
-        self.set(":SYST:REM".into())?;
+        self.set(self.dialect.remote().into())?;
         self.output(false)?;
+        if let Some(mode) = self.dialect.current_mode() {
+            self.set(mode.into())?;
+        }
         self.set_current(Amperes(0.0))?;
-        self.set_and_read_back(self.dialect.voltage(), compliance.0, VOLTAGE_STEP_V)?;
+        self.set_and_read_back(self.dialect.voltage(), compliance.0, self.dialect.voltage_step_v())?;
         self.output(true)?;
         self.on = true;
         Ok(())

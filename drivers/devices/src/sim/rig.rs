@@ -1,6 +1,6 @@
 //! The simulation behind the wires: the plant and the instruments' firmware, advanced together.
 
-use super::firmware::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Lorenz, Qsb};
+use super::firmware::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Kepco, Lorenz, Qsb};
 use super::plant::{Plant, STEP_S};
 use super::trouble::{PlannedTrouble, Trouble};
 use serde::{Deserialize, Serialize};
@@ -88,6 +88,8 @@ pub enum Supply {
     Dp821a,
     /// Ends at 32 V, which is too low for the rated current in a warm coil.
     Hmp4040,
+    /// Kepco BOP 100-2, up to 100 V.
+    KepcoBop,
 }
 
 /// Beyond 131 % of the small range, where the converter ends, and well within the large range.
@@ -128,6 +130,7 @@ impl Rig {
         let brake: Box<dyn Firmware + Send> = match supply {
             Supply::Dp821a => Box::new(Dp800::new()),
             Supply::Hmp4040 => Box::new(Hmp::new()),
+            Supply::KepcoBop => Box::new(Kepco::new()),
         };
         Self { plant, joint, torque_sensor, brake, others, troubles: Default::default(), planned: moments }
     }

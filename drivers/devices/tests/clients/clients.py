@@ -142,6 +142,22 @@ def pymeasure_hmp4040(address):
     assert not supply.output_enabled
 
 
+def pymeasure_kepco(address):
+    from pymeasure.instruments.kepco import KepcoBOP3612
+
+    host, port = tcp(address)
+    supply = KepcoBOP3612(f"TCPIP0::{host}::{port}::SOCKET", visa_library="@py", timeout=3000)
+    assert supply.id.startswith("KEPCO,BOP ")
+    supply.write("SYST:REM 1")
+    supply.operating_mode = "CURR"
+    supply.voltage_setpoint, supply.current_setpoint, supply.output_enabled = 30, 0.25, True
+    assert (supply.operating_mode, supply.voltage_setpoint, supply.current_setpoint) == ("CURR", 30, 0.25)
+    time.sleep(1.5)
+    assert abs(supply.current - 0.25) < 5e-3 and 10 < supply.voltage < 16, (supply.current, supply.voltage)
+    supply.output_enabled = False
+    assert not supply.output_enabled
+
+
 def pyvisa_dp821a(address):
     supply = visa(address, "\n" if address.startswith("tcp://") else "\r\n")
     assert supply.query("*IDN?").startswith("RIGOL TECHNOLOGIES,DP821A,")
@@ -175,7 +191,7 @@ def qcodes_dp821(address):
     supply.close()
 
 
-CLIENTS = [pipython, lorenz, minimalmodbus, pymodbus, pymeasure_hmp4040, pyvisa_dp821a, qcodes_dp821]
+CLIENTS = [pipython, lorenz, minimalmodbus, pymodbus, pymeasure_hmp4040, pymeasure_kepco, pyvisa_dp821a, qcodes_dp821]
 
 if __name__ == "__main__":
     wanted, address = sys.argv[1:]

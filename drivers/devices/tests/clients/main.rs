@@ -23,7 +23,11 @@ fn check(client: &str, instrument: MockInstrument, transport: Transport, pace: f
     let settings = MockSettings {
         transport,
         pace: Some(pace),
-        supply: if client == "pymeasure_hmp4040" { Supply::Hmp4040 } else { Supply::Dp821a },
+        supply: match client {
+            "pymeasure_hmp4040" => Supply::Hmp4040,
+            "pymeasure_kepco" => Supply::KepcoBop,
+            _ => Supply::Dp821a,
+        },
         ..MockSettings::new(joint, 1)
     };
     let mock = MockBench::start(settings).unwrap();
@@ -73,6 +77,7 @@ fn modbus_clients_read_the_thermometer_and_hear_what_is_refused() {
 #[test]
 fn pymeasure_and_pyvisa_set_and_measure_the_supplies() {
     check("pymeasure_hmp4040", MockInstrument::Brake, Transport::Tcp, 1.0);
+    check("pymeasure_kepco", MockInstrument::Brake, Transport::Tcp, 1.0);
     check("pyvisa_dp821a", MockInstrument::Brake, Transport::Tcp, 1.0);
     check("pyvisa_dp821a", MockInstrument::Brake, Transport::Terminal, 1.0);
 }

@@ -81,7 +81,8 @@ pub fn scpi(noise: &[u8]) {
     withstands(&ReadMeasured(lf, Dialect::Dp800), noise, b"12.9870,0.2498,3.2441\n");
     withstands(&ReadMeasured(lf, Dialect::Hmp), noise, b"12.987;0.2498\n");
     withstands(&ReadCondition(lf, Dialect::Hmp), noise, b"513\n");
-    withstands(&Set(lf, ":OUTP CH1,ON".into()), noise, b"0,\"No error\"\n");
+    withstands(&ReadCondition(lf, Dialect::Kepco), noise, b"1;1024\n");
+    withstands(&Set(lf, ":OUTP CH1,ON".into(), "\n"), noise, b"0,\"No error\"\n");
     withstands(&ReadVoltage(lf), noise, b"+4.50012345E+00\n");
 }
 

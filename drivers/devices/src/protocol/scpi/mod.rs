@@ -1,4 +1,4 @@
-//! SCPI of the supplies of the Rigol DP800 and the R&S HMP series. Channel 1 feeds the brake.
+//! SCPI of the supplies of the Rigol DP800, R&S HMP and Kepco BOP series. Channel 1 feeds the brake.
 //!
 //! Set commands have no reply, so each is sent together with a query of the error queue. The error numbers differ
 //! between makers: any entry except 0 is a failure. An unknown query gets no reply at all.

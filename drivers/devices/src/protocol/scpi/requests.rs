@@ -53,6 +53,11 @@ fn number(text: &str) -> Result<f64, FaultKind> {
     }
 }
 
+/// Numbers in one reply.
+fn numbers(text: &str) -> Result<Vec<f64>, FaultKind> {
+    text.split([',', ';']).map(|field| number(field.trim())).collect()
+}
+
 /// One entry of an error queue: `None` when it is empty.
 fn error_entry(text: &str) -> Result<Option<String>, FaultKind> {
     let code = text.split(',').next().unwrap_or_default().trim().trim_start_matches('+');
@@ -136,15 +141,14 @@ pub struct Measured {
 }
 
 query!(ReadMeasured, |this| this.1.measured(), Measured, |_this, text| {
-    let values = text.split([',', ';']).map(|field| number(field.trim())).collect::<Result<Vec<f64>, FaultKind>>()?;
     // Some makers add the power.
-    let ([voltage_v, current_a] | [voltage_v, current_a, _]) = values[..] else {
+    let ([voltage_v, current_a] | [voltage_v, current_a, _]) = numbers(text)?[..] else {
         return Err(FaultKind::Garbled { what: format!("`{text}`: expected voltage and current") });
     };
     Ok(Measured { voltage_v, current_a })
 });
 
-/// Questionable condition of channel 1: regulation of the output, and tripped protections.
+/// Condition of channel 1: regulation of the output, and tripped protections.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadCondition(pub Terminator, pub Dialect);
 
@@ -161,15 +165,15 @@ pub struct Condition {
     pub over_current_trip: bool,
 }
 
-query!(ReadCondition, |_this| ":STAT:QUES:INST:ISUM1:COND?", Condition, |this, text| {
-    let bits = number(text)? as u32;
-    let [over_voltage, over_current] = this.1.trips();
-    Ok(Condition {
-        constant_current: bits & 1 != 0,
-        constant_voltage: bits & 2 != 0,
-        over_voltage_trip: bits & over_voltage != 0,
-        over_current_trip: bits & over_current != 0,
-    })
+query!(ReadCondition, |this| this.1.condition(), Condition, |this, text| {
+    let bits = match (this.1, &numbers(text)?[..]) {
+        (Dialect::Dp800 | Dialect::Hmp, [bits]) | (Dialect::Kepco, [1.0, bits]) => *bits as u32,
+        (Dialect::Kepco, [0.0, _]) => 0,
+        _ => return Err(FaultKind::Garbled { what: format!("`{text}`: expected a condition register") }),
+    };
+    let [constant_current, constant_voltage, over_voltage_trip, over_current_trip] =
+        this.1.condition_bits().map(|bit| bits & bit != 0);
+    Ok(Condition { constant_current, constant_voltage, over_voltage_trip, over_current_trip })
 });
 
 /// Takes a reading of a multimeter. `None`: overload.
@@ -182,14 +186,13 @@ query!(ReadVoltage, |_this| "READ?", Option<f64>, |text| match text.parse::<f64>
     _ => number(text).map(Some),
 });
 
-/// A command followed by a query whether it was accepted.
+/// A command, what separates it from the next one, and a query whether it was accepted.
 #[derive(Debug, Clone)]
-pub struct Set(pub Terminator, pub String);
+pub struct Set(pub Terminator, pub String, pub &'static str);
 
 impl Command for Set {
     fn encode(&self, out: &mut Vec<u8>) {
-        self.0.push(out, &self.1);
-        self.0.push(out, ":SYST:ERR?");
+        self.0.push(out, &format!("{}{}:SYST:ERR?", self.1, self.2));
     }
 
     fn name(&self) -> String {
@@ -218,9 +221,8 @@ pub struct SwitchOff(pub Terminator, pub Dialect);
 
 impl Command for SwitchOff {
     fn encode(&self, out: &mut Vec<u8>) {
-        let [current, _] = self.1.current();
-        self.0.push(out, self.1.output(false));
-        self.0.push(out, &format!("{current} 0"));
+        let ([current, _], off) = (self.1.current(), self.1.output(false));
+        self.0.push(out, &format!("{off}{}{current} 0", self.1.separator()));
     }
 
     fn name(&self) -> String {
@@ -267,6 +269,32 @@ mod tests {
     }
 
     #[test]
+    fn published_identities_of_a_kepco() {
+        for text in ["KEPCO,BOP 50-20,E1234,2.66\n", "KEPCO,BOP1KW 50-20 ,E156884, 2.01\r\n"] {
+            let identity = Identify(Terminator::Lf).decode(text.as_bytes()).unwrap();
+            assert_eq!(Dialect::of(&identity), Some(Dialect::Kepco), "{text}");
+        }
+        let other = Identify(Terminator::Lf).decode(b"KEPCO,EL 5K-600-200,A104503,3.87\n").unwrap();
+        assert_eq!(Dialect::of(&other), None);
+    }
+
+    #[test]
+    fn a_kepco_gets_and_answers_one_line() {
+        let (end, kepco) = (Terminator::CrLf, Dialect::Kepco);
+        let mut out = Vec::new();
+        Set(end, "CURR 0.25".into(), kepco.separator()).encode(&mut out);
+        SwitchOff(end, kepco).encode(&mut out);
+        assert_eq!(out, b"CURR 0.25;:SYST:ERR?\r\nSYST:REM 1;:CURR 0;:OUTP 0;CURR 0\r\n");
+        let measured = Ok(Measured { voltage_v: 12.99, current_a: 0.25 });
+        assert_eq!(ReadMeasured(end, kepco).decode(b"1.299E1;2.5E-1\r\n"), measured);
+        let condition = |reply: &[u8]| ReadCondition(end, kepco).decode(reply);
+        assert!(condition(b"1;1024\r\n").unwrap().constant_current);
+        assert!(condition(b"1;256\r\n").unwrap().constant_voltage);
+        assert!(!condition(b"0;1024\r\n").unwrap().constant_current, "the output is off");
+        assert!(condition(b"1024\r\n").is_err());
+    }
+
+    #[test]
     fn an_overload_is_no_number_and_no_garbage() {
         let read = ReadVoltage(Terminator::Lf);
         assert_eq!(read.decode(b"+4.50012345E+00\n"), Ok(Some(4.500_123_45)));
@@ -276,7 +304,7 @@ mod tests {
 
     #[test]
     fn any_entry_but_zero_is_a_failure() {
-        let set = Set(Terminator::CrLf, ":SOUR1:CURR 9".into());
+        let set = Set(Terminator::CrLf, ":SOUR1:CURR 9".into(), "\n");
         let mut out = Vec::new();
         set.encode(&mut out);
         assert_eq!(out, b":SOUR1:CURR 9\r\n:SYST:ERR?\r\n");

@@ -1,6 +1,6 @@
 //! The instruments' own parsers with random input: no panic, bounded memory, and the next valid request is answered.
 
-use super::super::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Lorenz, Odrive, Puma, Qsb};
+use super::super::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Kepco, Lorenz, Odrive, Puma, Qsb};
 use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant};
 use proptest::collection::vec;
@@ -46,6 +46,8 @@ proptest! {
         prop_assert!(reply.starts_with(b"RIGOL"), "{}", reply.escape_ascii());
         let reply = ask(&mut Hmp::new(), &garbage, b"\n", b"*IDN?\n");
         prop_assert!(reply.starts_with(b"ROHDE"), "{}", reply.escape_ascii());
+        let reply = ask(&mut Kepco::new(), &garbage, b"\n", b"*IDN?\n");
+        prop_assert!(reply.starts_with(b"KEPCO"), "{}", reply.escape_ascii());
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod dp800;
 mod fuzz;
 mod gcs;
 mod hmp;
+mod kepco;
 mod lorenz;
 mod odrive;
 mod puma;
