@@ -15,7 +15,14 @@ use jointbench_procedure::{DeferredPlan, Plan, RunState};
 impl Lab {
     /// Starts a run with the remaining steps of another run, after steps that restore their history.
     pub async fn continue_run(&self, id: i64, by: &str) -> Answer<Run> {
-        let record = self.inner.store.run(id).await?;
+        let mut record = self.inner.store.run(id).await?;
+        if !record.state.is_final()
+            && let Ok(bench) = self.handle(&record.bench)
+        {
+            // `GET /runs/{id}` already shows an end that is not stored.
+            self.wait_for_stored_ends(bench).await;
+            record = self.inner.store.run(id).await?;
+        }
         let name = &record.procedure;
         match record.state {
             RunState::Completed => {
