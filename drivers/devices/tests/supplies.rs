@@ -2,8 +2,29 @@
 
 use jointbench_devices::sim::{MockInstrument, Supply, Trouble};
 use jointbench_devices::{Joint, MockBench, MockSettings};
-use jointbench_instrument::roles::Regulation;
+use jointbench_instrument::roles::{CurrentSource, Regulation};
 use jointbench_instrument::units::{Amperes, Volts};
+
+fn regulates_up_to_its_voltage_limit(brake: &mut dyn CurrentSource, settle: &dyn Fn()) {
+    brake.prepare(Volts(30.0)).unwrap();
+    brake.set_current(Amperes(0.3)).unwrap();
+    settle();
+    let reading = brake.read().unwrap();
+    assert_eq!(reading.regulation, Regulation::ConstantCurrent);
+    assert!((reading.current.0 - 0.3).abs() < 2e-3 && (reading.voltage.0 - 15.6).abs() < 0.5, "{reading:?}");
+    // 0.6 A through 52 Ω need 31.2 V.
+    brake.set_current(Amperes(0.6)).unwrap();
+    settle();
+    assert_eq!(brake.read().unwrap().regulation, Regulation::ConstantVoltage);
+}
+
+fn reports_lost_mains_power(mock: &MockBench, brake: &mut dyn CurrentSource) {
+    mock.trouble(MockInstrument::Brake, Trouble::PowerCycled);
+    assert!(brake.read().is_err());
+    mock.trouble(MockInstrument::Brake, Trouble::None);
+    let fault = (0..2).find_map(|_| brake.read().err()).expect("the output went off by itself");
+    assert!(fault.to_string().contains("mains power of the supply was interrupted"), "{fault}");
+}
 
 #[test]
 fn an_hmp_feeds_the_brake_as_far_as_its_voltage_goes() {
@@ -18,22 +39,9 @@ fn an_hmp_feeds_the_brake_as_far_as_its_voltage_goes() {
     let fault = brake.prepare(Volts(45.0)).unwrap_err();
     assert!(fault.to_string().contains("out of range"), "{fault}");
     assert_eq!(brake.read().unwrap().regulation, Regulation::Off);
-    brake.prepare(Volts(30.0)).unwrap();
-    brake.set_current(Amperes(0.3)).unwrap();
-    settle();
-    let reading = brake.read().unwrap();
-    assert_eq!(reading.regulation, Regulation::ConstantCurrent);
-    assert!((reading.current.0 - 0.3).abs() < 2e-3 && (reading.voltage.0 - 15.6).abs() < 0.5, "{reading:?}");
-    // 0.6 A through 52 Ω need 31.2 V.
-    brake.set_current(Amperes(0.6)).unwrap();
-    settle();
-    assert_eq!(brake.read().unwrap().regulation, Regulation::ConstantVoltage);
+    regulates_up_to_its_voltage_limit(brake.as_mut(), &settle);
 
-    mock.trouble(MockInstrument::Brake, Trouble::PowerCycled);
-    assert!(brake.read().is_err());
-    mock.trouble(MockInstrument::Brake, Trouble::None);
-    let fault = (0..2).find_map(|_| brake.read().err()).expect("the output went off by itself");
-    assert!(fault.to_string().contains("mains power of the supply was interrupted"), "{fault}");
+    reports_lost_mains_power(&mock, brake.as_mut());
     brake.prepare(Volts(30.0)).unwrap();
     brake.output_off().unwrap();
     settle();
@@ -56,25 +64,12 @@ fn a_kepco_regulates_the_current_and_is_off_in_the_safe_state() {
     assert_eq!(brake.read().unwrap().regulation, Regulation::Off);
     let fault = brake.prepare(Volts(120.0)).unwrap_err();
     assert!(fault.to_string().contains("out of range"), "{fault}");
-    brake.prepare(Volts(30.0)).unwrap();
-    brake.set_current(Amperes(0.3)).unwrap();
-    settle();
-    let reading = brake.read().unwrap();
-    assert_eq!(reading.regulation, Regulation::ConstantCurrent);
-    assert!((reading.current.0 - 0.3).abs() < 2e-3 && (reading.voltage.0 - 15.6).abs() < 0.5, "{reading:?}");
-    // 0.6 A through 52 Ω need 31.2 V.
-    brake.set_current(Amperes(0.6)).unwrap();
-    settle();
-    assert_eq!(brake.read().unwrap().regulation, Regulation::ConstantVoltage);
+    regulates_up_to_its_voltage_limit(brake.as_mut(), &settle);
 
     brake.output_off().unwrap();
     settle();
     let reading = brake.read().unwrap();
     assert_eq!((reading.regulation, reading.current.0), (Regulation::Off, 0.0));
     brake.prepare(Volts(30.0)).unwrap();
-    mock.trouble(MockInstrument::Brake, Trouble::PowerCycled);
-    assert!(brake.read().is_err());
-    mock.trouble(MockInstrument::Brake, Trouble::None);
-    let fault = (0..2).find_map(|_| brake.read().err()).expect("the output went off by itself");
-    assert!(fault.to_string().contains("mains power of the supply was interrupted"), "{fault}");
+    reports_lost_mains_power(&mock, brake.as_mut());
 }

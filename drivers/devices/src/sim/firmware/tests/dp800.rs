@@ -1,34 +1,11 @@
 //! The supply, byte for byte.
 
-use super::super::Firmware;
-use super::super::dp800::Dp800;
-use crate::sim::data_sheet::{Joint, Load};
-use crate::sim::plant::{Hidden, Plant, STEP_S};
-
-struct Supply(Dp800, Plant);
-
-impl Supply {
-    fn new() -> Self {
-        Self(Dp800::new(), Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default()))
-    }
-
-    fn exchange(&mut self, text: &str) -> String {
-        let mut output = Vec::new();
-        self.0.receive(&mut text.as_bytes().to_vec(), &mut self.1, &mut output);
-        String::from_utf8(output).unwrap()
-    }
-
-    fn wait(&mut self, seconds: f64) {
-        for _ in 0..(seconds / STEP_S) as usize {
-            self.0.step(&mut self.1);
-            self.1.advance();
-        }
-    }
-}
+use super::supply::Supply;
+use crate::sim::firmware::dp800::Dp800;
 
 #[test]
 fn published_conversation() {
-    let mut supply = Supply::new();
+    let mut supply = Supply::new(Dp800::new());
     for (request, reply) in [
         ("*IDN?\n", "RIGOL TECHNOLOGIES,DP821A,DP8E204500123,00.01.16\n"),
         (":SYST:ERR?\r\n", "0,\"No error\"\n"),
@@ -52,7 +29,7 @@ fn published_conversation() {
 
 #[test]
 fn mistakes_are_queued_and_unknown_queries_stay_unanswered() {
-    let mut supply = Supply::new();
+    let mut supply = Supply::new(Dp800::new());
     assert_eq!(supply.exchange(":SOUR1:CURR 0.1\n:SOUR1:CURR 1.2\n:SOUR1:CURR?\n"), "0.1000\n", "the old value holds");
     assert_eq!(supply.exchange(":WHAT?\n"), "");
     assert_eq!(supply.exchange(":SYST:ERR?\n"), "-222,\"Data out of range\"\n");
@@ -67,7 +44,7 @@ fn mistakes_are_queued_and_unknown_queries_stay_unanswered() {
 
 #[test]
 fn a_trip_latches_until_cleared_and_switched_on_again() {
-    let mut supply = Supply::new();
+    let mut supply = Supply::new(Dp800::new());
     supply.exchange(":APPL CH1,45,0.3;:OUTP:OVP:VAL CH1,10;:OUTP:OVP CH1,ON;:OUTP CH1,ON\n");
     supply.wait(0.5);
     assert_eq!(supply.exchange(":OUTP:OVP:QUES? CH1;:OUTP? CH1\n"), "YES;OFF\n");

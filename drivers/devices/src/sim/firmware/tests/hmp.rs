@@ -1,23 +1,11 @@
 //! The second supply, line by line with the requests of pymeasure's client.
 
-use super::super::Firmware;
-use super::super::hmp::Hmp;
-use crate::sim::data_sheet::{Joint, Load};
-use crate::sim::plant::{Hidden, Plant, STEP_S};
-
-struct Supply(Hmp, Plant);
-
-impl Supply {
-    fn exchange(&mut self, text: &str) -> String {
-        let mut output = Vec::new();
-        self.0.receive(&mut text.as_bytes().to_vec(), &mut self.1, &mut output);
-        String::from_utf8(output).unwrap()
-    }
-}
+use super::supply::Supply;
+use crate::sim::firmware::hmp::Hmp;
 
 #[test]
 fn both_the_channel_and_the_relay_have_to_be_on() {
-    let mut supply = Supply(Hmp::new(), Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default()));
+    let mut supply = Supply::new(Hmp::new());
     for (request, reply) in [
         ("*IDN?\n", "ROHDE&SCHWARZ,HMP4040,100123,HW50020001/SW2.51\n"),
         ("SYST:REM\nINST:NSEL 2\nINST:NSEL?\n", "2\n"),
@@ -38,10 +26,7 @@ fn both_the_channel_and_the_relay_have_to_be_on() {
     ] {
         assert_eq!(supply.exchange(request), reply, "{request}");
     }
-    for _ in 0..(1.0 / STEP_S) as usize {
-        supply.0.step(&mut supply.1);
-        supply.1.advance();
-    }
+    supply.wait(1.0);
     let amperes: f64 = supply.exchange("MEAS:CURR?\n").trim().parse().unwrap();
     assert!((amperes - 0.3).abs() < 2e-3, "{amperes}");
     let both = supply.exchange("MEAS:VOLT?;:MEAS:CURR?\n");

@@ -1,23 +1,11 @@
 //! The third supply, line by line with the requests of its manual.
 
-use super::super::Firmware;
-use super::super::kepco::Kepco;
-use crate::sim::data_sheet::{Joint, Load};
-use crate::sim::plant::{Hidden, Plant, STEP_S};
-
-struct Supply(Kepco, Plant);
-
-impl Supply {
-    fn exchange(&mut self, text: &str) -> String {
-        let mut output = Vec::new();
-        self.0.receive(&mut text.as_bytes().to_vec(), &mut self.1, &mut output);
-        String::from_utf8(output).unwrap()
-    }
-}
+use super::supply::Supply;
+use crate::sim::firmware::kepco::Kepco;
 
 #[test]
 fn commands_are_accepted_after_remote_control_only() {
-    let mut supply = Supply(Kepco::new(), Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default()));
+    let mut supply = Supply::new(Kepco::new());
     for (request, reply) in [
         ("*IDN?\n", "KEPCO,BOP 100-2,E100123,2.66\r\n"),
         ("CURR 0.3;:SYST:ERR?\n", "-200,\"Execution error\"\r\n"),
@@ -30,10 +18,7 @@ fn commands_are_accepted_after_remote_control_only() {
     ] {
         assert_eq!(supply.exchange(request), reply, "{request}");
     }
-    for _ in 0..(1.0 / STEP_S) as usize {
-        supply.0.step(&mut supply.1);
-        supply.1.advance();
-    }
+    supply.wait(1.0);
     let amperes: f64 = supply.exchange("MEAS:CURR?\n").trim().parse().unwrap();
     assert!((amperes - 0.3).abs() < 2e-3, "{amperes}");
     assert_eq!(supply.exchange("OUTP OFF\nOUTP?;:CURR?\n"), "0;3.0000E-1\r\n", "the set value is kept");

@@ -12,3 +12,4 @@ mod odrive;
 mod puma;
 mod puma_memory;
 mod qsb;
+mod supply;
