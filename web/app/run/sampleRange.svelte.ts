@@ -24,29 +24,11 @@ export function sampleRange(run: () => Run, live: () => boolean, look: () => Plo
 	/** A range that is no longer in memory, or a finished run, is read from the store. */
 	const stored = $derived(!isLive || (!look().follow && (feed?.samples?.first_s ?? Infinity) > (view?.[0] ?? -Infinity) + 0.05));
 	const request = debounced(() => (stored ? JSON.stringify([run().id, look(), live()]) : null), 90);
-	const load = async (from_s: number | undefined, to_s: number | undefined, signal: AbortSignal) => {
-		const samples = await api.samples(run().id, { from_s, to_s, px: PIXELS }, signal);
-		return { ...envelope(samples), names: samples.channels.map((channel) => channel.name) };
-	};
 	const history = resource(
 		() => request.value,
-		(_key, signal) => load(view?.[0], view?.[1], signal),
+		(_key, signal) => load(run().id, view?.[0], view?.[1], signal),
 	);
-	/** Samples before the page connected. The store has the last of them two seconds later. */
-	const missingRange = $derived.by(() => {
-		const now = look();
-		const first_s = isLive && now.follow ? (feed?.samples?.first_s ?? 0) : 0;
-		const from_s = now.follow ? Math.max(0, first_s - now.width_s) : 0;
-		return first_s > Math.max(0, view?.[0] ?? 0) + MIN_GAP_S ? `${from_s}:${first_s}` : null;
-	});
-	const wanted = debounced(() => missingRange, COMMITTED_MS);
-	const before = resource(
-		() => missingRange && wanted.value,
-		(key, signal) => {
-			const [from_s, to_s] = key.split(':').map(Number);
-			return load(from_s, to_s, signal);
-		},
-	);
+	const before = samplesBefore(() => run().id, () => missingRange(look(), view, isLive ? (feed?.samples?.first_s ?? 0) : 0));
 	return {
 		get isLive() {
 			return isLive;
@@ -83,6 +65,30 @@ export function sampleRange(run: () => Run, live: () => boolean, look: () => Plo
 			return named(history.data, names);
 		},
 	};
+}
+
+/** Samples before the page connected. The store has the last of them two seconds later. */
+function samplesBefore(run: () => number, missing: () => string | null) {
+	const range = $derived(missing());
+	const wanted = debounced(() => range, COMMITTED_MS);
+	return resource(
+		() => range && wanted.value,
+		(key, signal) => {
+			const [from_s, to_s] = key.split(':').map(Number);
+			return load(run(), from_s, to_s, signal);
+		},
+	);
+}
+
+/** `from:to`, if the plots follow a run whose first samples in memory, from `first_s` on, are later than the view. */
+function missingRange(look: PlotRange, view: View | null, first_s: number): string | null {
+	if (!look.follow || first_s <= Math.max(0, view?.[0] ?? 0) + MIN_GAP_S) return null;
+	return `${Math.max(0, first_s - look.width_s)}:${first_s}`;
+}
+
+async function load(run: number, from_s: number | undefined, to_s: number | undefined, signal: AbortSignal) {
+	const samples = await api.samples(run, { from_s, to_s, px: PIXELS }, signal);
+	return { ...envelope(samples), names: samples.channels.map((channel) => channel.name) };
 }
 
 interface Named {
