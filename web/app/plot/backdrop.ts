@@ -43,6 +43,9 @@ export function alternateSteps(steps: readonly number[], [from, to]: readonly [n
 	});
 }
 
+/** Distance of the name of a limit from its line and from the border [px]. */
+export const NAME_GAP = 4;
+
 export function paintBackdrop(u: uPlot, { region, band, notes, steps, lines }: Backdrop): void {
 	const { left, top, width, height } = u.bbox;
 	const { ctx } = u;
@@ -92,6 +95,28 @@ function stroke(ctx: CanvasRenderingContext2D, line: BackdropLine, { left, width
 	ctx.setLineDash(line.dash.map((length) => length * devicePixelRatio));
 	ctx.stroke();
 	ctx.setLineDash([]);
+}
+
+/** Names of the limits in view, in front of the curves: each once, at its right end. */
+export function paintLimitNames(u: uPlot, { lines }: Backdrop): void {
+	const { left, top, width, height } = u.bbox;
+	const { ctx } = u;
+	const [size, gap] = [10 * devicePixelRatio, NAME_GAP * devicePixelRatio];
+	ctx.save();
+	ctx.font = `${size}px system-ui, sans-serif`;
+	ctx.textAlign = 'right';
+	for (const { label, levels, stroke } of lines) {
+		const y = levels.map((level) => u.valToPos(level, 'y', true)).find((y) => y > top + size && y < top + height);
+		if (y === undefined) continue;
+		const [right, wide] = [left + width - gap, ctx.measureText(label).width];
+		ctx.globalAlpha = 0.8;
+		ctx.fillStyle = colour('--panel');
+		ctx.fillRect(right - wide - gap, y - gap - size, wide + 2 * gap, size + gap);
+		ctx.globalAlpha = 1;
+		ctx.fillStyle = colour(stroke);
+		ctx.fillText(label, right, y - gap);
+	}
+	ctx.restore();
 }
 
 /** A mark on the axis, with a thin line over the whole height. */

@@ -1,6 +1,6 @@
 import uPlot from 'uplot';
 import { spanOf } from '../figure/figure';
-import { EMPTY_BACKDROP, type Backdrop, paintBackdrop } from './backdrop';
+import { EMPTY_BACKDROP, type Backdrop, paintBackdrop, paintLimitNames } from './backdrop';
 import { colour } from './colour';
 import { type OnView, type View, gestures } from './gestures';
 import { dashPaths, pointPaths } from './markPaths';
@@ -92,7 +92,7 @@ export function makeChart(
 			},
 			hooks: {
 				...gestureOptions.hooks,
-				draw: [() => lines?.place()],
+				draw: [(u) => paintLimitNames(u, backdrop), () => lines?.place()],
 				drawAxes: [(u) => paintBackdrop(u, backdrop)],
 				setCursor: [(u) => pointed(u.cursor.idx ?? null)],
 			},

@@ -1,5 +1,5 @@
 /** A plot as a vector drawing with the content of the canvas, to scale and edit. */
-import { type Backdrop, alternateSteps } from './backdrop';
+import { type Backdrop, NAME_GAP, alternateSteps } from './backdrop';
 import type { Curve } from './chart';
 import type { View } from './gestures';
 import { powerText, tickText, ticks } from './ticks';
@@ -35,7 +35,7 @@ export function svgOf(drawing: Drawing, ink: Ink): string {
 		`<rect width="${width}" height="${height}" fill="${ink('--panel')}"/>`,
 		`<g clip-path="url(#inside)">${backdropShapes(drawing, frame, ink).join('')}</g>`,
 		...axes(drawing, frame, ink),
-		`<g clip-path="url(#inside)">${drawing.curves.map((_, i) => curveShape(drawing, i, frame, ink)).join('\n')}</g>`,
+		`<g clip-path="url(#inside)">${[...drawing.curves.map((_, i) => curveShape(drawing, i, frame, ink)), ...limitNames(drawing, frame, ink)].join('\n')}</g>`,
 		...legend(drawing, ink),
 		'</svg>\n',
 	].join('\n');
@@ -59,7 +59,7 @@ function frameOf({ width, height, x, y }: Drawing) {
 
 type Frame = ReturnType<typeof frameOf>;
 
-const text = (ink: Ink, at: Place, words: string, more = '') => `<text x="${short(at[0])}" y="${short(at[1])}" fill="${ink('--soft')}" ${more}>${escaped(words)}</text>`;
+const text = (ink: Ink, at: Place, words: string, more = '', fill = '--soft') => `<text x="${short(at[0])}" y="${short(at[1])}" fill="${ink(fill)}" ${more}>${escaped(words)}</text>`;
 const path = (ink: Ink, d: string, stroke: string, more = '') => `<path d="${d}" fill="none" stroke="${ink(stroke)}" ${more}/>`;
 const dashes = (dash: readonly number[] | undefined) => (dash?.length ? `stroke-dasharray="${dash.join(' ')}"` : '');
 
@@ -113,6 +113,12 @@ function curveShape({ curves, data, backdrop, x }: Drawing, i: number, frame: Fr
 	const dots = seen.map(([px, py]) => `M${short(px - 2.5)} ${short(py)}a2.5 2.5 0 1 0 5 0a2.5 2.5 0 1 0 -5 0`).join('');
 	return mark === 'dot' ? `<path d="${dots}" fill="${ink(stroke)}"/>` : path(ink, dots, stroke);
 }
+
+const limitNames = ({ backdrop }: Drawing, { right, y }: Frame, ink: Ink): string[] =>
+	backdrop.lines.flatMap(({ label, levels, stroke }) => {
+		const halo = `text-anchor="end" paint-order="stroke" stroke="${ink('--panel')}" stroke-width="3"`;
+		return levels.slice(0, 1).map((level) => text(ink, [right - NAME_GAP, y(level) - NAME_GAP], label, halo, stroke));
+	});
 
 function legend({ curves, backdrop }: Drawing, ink: Ink): string[] {
 	let from = LEFT;

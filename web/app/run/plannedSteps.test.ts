@@ -41,5 +41,8 @@ it('draws a limit on both sides, and that of a temperature once', () => {
 	const run = { provenance: { limits: { motor_velocity_rad_s: 20, temperature_c: 80 } } };
 	expect(limitLines(run, ['motor_velocity_rad_s', 'other'], ONE)[0]).toMatchObject({ valueText: '± 20 rad/s', levels: [20, -20] });
 	expect(limitLines(run, ['temperature_c'], { factor: 1, unit: '°C' })[0]).toMatchObject({ valueText: '80 °C', levels: [80] });
+	const both = limitLines({ provenance: { limits: { motor_current_a: 3, brake_current_a: 0.6 } } }, ['motor_current_a', 'brake_current_a'], ONE);
+	expect(both.map(({ label }) => label)).toEqual(['limit, motor current', 'limit, brake current']);
+	expect(both[0]!.dash).not.toEqual(both[1]!.dash);
 	expect(limitLines({ provenance: {} }, ['temperature_c'], ONE)).toEqual([]);
 });

@@ -1,5 +1,5 @@
 import type { Preview, Run, RunEvent } from '../api/types';
-import { withMinusSigns } from '../format/label';
+import { label, withMinusSigns } from '../format/label';
 import { tickText } from '../plot/ticks';
 import type { Scale } from '../format/number';
 import type { BackdropLine } from '../plot/backdrop';
@@ -93,18 +93,23 @@ export function setPointLines(plan: Preview | undefined, made: readonly Executed
 	});
 }
 
+/** Colour and dash of the limits of a plot: they never differ only in colour. */
+const LIMIT_STYLES: [string, number[]][] = [
+	['--bad', [8, 3]],
+	['--warn', [10, 3, 2, 3]],
+	['--oi-purple', [3, 4]],
+];
+
 /**
  * Limits of the bench at the time of the run for these channels, each once. They apply to magnitudes; a temperature has
  * only an upper limit.
  */
 export function limitLines({ provenance }: Pick<Run, 'provenance'>, names: readonly string[], { factor, unit }: Scale): BackdropLine[] {
 	const limits = (provenance['limits'] ?? {}) as Record<string, unknown>;
-	return names.flatMap((name) => {
-		const limit = limits[name];
-		if (typeof limit !== 'number') return [];
-		const level = limit * factor;
+	return names.filter((name) => typeof limits[name] === 'number').map((name, i) => {
+		const level = Number(limits[name]) * factor;
 		const oneSided = name.endsWith('_c');
-		const title = names.filter((one) => typeof limits[one] === 'number').length > 1 ? `limit, ${name.split('_')[0]}` : 'limit';
-		return [{ label: title, valueText: `${oneSided ? '' : '± '}${tickText(level)} ${unit}`, stroke: '--bad', dash: [8, 3], levels: oneSided ? [level] : [level, -level], x: [], y: [] }];
+		const [stroke, dash] = LIMIT_STYLES[i % LIMIT_STYLES.length]!;
+		return { label: names.length > 1 ? `limit, ${label(name).title}` : 'limit', valueText: `${oneSided ? '' : '± '}${tickText(level)} ${unit}`, stroke, dash, levels: oneSided ? [level] : [level, -level], x: [], y: [] };
 	});
 }
