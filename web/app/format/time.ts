@@ -19,6 +19,9 @@ export function formatShortDuration(seconds: number): string {
 	return minutes < 60 ? `${minutes} min` : `${Math.floor(minutes / 60)} h`;
 }
 
+/** `1,204.5 s`: a time on the clock of a run. */
+export const formatRunTime = (seconds: number): string => `${seconds.toLocaleString('en', { minimumFractionDigits: 1, maximumFractionDigits: 1 })} s`;
+
 /** `3:51`, in the style of a count-down. */
 export function formatCountdown(seconds: number): string {
 	const whole = Math.max(0, Math.round(seconds));
