@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { formatChange, parseNumber, formatInterval, formatPValue, formatCount, formatEstimate, formatNumber, formatPercent, formatQuantity, scaleFor, formatAllDigits } from './number';
+import { formatAgainstLimit, formatChange, parseNumber, formatInterval, formatPValue, formatCount, formatEstimate, formatNumber, formatPercent, formatQuantity, scaleFor, formatAllDigits } from './number';
 
 describe('numbers as an instrument shows them', () => {
 	it.each([
@@ -38,6 +38,12 @@ describe('numbers as an instrument shows them', () => {
 		expect(scaleFor('rad', 3e-5)).toEqual({ factor: 1e6, unit: 'µrad' });
 		expect(scaleFor('kg·m²', 3e-5).factor).toBe(1);
 		expect(formatQuantity(0.02142, 'Nm')).toBe('21.4 mNm');
+	});
+
+	it('gives a value and its limit one prefix and equal decimals', () => {
+		expect(formatAgainstLimit(-1e-7, 0.62, 'A')).toBe('0 / 620 mA');
+		expect([1.234, -12.34, null].map((value) => formatAgainstLimit(value, 30, 'A'))).toEqual(['1.2 / 30.0 A', '−12.3 / 30.0 A', '30.0 A']);
+		expect(formatAgainstLimit(10, 0, 'rad/s')).toBe('10.00 / 0.00 rad/s');
 	});
 
 	it('gives a value the digits that its interval deserves', () => {

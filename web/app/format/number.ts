@@ -17,9 +17,10 @@ export function formatNumber(value: number | null | undefined, digits = 4, least
 	if (value === 0) return '0';
 	const size = Math.abs(value);
 	if (size < least || size >= 1e6) return exponent(value, Math.max(0, digits - 1));
-	const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-	return value.toFixed(Math.min(decimals, 8)).replace('-', MINUS);
+	return value.toFixed(decimalsFor(size, digits)).replace('-', MINUS);
 }
+
+const decimalsFor = (size: number, digits: number): number => Math.min(8, Math.max(0, digits - 1 - Math.floor(Math.log10(size))));
 
 function exponent(value: number, decimals?: number): string {
 	const [mantissa = '', power = ''] = value.toExponential(decimals).split('e');
@@ -84,9 +85,19 @@ export function formatQuantity(value: number | null | undefined, unit: string, d
 	return `${formatNumber(value * scale.factor, digits)} ${scale.unit}`.trim();
 }
 
+/** A value and its limit with one prefix and equal decimals, so that they compare at a glance: `1.2 / 30.0 A`. */
+export function formatAgainstLimit(value: number | null | undefined, limit: number, unit: string): string {
+	const scale = scaleFor(unit, limit);
+	const decimals = limit === 0 ? 2 : decimalsFor(Math.abs(limit * scale.factor), 3);
+	const text = (one: number) => withoutSignOfZero((one * scale.factor).toFixed(decimals));
+	return `${value == null ? '' : `${text(value)} / `}${text(limit)} ${scale.unit}`;
+}
+
+const withoutSignOfZero = (text: string): string => text.replace('-', Number(text) === 0 ? '' : MINUS);
+
 export function formatPercent(share: number, digits = 0): string {
 	const text = (share * 100).toFixed(digits);
-	return `${Number(text) === 0 ? text.replace('-', '') : text.replace('-', MINUS)} %`;
+	return `${withoutSignOfZero(text)} %`;
 }
 
 /** Relative change: `+0.3 %`, `−83 %`; a change that rounds to zero has no sign. */
