@@ -27,7 +27,6 @@ const TITLES: Record<string, string> = {
 	way_since_reversal_rad: 'travel since reversal',
 	run_order: 'order in the run',
 	direction: 'direction of motion',
-	velocity_setpoint_rad_s: 'velocity set point',
 };
 
 export interface Label {
@@ -38,7 +37,7 @@ export interface Label {
 export function label(column: string, unit?: string | null): Label {
 	const suffix = SUFFIXES.find(([end]) => column.endsWith(end));
 	const withoutUnit = suffix ? column.slice(0, -suffix[0].length) : column;
-	return { title: TITLES[column] ?? withoutUnit.replaceAll('_', ' '), unit: unit ?? suffix?.[1] ?? '' };
+	return { title: TITLES[column] ?? withoutUnit.replaceAll('_', ' ').replace('setpoint', 'set point'), unit: unit ?? suffix?.[1] ?? '' };
 }
 
 /** The unit on a sliding axis. */
