@@ -267,8 +267,8 @@ pub struct Undecided {
     pub text: String,
 }
 
-/// Why the verdict is undecided: contradicting columns, too few blocks to reject a model, an unknown noise floor, or
-/// a parameter that is physically impossible in all fits.
+/// Why the verdict is undecided: contradicting columns, too few blocks to reject a model, an unknown noise floor,
+/// effects that predict worse than no model, or a parameter that is physically impossible in all fits.
 pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Options) -> Option<Undecided> {
     let blocks = found.start.main.problem.blocks;
     // The smallest possible p-value of sign flips with this number of blocks.
@@ -282,7 +282,11 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
         }
         Verdict::Adequate if found.floor.rms.is_none() => (UndecidedReason::NoNoiseFloor, found.floor.source.clone()),
         Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => above_floor(found),
-        Verdict::Adequate | Verdict::MissingEffect => (UndecidedReason::ImpossibleParameter, impossible(fits)?),
+        Verdict::Adequate | Verdict::MissingEffect => {
+            let worse = fits.last().filter(|_| verdict == Verdict::Adequate).and_then(|fit| worse_than_no_model(fit));
+            let worse = worse.map(|text| (UndecidedReason::NuisanceTerms, text));
+            worse.or_else(|| Some((UndecidedReason::ImpossibleParameter, impossible(fits)?)))?
+        }
         Verdict::UnexplainedStructure => return None,
     };
     Some(Undecided { reason, text })
@@ -299,6 +303,13 @@ fn above_floor(found: &Findings) -> (UndecidedReason, String) {
     let why =
         format!("the error is {times:.1} times the noise floor, and no effect and no function of one axis explains it");
     (UndecidedReason::AboveNoiseFloor, why)
+}
+
+/// The sentence for effects that predict worse than no model: the nuisance terms explain the run.
+fn worse_than_no_model(fit: &Fit) -> Option<String> {
+    let alone = fit.effects_rms.filter(|alone| alone * fit.relative_error > fit.rms)?;
+    let alone = figure(alone, &fit.unit);
+    Some(format!("without the nuisance terms, the effects of the model have an error of {alone}, more than no model"))
 }
 
 /// A parameter that is physically impossible in all fits. With an additional curve in the model, the remaining linear
@@ -332,5 +343,21 @@ fn unexplained(found: &Findings) -> &'static str {
     match found.withdrawn.iter().any(reduces) || is_refused {
         true => "No effect of the library explains it with certainty.",
         false => "No effect of the library explains it.",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::selection::tiny::staircase;
+
+    #[test]
+    fn effects_that_predict_worse_than_no_model_do_not_explain_a_run() {
+        let spec = crate::ModelSpec::new(jointbench_instrument::Kind::Friction, ["coulomb", "viscous"]).unwrap();
+        let fit = crate::fit(&staircase(0.1, 0, 0.0), &spec, &Options::default()).unwrap();
+        let measured = fit.rms / fit.relative_error;
+        let with = |effects_rms| worse_than_no_model(&Fit { effects_rms, ..fit.clone() });
+        assert_eq!((with(None), with(Some(0.9 * measured))), (None, None));
+        assert!(with(Some(1.1 * measured)).unwrap().contains("more than no model"));
     }
 }

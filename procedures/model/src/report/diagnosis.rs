@@ -24,6 +24,8 @@ pub enum UndecidedReason {
     AboveNoiseFloor,
     /// A parameter is physically impossible in every model.
     ImpossibleParameter,
+    /// Without the nuisance terms, the effects of the model predict worse than no model.
+    NuisanceTerms,
 }
 
 /// Conclusion of a diagnosis.
