@@ -12,7 +12,7 @@ static INFO: EffectInfo = EffectInfo {
     id: "harmonic_2",
     kind: Kind::Encoder,
     title: "Tilt or ellipticity",
-    sentence: "The ring is tilted or elliptical: two periods per turn.",
+    sentence: "Two periods per turn: the ring is tilted or elliptical, or the amplitudes of the sine and cosine differ.",
     formula: "a·cos 2θ + b·sin 2θ",
     source: "Masuda, Kajitani 1989",
     looks: "two periods per turn",
