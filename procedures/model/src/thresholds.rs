@@ -90,7 +90,6 @@ thresholds! {
     TIE_ERRORS = 2.0, "standard errors", "two models, or two orders of a wave, tie where their validation errors differ by less", "normal distribution, 5 %";
     SIMPLER_GAIN = 0.8, "fraction of gain", "a simpler effect is preferred where it has this fraction of the gain of the best", "`evaluate --part hidden,null`";
     MOST_EXCHANGES = 2.0, "exchanges", "added effects that may be swapped for others", "`evaluate --part hidden,null`";
-    STAND_IN_LOSS = NEARLY_ALL, "ratio of squared validation errors", "a candidate whose error exceeds that of a rejected model by this ratio is only a substitute for the rejected effect", "`evaluate --part hidden,null`";
     BIASED_COEFFICIENT = 0.25, "fraction of coefficient", "a coefficient that moves by this fraction with an effect is biased without it", "mock joint A, seeds 17001 to 17012";
     BIAS_TOLERANCE = TENTH, "fraction of squared column", "an effect with a smaller part outside of the model looks like the model, or is a function of the axis", "mock joint A, seeds 17001 to 17012";
     HYSTERESIS_SHARE = MOST, "fraction of squared error", "a hysteresis effect explains this fraction around reversals", "simulated joints: 83 to 98 %, nothing else above 63 %";
@@ -115,7 +114,6 @@ thresholds! {
     AXIS_FUNCTION = NEARLY_ALL, "fraction of squared contribution", "a contribution that its map reproduces to this fraction is a function of the axis", "`--test humps`";
     OWN_SCATTER_SHARE = TENTH, "fraction of variance", "least fraction of the scatter of a score that counts as noise", "`evaluate --part detectable`";
     FOLD_COVERAGE = 0.05, "fraction of squared column", "folds without a fold that hold less do not decide its coefficient", "`--test loops`";
-    COMPONENT_OWN_SHARE = NEARLY_ALL, "fraction of gain", "a component that keeps this fraction together with another effect explains something else", "`evaluate --part hidden,null`";
     BETTER_FORM = 0.01, "fraction of squared error a parameter", "another form must take this fraction for each parameter more", "`evaluate --part hidden,null`";
     WIDE_INTERVAL = 10.0, "ratio", "a nonlinear parameter with a wider interval is not identified", "`--example coverage`";
     RANGE_MARGIN = 0.02, "fraction of range", "so far beyond the fitted range is not beyond", "presentation";

@@ -7,10 +7,10 @@ use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::linear_model::{LinearModel, Term, allows, varpro};
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
-use crate::thresholds::{BETTER_FORM, COMPONENT_OWN_SHARE};
+use crate::thresholds::BETTER_FORM;
 
 /// Adds a component to an effect that is a sum of components. The component has to pass the same tests as a new
-/// effect, and no other effect may explain the same share better.
+/// effect.
 pub fn extend<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p>, options: &Options) {
     for at in 0..terms.terms.len() {
         while let Some(longer) = one_more(terms, at, library, options) {
@@ -30,25 +30,7 @@ fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, 
     let parts = library.candidates.iter().filter(is_part).map(|c| (share(c), c));
     let (share_of_part, part) = parts.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let part = part.term(terms.problem);
-    let mut others: Vec<(f64, &Regressor)> = Vec::new();
-    for (share, other) in library.candidates.iter().filter(|c| !terms.contains(c.id())).map(|c| (share(c), c)) {
-        match others.iter_mut().find(|known| known.1.id() == other.id()) {
-            Some(known) if share > known.0 => *known = (share, other),
-            None if share > share_of_part => others.push((share, other)),
-            _ => {}
-        }
-    }
-    // A candidate that explains more is added first, unless it explains something else.
-    let instead = |other: &Regressor| {
-        let mut with_other = partial.basis.clone();
-        for column in &other.term(terms.problem).columns {
-            with_other.push(column);
-        }
-        let left = PartialRegression::new(with_other.clone(), with_other.rest(&partial.residual), terms.problem);
-        left.orthogonalized(&part.columns).share * left.sse < COMPONENT_OWN_SHARE * share_of_part * partial.sse
-    };
-    let is_weak = share_of_part < options.practical_share || others.into_iter().any(|(_, other)| instead(other));
-    if is_weak || significance(&part, library, &partial, options) > options.alpha {
+    if share_of_part < options.practical_share || significance(&part, library, &partial, options) > options.alpha {
         return None;
     }
     let shape = term.shape.iter().chain(&part.shape).copied().collect();

@@ -14,7 +14,7 @@ use crate::residual_analysis::undersampled_harmonics;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use crate::selection::equivalence::{encompasses, is_tie};
 use crate::selection::forward_step::{ScoredCandidate, step};
-use crate::thresholds::{MOST_EXCHANGES, SIMPLER_GAIN, STAND_IN_LOSS};
+use crate::thresholds::{MOST_EXCHANGES, SIMPLER_GAIN};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -160,14 +160,12 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     }
 
     /// The candidate to add: the replacement of an exchanged effect, or the best one if there is a place for it. A
-    /// candidate that explains clearly less than a removed effect is only a substitute for it.
+    /// candidate that explains significantly less than a removed effect is only a substitute for it.
     pub fn candidate(&mut self) -> Option<Found<'p>> {
         let found = self.pending_swap.take().or_else(|| if self.left > 0 { self.best() } else { None });
         let stands_in = |scored: &ScoredCandidate| {
             let clearly = |losses: &Vec<f64>| {
-                let rejected: f64 = losses.iter().sum();
-                rejected < STAND_IN_LOSS * scored.validation_losses
-                    || rejected < scored.validation_losses && !is_tie(losses, &scored.losses)
+                losses.iter().sum::<f64>() < scored.validation_losses && !is_tie(losses, &scored.losses)
             };
             self.rejected_losses.iter().any(clearly)
         };
