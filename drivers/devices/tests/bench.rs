@@ -264,7 +264,7 @@ fn the_bench_of_the_documents_has_exactly_their_values() {
     }
 }
 
-/// The position loop of the thesis lags behind the integral of its set-point, friction in addition.
+/// A position loop without feed-forward lags behind the integral of its set-point, friction in addition.
 #[test]
 fn the_joints_of_the_documents_lag_behind_their_set_point() {
     for (joint, gain_per_s) in [(Joint::JointA, 23.3), (Joint::JointB, 24.0)] {

@@ -87,7 +87,7 @@ fn measured(plan: Plan) -> Result<RunTable, Box<dyn std::error::Error>> {
     Ok(RunTable::new(plan.meta, trace)?)
 }
 
-/// Joint A of the thesis with brake A.
+/// Joint A of docs/documents.md with brake A.
 fn facts() -> BenchFacts {
     BenchFacts {
         name: "joint A".into(),

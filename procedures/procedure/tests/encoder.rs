@@ -316,7 +316,7 @@ fn fifteen_bits_are_usable_behind_the_table() {
     let (truth, _mock, mut bench) = open(5, false);
     let found = run(&mut bench, "encoder_linearity", json!({}));
     let bits = |name: &str| found.quantity(name).unwrap().value;
-    assert!((9.5..10.5).contains(&bits("bits_before")), "the thesis: 10 bits");
+    assert!((9.5..10.5).contains(&bits("bits_before")), "about 10 bits without a correction");
     assert!(bits("bits_velocity") > bits("bits_table"), "the fast turns show the delay");
     assert!(bits("bits_direction") >= 15.0);
     let before = found.quantity("bits_before").unwrap();

@@ -1,4 +1,4 @@
-//! Tables 4.2 and 4.3 of the thesis on the mock bench that has exactly their values.
+//! Tables 4.2 and 4.3 of docs/documents.md on the mock bench that has exactly their values.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::identification::Identification;

@@ -7,7 +7,7 @@ use jointbench_procedure::in_memory_run::run_in_memory;
 use jointbench_procedure::procedure;
 use serde_json::Map;
 
-/// Compliance of the data sheet: bearing and joint in series (thesis, table 4.8).
+/// Compliance of the data sheet: bearing and joint in series.
 const JOINT_A: TorsionLimit = TorsionLimit { compliance_rad_per_nm: 1.812e-4, tolerance_rad: 2e-3 };
 const JOINT_B: TorsionLimit = TorsionLimit { compliance_rad_per_nm: 1.4746e-3, tolerance_rad: 4e-3 };
 

@@ -202,7 +202,7 @@ fn both_encoders_follow_the_shaft_and_differ_by_their_shape_and_delay() {
         }
         sum_rad / f64::from(readings)
     };
-    // 64.34 µs (the thesis), and the width of the hysteresis.
+    // The delay of 64.34 µs, and the width of the hysteresis.
     let apart_rad = mean_disparity(-100.0) - mean_disparity(100.0);
     let expected_rad = 2.0 * 100.0 * 64.34e-6;
     assert!((apart_rad - expected_rad).abs() < 6e-4, "{apart_rad} rad, expected {expected_rad} rad");

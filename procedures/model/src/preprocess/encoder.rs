@@ -73,7 +73,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
 
 /// test − reference, wrapped about its circular mean, so that no sample is separated from the others at ±π.
 ///
-/// The alignment rule of the thesis on joint test benches, eq. 4.1–4.3, with the circular mean as the centre.
+/// The centre is the circular mean.
 fn difference(test: &[f64], reference: &[f64]) -> Vec<f64> {
     let raw = || test.iter().zip(reference).map(|(t, r)| t - r);
     let (sin, cos) = raw().fold((0.0, 0.0), |(s, c), d| (s + d.sin(), c + d.cos()));

@@ -1,4 +1,4 @@
-//! Torque of a brake over its current and its whole current history (thesis, figure 3.6).
+//! Torque of a brake over its current and its whole current history.
 //!
 //! The run demagnetises the brake first. Then it measures the major loop, first-order reversal curves from every
 //! current of a grid down to zero, and nested minor loops. A random history is left out of the model and validates

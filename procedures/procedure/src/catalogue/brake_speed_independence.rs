@@ -1,4 +1,4 @@
-//! Speed dependence of the brake torque (thesis, figures 3.3 to 3.5): constant currents, each at all speeds.
+//! Speed dependence of the brake torque: constant currents, each at all speeds.
 
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};

@@ -1,7 +1,8 @@
 //! Stiction: the motor current rises until the joint breaks away, at many positions and in both directions.
 //!
-//! Document 000 raises the current until the encoder increases in five consecutive samples. A joint whose friction falls with speed creeps before it breaks away. A faster torque ramp then gives a lower breakaway torque
-//! (Canudas de Wit, Olsson, Åström, Lischinsky 1995). Only a slow ramp approximates the friction at rest.
+//! Corke 1994 raises the current until the encoder increases in five consecutive samples. A joint whose friction falls
+//! with speed creeps before it breaks away. A faster torque ramp then gives a lower breakaway torque (Canudas de Wit,
+//! Olsson, Åström, Lischinsky 1995). Only a slow ramp approximates the friction at rest.
 //!
 //! Gravity loads a joint without a torque sensor. It is estimated from the angles of the breakaways. A constant part of
 //! it looks like a difference of the directions, so that only the mean of both directions is free of it on a short arc.

@@ -1,5 +1,4 @@
-//! Friction compensation by feedforward of motor current, evaluated on a reference trajectory (thesis, sections 4.2.2
-//! to 4.2.6, table 4.7).
+//! Friction compensation by feedforward of motor current, evaluated on a reference trajectory.
 //!
 //! The same reference is followed with each compensation method. The feedforward is planned from the friction in the
 //! parameters and never exceeds it, because over-compensation makes the controller active.

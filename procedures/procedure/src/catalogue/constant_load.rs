@@ -1,4 +1,4 @@
-//! One demanded load torque at every speed (thesis, section 3.2): the brake current is readjusted at each of them.
+//! One demanded load torque at every speed: the brake current is readjusted at each of them.
 //!
 //! Behind the gear the torque at one current depends on the speed. The run first measures the torque over rising
 //! currents at each speed, in both directions. From these curves the current of each speed is planned during the run.

@@ -1,4 +1,4 @@
-//! Friction over load and speed: the dependence of friction on the load (thesis, figure 2.6).
+//! Friction over load and speed: the dependence of friction on the load.
 //!
 //! The plan is that of `friction` with more loads and fewer speeds. The torque sensor measures the brake torque. The
 //! additional motor torque is the load-dependent friction.

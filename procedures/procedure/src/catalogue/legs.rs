@@ -204,7 +204,7 @@ pub(super) mod testing {
     use jointbench_instrument::bench::JointConstants;
     use std::f64::consts::TAU;
 
-    /// Joint A of the thesis with brake A.
+    /// Joint A of docs/documents.md with brake A.
     pub fn joint_a() -> BenchFacts {
         BenchFacts {
             name: "a".into(),

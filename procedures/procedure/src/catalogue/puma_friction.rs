@@ -1,4 +1,4 @@
-//! Friction of an arm's axis by the method of document 000 (section 3.1). A work-out comes first. Then the mean motor
+//! Friction of an arm's axis by the method of Corke 1994, section 3.1. A work-out comes first. Then the mean motor
 //! current is measured at constant speeds over a short arc around the pose without gravity torque. The results are a
 //! line for each direction, their mean viscous friction, a test for a difference of the directions, and stiction. For
 //! stiction the current rises until the encoder increases five times in a row.

@@ -1,4 +1,4 @@
-//! Flexibility of the joint (thesis, section 4.3, table 4.8): load steps at constant speed in alternating direction.
+//! Flexibility of the joint: load steps at constant speed in alternating direction.
 //!
 //! Loads rise from zero to the highest and fall again. The compliance of the bearing behind the joint is subtracted:
 //! 1/k_joint = 1/k_measured − 1/k_bearing.

@@ -1,4 +1,4 @@
-//! Detection of faults from the identified flexibility (thesis, section 4.3.2): the torsion of a joint has to follow its
+//! Detection of faults from the identified flexibility: the torsion of a joint has to follow its
 //! torque.
 
 use super::Refusal;

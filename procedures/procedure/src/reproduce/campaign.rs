@@ -8,9 +8,9 @@ use std::f64::consts::TAU;
 /// The subject of the documents that is on the bench.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Subject {
-    /// Joint A of the thesis, with brake A.
+    /// Joint A of docs/documents.md, with brake A.
     JointA,
-    /// Joint B of the thesis, with brake A.
+    /// Joint B of docs/documents.md, with brake A.
     JointB,
     /// Joint A with the gear and brake B behind brake A.
     GearAndBrakeB {
@@ -26,7 +26,7 @@ pub enum Subject {
         /// Half the difference of this delay between the directions.
         half_difference_s: f64,
     },
-    /// An axis of the arm of document 000.
+    /// An axis of a Puma 560 (Corke 1994).
     Puma {
         /// 1 to 6.
         axis: usize,

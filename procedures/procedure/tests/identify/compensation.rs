@@ -27,7 +27,7 @@ fn truth_of(hidden: &[&str]) -> Truth {
     MockBench::start(MockSettings::new(Joint::JointA, 1).hiding(hidden)).unwrap().truth().clone()
 }
 
-/// Within a few bristle deflections the static models are wrong (thesis, section 5.3).
+/// Within a few bristle deflections the static models are wrong.
 #[test]
 fn a_slow_reference_is_followed_best_with_the_dynamic_model() {
     let truth = truth_of(&["stribeck"]);

@@ -63,7 +63,7 @@ fn check(found: &Identification, name: &str, truth: f64, share: f64) {
     assert!(high - low <= 2.0 * share * truth, "{name}: [{low}, {high}] is wider than {share} of {truth}");
 }
 
-/// Joint A of the thesis.
+/// Joint A of docs/documents.md.
 fn joint_a(velocity: f64) -> f64 {
     let speed = velocity.abs();
     let rise = 0.009 * (-(speed / (0.06 * GEAR)).powf(0.8)).exp();

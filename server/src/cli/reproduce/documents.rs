@@ -14,7 +14,7 @@ use std::fs;
 
 const DEVIATIONS: &str = "## Sources
 
-The figures are those of the two source documents. Table 3.1 is not in the text of document 000 that this project has: its Coulomb and mean viscous
+The figures are those of the two source documents. Table 3.1 is not in the text of Corke 1994 that this project has: its Coulomb and mean viscous
 friction agree with the parameters of the Puma 560 in Corke's Robotics Toolbox of 1995; its breakaway and its viscous friction of each direction are
 quoted from Corke 1996, table 2.12, and not compared with the print. The inertia of the wrist, the stiffness of each axis and a tool are assumed.
 

@@ -1,4 +1,4 @@
-//! A Puma axis servo as Corke describes it (*The Unimation Puma servo system*, document 000 of the project).
+//! A Puma axis servo (Corke 1994).
 //!
 //! From the document:
 //!

@@ -7,7 +7,7 @@ use jointbench_instrument::bench::JointConstants;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// The object that the drive turns: one of the two joints of the thesis, the motor of its encoder bench, or an arm.
+/// The object that the drive turns: one of two flexible joints, the motor of an encoder bench, or an arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Joint {
@@ -34,7 +34,7 @@ pub enum Load {
     None,
 }
 
-/// Values of the thesis: tables of the joints, of friction (motor side) and of stiffness (link side).
+/// Values of a joint, of its friction (motor side) and of its stiffness (link side), as docs/documents.md lists them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DataSheet {
     pub joint: Joint,
@@ -70,7 +70,7 @@ pub(super) struct DataSheet {
     pub link_inertia_kg_m2: f64,
     /// Link side: inertia with which the drive's gains were tuned.
     pub tuned_inertia_kg_m2: f64,
-    /// Assumed, because the thesis gives none.
+    /// Assumed: no data sheet states it.
     pub rotor_inertia_kg_m2: f64,
     pub max_motor_velocity_rad_s: f64,
     pub max_motor_current_a: f64,
@@ -85,7 +85,7 @@ pub(super) struct DataSheet {
 /// Gains of the drive's loops.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Loops {
-    /// Gain of a position loop that follows the integral of the velocity set-point, as in the controller of the thesis.
+    /// Gain of a position loop that follows the integral of the velocity set-point, as in the controllers of the joints in docs/documents.md.
     /// `None`: the drive's velocity loop follows the set-point.
     pub position_per_s: Option<f64>,
     /// Bandwidth of the velocity loop.
@@ -111,9 +111,9 @@ pub(super) const LINE_RATIO: f64 = 10.0;
 /// Supplies rated current to a coil at 100 °C (40.4 V) with a margin.
 const COMPLIANCE_V: f64 = 45.0;
 
-/// Rated torque of the brakes of the thesis (table 3.1).
+/// Rated torque of the brakes in docs/documents.md.
 const DOCUMENTS_BRAKE_NM: f64 = 15.0;
-/// ξ of the encoder bench (section 4.1.1), in points of 2¹⁸.
+/// ξ of the encoder bench, in points of 2¹⁸.
 const MOUNTING_POINTS: f64 = 1437.0;
 /// Motor current of joint A at its largest torque of 70 Nm: 9.7 A, and up to 2 A for friction.
 const FULL_TORQUE_A: f64 = 12.0;
@@ -182,7 +182,7 @@ const JOINT_B: DataSheet = DataSheet {
     mounting_points: 0.0,
 };
 
-/// The thesis only says "BLDC motor": all values are assumed.
+/// A BLDC motor without a data sheet: all values are assumed.
 const ENCODER_SHAFT: DataSheet = DataSheet {
     joint: Joint::EncoderShaft,
     is_exact: false,

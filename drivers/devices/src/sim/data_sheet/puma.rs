@@ -1,4 +1,4 @@
-//! The six axes of a Puma 560 (document 000).
+//! The six axes of a Puma 560 (Corke 1994).
 
 use super::{DataSheet, Joint, VELOCITY_LOOP, brake};
 use std::f64::consts::PI;
@@ -37,7 +37,7 @@ const fn shoulder_viscous_nm_s(slope: f64) -> f64 {
     slope * SHOULDER_NM_PER_V / (SHOULDER_RATIO * (PI / 180.0))
 }
 
-/// Friction: table 3.1 of document 000, as in table 2.12 of Corke 1996; axis 2 from the
+/// Friction: table 3.1 of Corke 1994, as in table 2.12 of Corke 1996; axis 2 from the
 /// lines of figure 3.2, which agree with the table within 0.5 %. Ratio, rotor, torque constant and weight: Corke and
 /// Armstrong-Hélouvry 1994. The wrist carries a small tool (assumed).
 const AXES: [Axis; 6] = [

@@ -1,5 +1,5 @@
 //! A position loop without feed-forward that follows the integral of the velocity set-point. The firmware of the maker
-//! has none: it stands for the controller of the thesis.
+//! has none: it represents the controllers of the joints in docs/documents.md.
 
 use crate::sim::plant::STEP_S;
 

@@ -1,4 +1,4 @@
-//! One axis of a Puma 560's digital servo board with its amplifier (document 000, section 2.3 and table 2.7). The
+//! One axis of a Puma 560's digital servo board with its amplifier (Corke 1994, section 2.3 and table 2.7). The
 //! frames and all other parts that the document does not describe are defined by this project: see `protocol::puma`.
 //!
 //! The axis processor closes the position loop once per tick. The amplifier closes the velocity loop on the motor's

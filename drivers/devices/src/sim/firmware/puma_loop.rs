@@ -1,4 +1,4 @@
-//! The position loop of a Puma's axis processor, once per clock tick, in the variables of table 2.7 of document 000.
+//! The position loop of a Puma's axis processor, once per clock tick, in the variables of Corke 1994, table 2.7.
 //!
 //! The document names the variables but not the arithmetic: the effect of the gains and their units are assumed.
 

@@ -1,4 +1,4 @@
-//! The memory of a Puma's axis processor: table 2.7 of document 000.
+//! The memory of a Puma's axis processor: Corke 1994, table 2.7.
 //!
 //! Multi-byte numbers have the lowest byte at the lowest address, as on a 6503, and three-byte numbers have 8
 //! fractional bits (assumed). Addresses without a variable in the table are memory that no routine reads.

@@ -1,5 +1,4 @@
-//! Difference between two brakes of the same type, at the shaft of the brake (thesis, section 3.2: both brakes have
-//! nearly the same curve).
+//! Difference between two brakes of the same type, at the shaft of the brake.
 //!
 //! The torque without current is subtracted on both sides, because it contains the drag of the transmission and of the
 //! other brake. The model of the other brake predicts its torque after the same history of currents.

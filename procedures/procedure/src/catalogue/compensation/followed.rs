@@ -1,4 +1,4 @@
-//! Tracking errors of each compensation method: ρ₁ = Σ|θ_d − θ|, ρ₂ = Σ(θ_d − θ)², ρ_max (eq. 4.9, 4.10), and their RMS,
+//! Tracking errors of each compensation method: ρ₁ = Σ|θ_d − θ|, ρ₂ = Σ(θ_d − θ)², ρ_max, and their RMS,
 //! each over one period. The reported values are means over the rounds. Their intervals come from the scatter between
 //! rounds: they contain the drift of friction within the run, but not the error of the friction that is compensated.
 //!

@@ -5,7 +5,7 @@ use crate::plan::{Drive, Feedforward};
 use crate::profile::Profile;
 use jointbench_instrument::bench::JointConstants;
 
-/// Around zero velocity the jump of Coulomb friction is omitted or linearised (thesis, section 4.2.3; link side).
+/// Around zero velocity the jump of Coulomb friction is omitted or linearised (link side).
 const RAMP_RAD_S: f64 = 0.05;
 /// The full model includes that region: its slope is limited only by the uncertainty of the velocity set-point.
 const STEEP_RAD_S: f64 = 0.002;
@@ -31,7 +31,7 @@ pub(super) enum Method {
 }
 
 impl Method {
-    /// In the order of the thesis (figure 4.22, table 4.7, sections 4.2.6 and 5.3).
+    /// In the order of the rows of a report.
     pub const ALL: [Method; 10] = [
         Method::None,
         Method::IdealCoulomb,

@@ -1,4 +1,4 @@
-//! Mounting tolerance of the sensor (table 4.4 of the thesis), and its best position.
+//! Mounting tolerance of the sensor, and its best position.
 
 use super::edges::{DIRECTIONS, Direction, Found, found};
 use super::quantities::{insufficient_data, quantity};

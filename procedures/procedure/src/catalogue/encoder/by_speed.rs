@@ -1,4 +1,4 @@
-//! Rows of tables 4.2 and 4.3 of the thesis: encoder difference, delay, and delay beyond the expected one at each speed.
+//! Rows by speed: encoder difference, delay, and delay beyond the expected one at each speed.
 
 use super::quantities::quantity;
 use crate::findings::{Solved, solve, t95};
@@ -126,7 +126,7 @@ impl<'a> BySpeed<'a> {
         })
     }
 
-    /// Mean of the delays of all speeds, and the half width of its interval (eq. 4.4).
+    /// Mean of the delays of all speeds, and the half width of its interval.
     pub fn mean_delay(&self) -> [f64; 2] {
         let count = self.speeds.len() as f64;
         let mean_s = self.speeds.iter().map(|speed| -speed.disparity_rad / speed.rad_s).sum::<f64>() / count;
@@ -242,7 +242,7 @@ mod tests {
     fn the_rows_of_table_4_2_follow_from_its_differences() {
         let offset_rad = 1437.0 * POINT_RAD;
         let points = twice(TABLES.iter().map(|[rpm, points, ..]| (rpm * RPM, offset_rad + points * POINT_RAD)));
-        // The table has its own offset: that of eq. 4.3.
+        // The table has its own offset.
         let solved = lines(&points, [offset_rad, 0.0, 0.2811 * POINT_RAD / RPM]);
         let found = BySpeed::of(&points, &solved).quantities(Some(POINT_RAD), None);
         for (i, [rpm, points, per_rpm, ..]) in (1..).zip(TABLES) {

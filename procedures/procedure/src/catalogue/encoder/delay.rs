@@ -1,5 +1,4 @@
-//! Delay of the encoder under test: its difference to the reference over the speed (eq. 4.4 and 4.5, tables 4.2 and
-//! 4.3 of the thesis).
+//! Delay of the encoder under test: its difference to the reference over the speed.
 
 use super::by_speed::{BySpeed, Known, Lines, Point};
 use super::quantities::{insufficient_data, quantity};

@@ -17,7 +17,7 @@ pub struct Direction {
     pub reach: &'static str,
     name: &'static str,
     pub title: &'static str,
-    /// Manufacturing tolerance of the data sheet (table 4.4), in the unit of the axis.
+    /// Manufacturing tolerance of the data sheet, in the unit of the axis.
     pub manufacturing: f64,
 }
 

@@ -202,7 +202,7 @@ fn summary([before, table, velocity, direction]: [f64; 4], entries: usize, poles
     )
 }
 
-/// Whether table and velocity, the terms of the thesis, are sufficient for more than its 14 bits.
+/// Whether table and velocity, without the direction, are sufficient for the required bits.
 fn what_it_takes(without_direction: f64, full: f64) -> String {
     match (without_direction >= TARGET_BITS, full >= TARGET_BITS) {
         (true, _) => format!("Table and velocity term are sufficient for {TARGET_BITS} bits."),

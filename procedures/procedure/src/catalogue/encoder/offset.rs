@@ -1,4 +1,4 @@
-//! Zero offset of the encoder under test relative to the reference (eq. 4.1 to 4.3 of the thesis).
+//! Zero offset of the encoder under test relative to the reference.
 
 use super::quantities::{histogram, insufficient_data, quantity, scatter};
 use super::sweeps::{Sweep, sweeps};

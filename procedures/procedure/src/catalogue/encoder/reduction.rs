@@ -1,5 +1,4 @@
-//! Error of the look-up table, whose entries are few, relative to the smoothed error over the turn (section 4.1.5 of the
-//! thesis).
+//! Error of the look-up table, whose entries are few, relative to the smoothed error over the turn.
 
 use super::quantities::quantity;
 use super::spectrum::last_order;

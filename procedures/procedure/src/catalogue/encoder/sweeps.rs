@@ -15,7 +15,7 @@ pub struct Sweep {
     pub speed_rad_s: f64,
     /// Angle of the reference at the reading times of the encoder under test.
     pub angle_rad: Vec<f64>,
-    /// Test − reference by the wrap rule (eq. 4.3 of the thesis).
+    /// Test − reference within half a turn of its centre.
     pub error_rad: Vec<f64>,
     /// First axis of the stage; 0 if the run does not move it.
     pub radial_m: f64,

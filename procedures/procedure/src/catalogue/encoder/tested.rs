@@ -1,4 +1,4 @@
-//! Tested tolerance (table 4.4 of the thesis): how far the sensor may be from its nominal position in any direction of an
+//! Tested tolerance: how far the sensor may be from its nominal position in any direction of an
 //! axis.
 
 use super::edges::{DIRECTIONS, Direction, Found};

@@ -1,5 +1,4 @@
-//! Coulomb, viscous and Stribeck friction of the joint without load, for each direction (tables 4.5 and 4.6 of the
-//! thesis).
+//! Coulomb, viscous and Stribeck friction of the joint without load, for each direction.
 
 use super::free_friction::{Figured, FreeFriction, fit_with, friction_nm};
 use super::inconclusive::{Side, hidden_rise_nm, is_small, rest};

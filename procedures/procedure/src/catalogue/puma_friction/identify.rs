@@ -1,4 +1,4 @@
-//! Lines of voltage over speed for each direction, and stiction, in the units of document 000: volts, and degrees in
+//! Lines of voltage over speed for each direction, and stiction, in the units of Corke 1994: volts, and degrees in
 //! a second at the link. The same results are also given in newton metres at the motor.
 
 use super::super::breakaway::ramps::{Onset, onsets, ramp_step_nm};
@@ -109,7 +109,7 @@ impl Lines {
         combined(slope(&self.forward), slope(&self.backward), -1.0)
     }
 
-    /// The viscous friction of a linear model (document 000, section 3.1).
+    /// The viscous friction of a linear model (Corke 1994, section 3.1).
     fn b_mean(&self) -> (f64, [f64; 2]) {
         let half = |line: &Line| (0.5 * line.slope, line.slope_ci95.map(|end| 0.5 * end));
         combined(half(&self.forward), half(&self.backward), 1.0)
