@@ -186,6 +186,11 @@ pub struct Traits {
     /// Whether it is computed from the motion of the link. If one side of the joint is clamped, that motion is the
     /// twist itself.
     pub needs_motion: bool,
+    /// The effect that a delay delays: the coefficient of the delay divided by that of the effect is a time. In a run
+    /// that is judged sample by sample, the form error of the jerk represents the same delay.
+    pub delay_of: Option<&'static str>,
+    /// Whether it changes the direction of friction in a run that is judged sample by sample, and is no column there.
+    pub changes_direction: bool,
     /// Whether a user wrote the formula. The selection prefers an effect of the library that explains the same.
     pub is_user_defined: bool,
     /// Whether a user has set parameters of the effect.

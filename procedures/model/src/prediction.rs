@@ -1,8 +1,8 @@
 //! Prediction of a fit on a run that is preprocessed like the fitted one.
 
+use crate::effects::changes_direction;
 use crate::preprocess::{Prepared, Problem, prepare_with};
 use crate::regression::linear_model::columns;
-use crate::regression::solution::PRESLIDING;
 use crate::report::fit::{Fit, Term};
 use crate::user_effects::find_with_user_effects;
 use crate::view::View;
@@ -33,7 +33,7 @@ pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelErr
 /// Prediction of the effects of a fit at the rows of a problem.
 pub(crate) fn predict_effects(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
     // The direction signal of sampled runs already contains presliding.
-    let is_column = |term: &&Term| problem.form_error.is_none() || term.effect != PRESLIDING;
+    let is_column = |term: &&Term| problem.form_error.is_none() || !changes_direction(&term.effect);
     let sampled = Fit { terms: fit.terms.iter().filter(is_column).cloned().collect(), ..fit.clone() };
     predict_on(&sampled, &problem.view, problem.rows(), |column| problem.reduce.apply(column))
 }

@@ -5,10 +5,10 @@
 //! returns to its range.
 
 use crate::effect::ShapeSearch;
+use crate::effects::changes_direction;
 use crate::inference::intervals::intervals;
 use crate::preprocess::Prepared;
 use crate::regression::linear_model::Term;
-use crate::regression::solution::PRESLIDING;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::{Fit, Parameter, ParameterState};
 use crate::report::setting::ParameterSetting;
@@ -88,7 +88,7 @@ fn is_hidden(
     id: &str,
     settings: &[&ParameterSetting],
 ) -> Result<bool, ModelError> {
-    if id == PRESLIDING && prepared.main.form_error.is_some() {
+    if changes_direction(id) && prepared.main.form_error.is_some() {
         return Err(refused(
             settings[0],
             "the preprocessing of this run finds presliding; remove the setting, or the effect from the model",

@@ -34,6 +34,11 @@ pub fn find(kind: Kind, id: &str) -> Result<&'static dyn Effect, ModelError> {
     })
 }
 
+/// Whether an effect changes the direction of friction in a run that is judged sample by sample.
+pub(crate) fn changes_direction(id: &str) -> bool {
+    find(Kind::Friction, id).is_ok_and(|effect| effect.traits().changes_direction)
+}
+
 /// `count` values from `low` to `high` with a constant ratio.
 pub(crate) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
     let ratio = (high / low).ln();

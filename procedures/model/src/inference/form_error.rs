@@ -1,11 +1,11 @@
 //! Results of a fit that is judged sample by sample: presliding, and the nuisance terms of the form error.
 
 use crate::effect::{Effect, Form};
-use crate::effects;
 use crate::effects::friction::coulomb;
+use crate::effects::{self, changes_direction};
 use crate::inference::parameter_state;
 use crate::regression::linear_model::LinearModel;
-use crate::regression::solution::{PRESLIDING, Solution};
+use crate::regression::solution::Solution;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::{FormErrorTerm, Parameter, ParameterState, Term};
 use crate::stats::summary::rms;
@@ -15,15 +15,16 @@ use jointbench_instrument::Kind;
 /// Presliding as one form of the library, applied to the dry friction. It is no additive term: it replaces the
 /// direction signal of all friction terms.
 pub fn presliding(model: &TwoStageModel, parameters: &[Parameter]) -> Option<(Term, Vec<Parameter>)> {
-    let is_in = model.effects.iter().any(|e| e == PRESLIDING) && !model.hidden.iter().any(|h| h.effect == PRESLIDING);
-    let bristles = model.prepared.about.bristles.as_ref().filter(|_| is_in)?;
+    let id = model.effects.iter().find(|id| changes_direction(id))?;
+    let is_hidden = model.hidden.iter().any(|hidden| hidden.effect == *id);
+    let bristles = model.prepared.about.bristles.as_ref().filter(|_| !is_hidden)?;
     let (form, reach, ends) = bristles.single()?;
     let dry = parameters.iter().find(|p| p.effect == coulomb::ID);
     let (value, ci95) = dry.map_or((0.0, [0.0, 0.0]), |dry| (dry.value, dry.ci95));
-    let info = effects::find(Kind::Friction, PRESLIDING).ok()?.info();
+    let info = effects::find(Kind::Friction, id).ok()?.info();
     let unit = |name| model.prepared.motion.label(info.unit(name));
     let parameter = |name: &'static str, value, ci95, (state, note)| Parameter {
-        effect: PRESLIDING.into(),
+        effect: id.clone(),
         name: name.into(),
         value,
         unit: unit(name),
@@ -38,7 +39,7 @@ pub fn presliding(model: &TwoStageModel, parameters: &[Parameter]) -> Option<(Te
         false => (ParameterState::Ok, None),
     };
     let term = Term {
-        effect: PRESLIDING.into(),
+        effect: id.clone(),
         form: form.into(),
         shape: vec![reach],
         linear: vec![value],

@@ -21,7 +21,7 @@ pub(crate) mod sweeps;
 pub(crate) mod unknown_columns;
 
 use crate::effect::Regime;
-use crate::effects::friction::presliding;
+use crate::effects::changes_direction;
 use crate::preprocess::checks::unit_mismatch::DataErrors;
 use crate::preprocess::checks::{metadata, unit_mismatch};
 use crate::preprocess::design::replicates::DifferentMotion;
@@ -187,7 +187,7 @@ impl Prepared {
 
     /// The problem that a model of these effects is judged on. Presliding replaces the direction by its state.
     pub(crate) fn judged(&self, effects: &[String]) -> &Problem {
-        let can_absorb = effects.iter().any(|effect| effect == presliding::ID);
+        let can_absorb = effects.iter().any(|effect| changes_direction(effect));
         self.bristled.as_ref().filter(|_| can_absorb).unwrap_or(&self.main)
     }
 

@@ -6,6 +6,7 @@ use crate::effect::{Effect, ShapeSearch};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
+use crate::stats::summary::mean;
 use crate::thresholds::NEGLIGIBLE_RMS;
 use jointbench_instrument::Kind;
 use rayon::prelude::*;
@@ -46,6 +47,11 @@ impl<'p> LinearModel<'p> {
         self.terms.iter().any(|t| t.id() == id)
     }
 
+    /// Whether it contains a delay of another effect.
+    pub fn has_delay(&self) -> bool {
+        self.terms.iter().any(|t| t.effect.traits().delay_of.is_some())
+    }
+
     /// The model without one effect.
     pub fn without(&self, id: &str) -> Self {
         let mut less = self.clone();
@@ -83,7 +89,7 @@ impl<'p> LinearModel<'p> {
     /// the errors themselves.
     pub fn is_negligible(&self, rms: f64, kind: Kind) -> bool {
         let response = self.response();
-        let mean = response.iter().sum::<f64>() / response.len() as f64;
+        let mean = mean(&response);
         let spread = (response.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / response.len() as f64).sqrt();
         kind != Kind::Encoder && rms < NEGLIGIBLE_RMS * spread
     }

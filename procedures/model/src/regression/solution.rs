@@ -3,7 +3,6 @@
 
 use crate::effect::Regime;
 use crate::effects;
-use crate::effects::friction::{presliding, signal_delay};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
 use crate::preprocess::form_error::{ErrorColumn, FormError, FormErrorKind};
@@ -22,10 +21,6 @@ use std::sync::Arc;
 const FIRST_RIDGE: f64 = 1e-4;
 /// How many times the weights are updated.
 const REWEIGHTED: usize = 2;
-
-/// The delay, whose column is the jerk, and presliding, which changes the friction direction.
-pub const DELAY: &str = signal_delay::ID;
-pub const PRESLIDING: &str = presliding::ID;
 
 /// Nuisance columns of a model: form error, by its place in the list, and other forms of the effects.
 pub struct Nuisance<'a> {
@@ -48,7 +43,7 @@ pub fn nuisance<'a>(
 ) -> Nuisance<'a> {
     let passes_load = model.given.iter().any(|g| *g != 0.0);
     let is_out = |kind: FormErrorKind| match kind {
-        FormErrorKind::Jerk => model.contains(DELAY),
+        FormErrorKind::Jerk => model.has_delay(),
         FormErrorKind::LoadRate => !passes_load,
         FormErrorKind::Bristle | FormErrorKind::BristleRate | FormErrorKind::Snap => false,
     };

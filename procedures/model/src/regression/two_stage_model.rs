@@ -7,7 +7,6 @@ use crate::regression::candidates::{CandidateSet, CandidateSets};
 use crate::regression::canonical_fit::{enter, fit_canonical};
 use crate::regression::hysteresis_form::form_of;
 use crate::regression::linear_model::{LinearModel, Term, columns, fixed_part};
-use crate::regression::solution::PRESLIDING;
 use crate::report::reasons::Invisible;
 use crate::{Effect, ModelError, ModelSpec, Options};
 
@@ -104,7 +103,7 @@ impl<'p> TwoStageModel<'p> {
         let mut assembly =
             Self { prepared, spec, effects, main, moving: None, ramp_offset: Vec::new(), hidden: Vec::new() };
         let mut effects_to_fit = assembly.enter_offsets()?;
-        effects_to_fit.retain(|effect| effect.info().id != PRESLIDING);
+        effects_to_fit.retain(|effect| !effect.traits().changes_direction);
         Ok((assembly, effects_to_fit))
     }
 

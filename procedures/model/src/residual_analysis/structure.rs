@@ -7,7 +7,7 @@ use crate::linear::blocked_ridge::{BlockedRidge, ranges};
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
 use crate::preprocess::form_error::FormErrorKind;
-use crate::regression::solution::{DELAY, Solution, effect_columns, nuisance};
+use crate::regression::solution::{Solution, effect_columns, nuisance};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::residual_analysis::functions::{Functions, functions};
 use crate::signal::Signal;
@@ -106,9 +106,8 @@ fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, so
     let mut columns = effect_columns(plain);
     let Some(form_error) = plain.problem.form_error.as_deref() else { return false };
     // Form error that an added effect represents is no nuisance here.
-    let is_added = |id: &str| end.main.contains(id) && !plain.contains(id);
     let nuisance = nuisance(plain, form_error, |kind| match kind {
-        FormErrorKind::Jerk => is_added(DELAY),
+        FormErrorKind::Jerk => end.main.has_delay() && !plain.has_delay(),
         FormErrorKind::Bristle => !std::ptr::eq(plain.problem, end.main.problem),
         FormErrorKind::BristleRate | FormErrorKind::Snap | FormErrorKind::LoadRate => false,
     });

@@ -41,8 +41,8 @@ pub fn detection_limits<'p>(now: &TwoStageModel<'p>) -> Vec<DetectionLimit<'p>> 
 mod tests {
     use super::*;
     use crate::ModelSpec;
+    use crate::effects::friction::presliding;
     use crate::preprocess::prepare;
-    use crate::regression::solution::PRESLIDING;
     use crate::selection::tiny::staircase;
     use jointbench_instrument::Kind;
 
@@ -56,6 +56,6 @@ mod tests {
             hysteresis_step(&model, &options).map(|scored| scored.term.id().to_owned())
         };
         assert_eq!(found(0.0), None);
-        assert_eq!(found(0.03).as_deref(), Some(PRESLIDING));
+        assert_eq!(found(0.03).as_deref(), Some(presliding::ID));
     }
 }

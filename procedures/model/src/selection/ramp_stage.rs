@@ -5,13 +5,11 @@
 
 use crate::Options;
 use crate::effect::Effect;
-use crate::effects::friction::inertia;
 use crate::inference::intervals::intervals;
 use crate::linear::basis::dot;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::alone;
-use crate::regression::solution::DELAY;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::reasons::AdditionReason;
 use crate::selection::detection_limit::DetectionLimit;
@@ -21,10 +19,10 @@ use crate::thresholds::{DELAY_HALF_WIDTHS, DELAY_POWER, DELAY_ROWS};
 /// The delay that this run supports, with the model that includes it. Its coefficient divided by the inertia is the
 /// delay time.
 pub fn delay<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCandidate<'p>, TwoStageModel<'p>)> {
-    let Delayed { after, coefficient, half, by_s } = with_delay(now)?;
+    let Delayed { effect, after, coefficient, half, by_s } = with_delay(now)?;
     let moving = after.moving.as_ref()?;
-    let term = moving.terms.iter().find(|term| term.id() == DELAY)?.clone();
-    let without = moving.without(DELAY);
+    let term = moving.terms.iter().find(|term| term.id() == effect)?.clone();
+    let without = moving.without(effect);
     // A delayed friction torque jumps after the direction changes. The jerk column does not represent that jump.
     let asked = |residual: Vec<f64>| -> f64 {
         let column = &term.columns[0];
@@ -41,14 +39,15 @@ pub fn delay<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCa
 
 /// The detection limit of the delay, if none was found and one could have been.
 pub fn detection_limit<'p>(now: &TwoStageModel<'p>) -> Option<DetectionLimit<'p>> {
-    let Delayed { after, half, .. } = with_delay(now)?;
-    let column = after.moving.as_ref()?.terms.iter().find(|term| term.id() == DELAY)?.columns.first()?.clone();
+    let Delayed { effect, after, half, .. } = with_delay(now)?;
+    let column = after.moving.as_ref()?.terms.iter().find(|term| term.id() == effect)?.columns.first()?.clone();
     let rms = (dot(&column, &column) / column.len() as f64).sqrt();
-    Some(DetectionLimit { effect: DELAY, detectable_rms: (DELAY_HALF_WIDTHS + DELAY_POWER) * half * rms })
+    Some(DetectionLimit { effect, detectable_rms: (DELAY_HALF_WIDTHS + DELAY_POWER) * half * rms })
 }
 
-/// A model with a delay on its ramps, the coefficient of the delay with half its 95 % interval, and the delay time.
+/// A model with a delay on its ramps: the delay, its coefficient with half the 95 % interval, and its time.
 struct Delayed<'p> {
+    effect: &'p str,
     after: TwoStageModel<'p>,
     coefficient: f64,
     half: f64,
@@ -56,28 +55,33 @@ struct Delayed<'p> {
 }
 
 fn with_delay<'p>(now: &TwoStageModel<'p>) -> Option<Delayed<'p>> {
-    let effect = now.spec.find(DELAY).ok().filter(|effect| is_testable(*effect, now))?;
-    let effects = now.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
+    let (delay, delayed) = now.spec.known().find_map(|effect| Some((effect, effect.traits().delay_of?)))?;
+    let effect = delay.info().id;
+    if !is_testable(delay, delayed, now) {
+        return None;
+    }
+    let effects = now.effects.iter().cloned().chain([effect.to_owned()]).collect();
     let after = now.of(now.main.clone(), effects);
     let moving: &LinearModel = after.moving.as_ref()?;
     let parameters = intervals(moving, now.prepared.motion).parameters;
     let of = |id: &str| parameters.iter().find(|p| p.effect == id);
-    let (inertia, delay_parameter) = (of(inertia::ID)?, of(DELAY)?);
-    let (coefficient, half) = (delay_parameter.value, (delay_parameter.ci95[1] - delay_parameter.ci95[0]) / 2.0);
-    let by_s = -coefficient / inertia.value;
-    (inertia.value > 0.0 && half.is_finite()).then_some(Delayed { after, coefficient, half, by_s })
+    let (delayed, delay) = (of(delayed)?, of(effect)?);
+    let (coefficient, half) = (delay.value, (delay.ci95[1] - delay.ci95[0]) / 2.0);
+    let by_s = -coefficient / delayed.value;
+    (delayed.value > 0.0 && half.is_finite()).then_some(Delayed { effect, after, coefficient, half, by_s })
 }
 
-/// Whether only ramps can show the delay and the model has an inertia, which scales the delay to a time.
-fn is_testable(effect: &dyn Effect, now: &TwoStageModel) -> bool {
+/// Whether only ramps can show the delay and the model has the delayed effect, which scales the delay to a time.
+fn is_testable(delay: &dyn Effect, delayed: &str, now: &TwoStageModel) -> bool {
     let is_in = |id: &str| now.effects.iter().any(|effect| effect == id);
-    now.is_apart(effect) && is_in(inertia::ID) && !is_in(DELAY)
+    now.is_apart(delay) && is_in(delayed) && !is_in(delay.info().id)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::ModelSpec;
+    use crate::effects::friction::signal_delay;
     use crate::preprocess::prepare;
     use crate::selection::tiny::staircase;
     use jointbench_instrument::Kind;
@@ -92,6 +96,6 @@ mod tests {
             delay(&model, &options).map(|(scored, _)| scored.term.id().to_owned())
         };
         assert_eq!(found(0), None);
-        assert_eq!(found(6).as_deref(), Some(DELAY));
+        assert_eq!(found(6).as_deref(), Some(signal_delay::ID));
     }
 }

@@ -89,6 +89,6 @@ impl Effect for Presliding {
     }
 
     fn traits(&self) -> Traits {
-        Traits { regime: Regime::Hysteresis, ..Traits::default() }
+        Traits { regime: Regime::Hysteresis, changes_direction: true, ..Traits::default() }
     }
 }

@@ -1,6 +1,7 @@
 //! Delay between torque and velocity.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Regime, Traits, parameter};
+use crate::effects::friction::inertia;
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
 use crate::view::View;
@@ -41,6 +42,6 @@ impl Effect for SignalDelay {
     }
 
     fn traits(&self) -> Traits {
-        Traits { regime: Regime::Transient, ..Traits::default() }
+        Traits { regime: Regime::Transient, delay_of: Some(inertia::ID), ..Traits::default() }
     }
 }

@@ -9,7 +9,7 @@ pub(crate) mod trajectory;
 pub(crate) mod unmeasured_gravity;
 pub(crate) mod work_rate;
 
-use crate::effects::friction::presliding;
+use crate::effects::changes_direction;
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::segments;
@@ -37,7 +37,7 @@ pub fn prepare(run: &RunTable, options: &Options, bristles: Option<&Bristles>) -
         || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > samples.legs().len());
     // If presliding is known, ramps and reversals are as informative as steady-state motion, and there are more of
     // them.
-    let can_absorb = run.meta().baseline.iter().any(|effect| effect == presliding::ID);
+    let can_absorb = run.meta().baseline.iter().any(|effect| changes_direction(effect));
     match options.residual {
         None if !in_steps || can_absorb => trajectory::prepare(run, options, bristles),
         _ => steady_state::prepare(run, samples, plateaus, options),

@@ -1,11 +1,10 @@
 //! Candidates of one step of the evidence search, and the order in which they are tried.
 
-use crate::effect::Regime;
-use crate::effects::friction::inertia;
+use crate::effect::{Regime, Traits};
 use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::{Evidence, evidence};
-use crate::regression::solution::{DELAY, Solution, effect_coefficient, without};
+use crate::regression::solution::{Solution, effect_coefficient, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::equivalence::is_tie;
 use crate::thresholds::{DELAY_ROWS, SIMPLER_GAIN};
@@ -30,7 +29,7 @@ pub fn candidates<'l, 'p>(
     };
     let keeps_form_error = |c: &Regressor| match c.effect.traits().regime {
         Regime::SteadyState => true,
-        Regime::Transient => c.id() != DELAY,
+        Regime::Transient => c.effect.traits().delay_of.is_none(),
         Regime::Hysteresis => false,
     };
     let (mut all, hidden) = evidence(&solution.ridge, &of(&keeps_form_error), &near, forms);
@@ -42,11 +41,11 @@ pub fn candidates<'l, 'p>(
             all.extend(found.into_iter().map(imitated));
         }
     };
-    if is_delayed(now, solution) {
-        judge_without(FormErrorKind::Jerk, &of(&|c| c.id() == DELAY));
-    }
+    let delays = of(&|c| c.effect.traits().delay_of.is_some_and(|delayed| is_delayed(delayed, now, solution)));
+    judge_without(FormErrorKind::Jerk, &delays);
     // In motion at nearly one frequency, operators of a large displacement represent the acceleration.
-    judge_without(FormErrorKind::Bristle, &of(&|c| c.effect.traits().regime != Regime::SteadyState && c.id() != DELAY));
+    let is_imitated = |traits: Traits| traits.regime != Regime::SteadyState && traits.delay_of.is_none();
+    judge_without(FormErrorKind::Bristle, &of(&|c| is_imitated(c.effect.traits())));
     // On one sine the snap is the acceleration with the opposite sign, and the jerk is the velocity.
     for kind in unpenalised_form_error(now, solution) {
         judge_without(kind, &hidden);
@@ -61,16 +60,16 @@ fn unpenalised_form_error(now: &TwoStageModel, solution: &Solution) -> impl Iter
     solution.error.iter().filter_map(|(at, _)| Some(columns.get(*at)?.kind)).filter(|kind| !kind.is_penalised())
 }
 
-/// Whether torque and motion are shifted by more than a sample. Below that, the moment of a reading within its sample
-/// is unknown.
-fn is_delayed(now: &TwoStageModel, solution: &Solution) -> bool {
+/// Whether torque and motion are shifted by more than a sample, by the jerk divided by the `delayed` effect. Below that,
+/// the moment of a reading within its sample is unknown.
+fn is_delayed(delayed: &str, now: &TwoStageModel, solution: &Solution) -> bool {
     let model = &now.main;
     let Some(form_error) = model.problem.form_error.as_deref() else { return false };
-    let inertia = effect_coefficient(model, solution, inertia::ID);
+    let delayed = effect_coefficient(model, solution, delayed);
     let jerk =
         solution.error.iter().find(|(at, _)| form_error.columns[*at].kind == FormErrorKind::Jerk).map(|(_, f)| *f);
-    let (Some(inertia), Some(jerk)) = (inertia, jerk) else { return false };
-    (jerk / inertia).abs() > DELAY_ROWS * form_error.sample_s
+    let (Some(delayed), Some(jerk)) = (delayed, jerk) else { return false };
+    (jerk / delayed).abs() > DELAY_ROWS * form_error.sample_s
 }
 
 /// Candidates by decreasing error reduction; those that tie with the first one by increasing p-value. A formula of a

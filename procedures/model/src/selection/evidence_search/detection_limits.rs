@@ -2,12 +2,11 @@
 
 use crate::Options;
 use crate::effect::Regime;
-use crate::effects::friction::inertia;
 use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::visible;
-use crate::regression::solution::{DELAY, Solution, effect_coefficient, without};
+use crate::regression::solution::{Solution, effect_coefficient, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::evidence_search::rules::error_reduction::least_gain;
@@ -34,7 +33,7 @@ pub fn detection_limits<'p>(
     let size = |form: &&Regressor<'p>| {
         let ridge = match form.effect.traits().regime {
             Regime::Hysteresis => &without_bristle,
-            _ if form.id() == DELAY => &without_jerk,
+            _ if form.effect.traits().delay_of.is_some() => &without_jerk,
             _ => &solution.ridge,
         };
         Some((form.id(), smallest(form, ridge, critical, end, solution)?))
@@ -60,11 +59,14 @@ fn smallest(
     // Form error imitates effects of transients.
     let share = least_gain(form.effect.traits().regime != Regime::SteadyState);
     let least = share / (1.0 - share) * ridge.loss();
-    let delay = || {
+    let least_delay = |of: &str| {
         let form_error = end.main.problem.form_error.as_deref()?;
-        Some(effect_coefficient(&end.main, solution, inertia::ID)?.abs() * DELAY_ROWS * form_error.sample_s)
+        Some(effect_coefficient(&end.main, solution, of)?.abs() * DELAY_ROWS * form_error.sample_s)
     };
-    let bound = if form.id() == DELAY { delay()? } else { 0.0 };
+    let bound = match form.effect.traits().delay_of {
+        Some(of) => least_delay(of)?,
+        None => 0.0,
+    };
     let k = added.size;
     let of_column = |(at, square): (usize, f64)| {
         let error = scatter[at * k + at].sqrt() / square;

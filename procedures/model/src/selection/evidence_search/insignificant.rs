@@ -4,7 +4,7 @@ use crate::ModelSpec;
 use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::linear_model::LinearModel;
-use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_columns, nuisance};
+use crate::regression::solution::{Solution, effect_columns, nuisance};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::evidence_search::rules::nonzero_size::has_size;
 use crate::thresholds::DECISION_SHARE;
@@ -38,8 +38,8 @@ pub fn insignificant<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option
     let without = |id: &'p str| {
         let mut less = plain.clone();
         less.terms.retain(|term| term.id() != id);
-        (id, loss(&less, id == DELAY) / whole - 1.0)
+        (id, loss(&less, plain.has_delay() && !less.has_delay()) / whole - 1.0)
     };
-    let judged = added.into_iter().filter(|id| *id != PRESLIDING && plain.contains(id)).map(without);
+    let judged = added.into_iter().filter(|id| plain.contains(id)).map(without);
     judged.filter(|(_, loss)| *loss < DECISION_SHARE).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }
