@@ -194,12 +194,14 @@ thresholds! {
 thresholds! {
     /// Thresholds of the data checks, in the order of the documents: they decide on a warning or a refusal, never on an effect.
     CHECKS:
+    CHECK_BLOCK_S = 0.2, "s", "columns are compared over blocks of this length: short enough for a reversal, long enough for coarse encoders", "unit tests of `unit_mismatch`";
     CLASH_RATIO = 1.2, "ratio", "columns or facts that state the same quantity differ by less: rounding, filters, delay, torsion", "unit tests of `unit_mismatch` and `metadata`";
     IN_COMMON = NEARLY_ALL, "fraction of variance", "two columns with less in common are not compared", "unit tests of `unit_mismatch` and `torque_sign`";
     ALIKE_BLOCKS = 0.6, "fraction of blocks", "an angle within one turn agrees with the other one in at least so many blocks", "unit tests of `unit_mismatch`";
     ALIKE_RATIO = TENTH, "fraction of ratio", "blocks that agree so well with the median agree", "unit tests of `unit_mismatch`";
     GEAR_ERROR = 0.01, "fraction of gear ratio", "a larger error of the gear ratio is a warning", "one tooth of 100";
     GEAR_TRAVEL_RAD = 1.0, "rad", "least travel of the link for this check", "unit tests of `unit_mismatch`";
+    GEAR_SPEED = HALF, "fraction of fastest speed", "slower blocks are not compared, because the joint twists at reversals", "unit tests of `unit_mismatch`";
     FINE_ANGLES = 0.999, "fraction of variance", "with less in common one of the angles is too coarse for this check", "unit tests of `unit_mismatch`";
     CLAMPED_RAD = 0.1, "rad", "an angle that moves less may be clamped", "a joint twists less";
     COMPUTED_COLUMN = 1e-5, "fraction of RMS", "a load that equals a multiple of the current to this fraction was computed from it", "digits of a text file";
@@ -211,9 +213,12 @@ thresholds! {
     STEADY_CHANGE = HALF, "fraction of speed", "a speed that changes less is steady in this check", "unit tests of `torque_sign`";
     CANCELLED_WORK = 0.2, "fraction of work", "a magnitude does less net work: its work cancels", "unit tests of `unsigned_current`";
     MAGNITUDE_DIP = TENTH, "fraction of mean", "a magnitude falls so far at reversals, the current against a load does not", "unit tests of `unsigned_current`";
+    LARGEST_CURRENT_A = 24.0, "A", "a larger current has another unit, where no rated current is stated", "ten times two coils of 1.2 A, the largest of the data sheets (Magtrol 2025)";
     LARGEST_CURRENT = 20.0, "ratio to rated current", "a larger current of a brake has another unit", "mA for A is 1000";
     SMALL_CURRENT = 0.01, "fraction of rated current", "a current that stays below, and moves the torque, has another unit", "mA for A is 1000";
-    BRAKE_MARGIN = 3.0, "ratio", "a torque for each ampere so far beyond the data sheets has another unit", "mA for A is 1000";
+    LEAST_TORQUE_PER_CURRENT = 0.1, "Nm/A", "smallest plausible torque for each ampere", "data sheets: 4 to 22; a tenth of that for the smallest brakes";
+    LARGEST_TORQUE_PER_CURRENT = 220.0, "Nm/A", "largest plausible torque for each ampere", "data sheets: 4 to 22; ten times as much behind a gear of 1:10";
+    BRAKE_MARGIN = 3.0, "ratio", "a torque for each ampere so far beyond these limits has another unit", "mA for A is 1000";
     CURRENT_IN_COMMON = 0.2, "fraction of variance", "the current of a brake explains at least so much of its torque", "unit tests of `brake_range`";
     VARYING_CURRENT = TENTH, "fraction of largest current", "a current that varies less is constant", "unit tests of `brake_range`";
     FINE_READINGS = NEARLY_ALL, "fraction of samples", "where fewer neighbours differ, the column is too coarse for the next checks", "unit tests of `sensor_faults`";
@@ -223,6 +228,7 @@ thresholds! {
     SATURATED_SHARE = 0.003, "fraction of samples", "fewer saturated samples are no warning", "unit tests of `sensor_faults`";
     SPIKE_CHANGES = 25.0, "usual changes", "an outlier differs so far from both neighbours", "unit tests of `sensor_faults`";
     SPIKE_RANGE = 0.15, "fraction of range", "and so far", "unit tests of `sensor_faults`";
+    SPIKE_COUNTS = 1.5, "counts", "and so far: a reading that flickers by one count of its resolution is no outlier", "unit tests of `sensor_faults`";
     SPIKE_NEIGHBOURS = 0.2, "fraction of outlier", "its neighbours agree to this", "unit tests of `sensor_faults`";
     PULSE_SAMPLES = 5.0, "samples", "the speed before and after an outlier is taken over so many samples", "unit tests of `sensor_faults`";
     PULSE_SPEED = 0.02, "fraction of largest speed", "where the speed changes by more, the drive accelerates, and the pulse is no fault", "unit tests of `sensor_faults`";

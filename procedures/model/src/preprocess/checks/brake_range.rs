@@ -2,24 +2,19 @@
 
 use crate::linear::basis::dot;
 use crate::stats::summary::peak;
-use crate::thresholds::{BRAKE_MARGIN, CURRENT_IN_COMMON, LARGEST_CURRENT, SMALL_CURRENT, VARYING_CURRENT};
+use crate::thresholds::{
+    BRAKE_MARGIN, CURRENT_IN_COMMON, LARGEST_CURRENT, LARGEST_CURRENT_A, LARGEST_TORQUE_PER_CURRENT,
+    LEAST_TORQUE_PER_CURRENT, SMALL_CURRENT, VARYING_CURRENT,
+};
 use crate::words::figure;
 use jointbench_instrument::{Kind, Motion, RunTable};
-
-/// Largest plausible coil current. Hysteresis brakes are rated up to 1.2 A (data sheet of the HB series, HB-3500M),
-/// two coils in parallel up to twice that. This limit is ten times as much.
-const MOST_A: f64 = 24.0;
-
-/// Plausible torque for each ampere [Nm/A]: 4 to 22 in the data sheets, a tenth of that for the smallest brakes, ten
-/// times as much behind a gear of 1:10.
-const HELD: [f64; 2] = [0.1, 220.0];
 
 /// A current or torque beyond the plausible range, in a sentence.
 pub fn beyond(run: &RunTable) -> Option<String> {
     let current = run.column("brake_current_a")?;
     let largest = peak(current);
     let rated_a = run.meta().rated_current_a;
-    let most_a = rated_a.map_or(MOST_A, |rated_a| LARGEST_CURRENT * rated_a);
+    let most_a = rated_a.map_or(LARGEST_CURRENT_A, |rated_a| LARGEST_CURRENT * rated_a);
     if largest > most_a {
         return Some(match rated_a {
             Some(rated_a) => format!(
@@ -44,7 +39,7 @@ pub fn beyond(run: &RunTable) -> Option<String> {
             figure(largest, "A")
         ));
     }
-    let [least, most] = HELD;
+    let (least, most) = (LEAST_TORQUE_PER_CURRENT, LARGEST_TORQUE_PER_CURRENT);
     (!(least / BRAKE_MARGIN..=most * BRAKE_MARGIN).contains(&held)).then(|| {
         format!(
             "brake_torque_nm rises by {} for each A of brake_current_a, and hysteresis brakes hold {least} to {most} Nm for \

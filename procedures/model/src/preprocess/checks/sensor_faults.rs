@@ -2,8 +2,8 @@
 
 use crate::stats::summary::range;
 use crate::thresholds::{
-    FINE_READINGS, PULSE_SAMPLES, PULSE_SPEED, SATURATED_SAMPLES, SATURATED_SHARE, SPIKE_CHANGES, SPIKE_NEIGHBOURS,
-    SPIKE_RANGE, STUCK_S, STUCK_SAMPLES,
+    FINE_READINGS, PULSE_SAMPLES, PULSE_SPEED, SATURATED_SAMPLES, SATURATED_SHARE, SPIKE_CHANGES, SPIKE_COUNTS,
+    SPIKE_NEIGHBOURS, SPIKE_RANGE, STUCK_S, STUCK_SAMPLES,
 };
 use crate::words::figure;
 use jointbench_instrument::units::unit_of;
@@ -96,8 +96,7 @@ pub fn spikes(run: &RunTable) -> Option<String> {
         let every = values.len().div_ceil(crate::preprocess::INFORMATIVE_ROWS);
         let usual = crate::preprocess::median(values.windows(2).step_by(every).map(|pair| (pair[1] - pair[0]).abs()));
         let (low, high) = middle_of(values.iter().step_by(every).copied().collect());
-        // A reading that flickers by one count of its resolution is no outlier.
-        let least = (SPIKE_CHANGES * usual).max(SPIKE_RANGE * (high - low)).max(1.5 * count(values).unwrap_or(0.0));
+        let least = (SPIKE_CHANGES * usual).max(SPIKE_RANGE * (high - low)).max(SPIKE_COUNTS * count(values).unwrap_or(0.0));
         let is_alone = |w: &[f64]| {
             let (before, after) = (w[1] - w[0], w[1] - w[2]);
             let off = before.abs().min(after.abs());

@@ -1,12 +1,12 @@
 //! Contradictions between columns of the same motion or torque, in unit or sign. A fit to such columns is wrong, even
 //! with a small residual.
 
-use crate::preprocess::checks::blocks::{BLOCK_S, Block, blocks};
+use crate::preprocess::checks::blocks::{Block, blocks};
 use crate::preprocess::held_side::is_held;
 use crate::stats::summary::{mean, range};
 use crate::thresholds::{
-    ALIKE_BLOCKS, ALIKE_RATIO, CLAMPED_RAD, CLASH_RATIO, COMPUTED_COLUMN, DRIVEN_WORK, FINE_ANGLES, GEAR_ERROR,
-    GEAR_TRAVEL_RAD, IN_COMMON, NOISE_BLOCKS, NOISE_ERRORS,
+    ALIKE_BLOCKS, ALIKE_RATIO, CHECK_BLOCK_S, CLAMPED_RAD, CLASH_RATIO, COMPUTED_COLUMN, DRIVEN_WORK, FINE_ANGLES,
+    GEAR_ERROR, GEAR_SPEED, GEAR_TRAVEL_RAD, IN_COMMON, NOISE_BLOCKS, NOISE_ERRORS,
 };
 use jointbench_instrument::{Kind, Motion, RunTable};
 use std::f64::consts::TAU;
@@ -106,7 +106,7 @@ fn driven(run: &RunTable, blocks: &[Block]) -> Option<String> {
     let (mut work, mut moved) = ([0.0; 2], [0.0; 2]);
     for (block, _) in blocks {
         let way = position[block.end] - position[block.start];
-        let done = way * current[block.clone()].iter().sum::<f64>() / block.len() as f64;
+        let done = way * mean(&current[block.clone()]);
         work[usize::from(way < 0.0)] += done;
         moved[usize::from(way < 0.0)] += done.abs();
     }
@@ -165,8 +165,7 @@ fn travels(blocks: &[Block], a: &[f64], b: &[f64], is_speed: bool, ratio: f64) -
 
 /// A gear ratio that is wrong by a tooth or two: the wrong share of the load looks like an effect.
 fn other_gear(travels: &[(f64, f64)], ratio: f64) -> Option<String> {
-    let fast = 0.5 * travels.iter().fold(0.0f64, |most, w| most.max(w.1.abs()));
-    // Blocks at low speed are excluded, because the joint twists at reversals.
+    let fast = GEAR_SPEED * travels.iter().fold(0.0f64, |most, w| most.max(w.1.abs()));
     let sum = |f: fn(&(f64, f64)) -> f64| travels.iter().filter(|w| w.1.abs() >= fast).map(f).sum::<f64>();
     let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
     // The motor angle is much finer than the link angle, so that its noise does not bias this ratio.
@@ -246,7 +245,7 @@ fn noise(run: &RunTable, blocks: &[Block]) -> Option<String> {
     let swings = variance(current) > mean(current).powi(2);
     (means.len() >= NOISE_BLOCKS as usize && swings && is_white(current) && is_white(&means)).then(|| {
         format!(
-            "{column} is white noise, from sample to sample and over {BLOCK_S} s: it was not connected, or is another signal"
+            "{column} is white noise, from sample to sample and over {CHECK_BLOCK_S} s: it was not connected, or is another signal"
         )
     })
 }
