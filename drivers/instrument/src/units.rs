@@ -1,6 +1,7 @@
 //! Units at the interfaces: a newtype for every quantity of a role. Modules use plain `f64` with a unit suffix inside.
 
 use serde::{Deserialize, Serialize};
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 macro_rules! unit {
@@ -43,6 +44,11 @@ unit!(/// Duration, or a moment on the bench's clock.
     Seconds, "s");
 unit!(/// Power.
     Watts, "W");
+
+/// The same angle within half a turn of zero, −π ≤ θ < π.
+pub fn wrapped(angle_rad: f64) -> f64 {
+    (angle_rad + PI).rem_euclid(TAU) - PI
+}
 
 /// The unit of a column or channel name by its suffix (`motor_velocity_rad_s` → `rad/s`), in SI symbols.
 ///
@@ -101,6 +107,13 @@ mod tests {
             ("segment", None),
         ] {
             assert_eq!(unit_of(name), unit, "{name}");
+        }
+    }
+
+    #[test]
+    fn an_angle_is_wrapped_to_the_nearest_turn() {
+        for (angle, nearest) in [(0.1, 0.1), (TAU - 0.1, -0.1), (-TAU - 0.2, -0.2), (17.0 * TAU + 3.0, 3.0)] {
+            assert!((wrapped(angle) - nearest).abs() < 1e-9, "{angle}");
         }
     }
 

@@ -11,6 +11,7 @@ use jointbench_files::{Annotations, ParquetWriter};
 use jointbench_instrument::zero::TORQUE_ZERO;
 use jointbench_instrument::{Channel, Meta, RunTable, Trace};
 use jointbench_model::preprocess::prepare;
+use jointbench_model::stats::summary::mean;
 use jointbench_model::{Options, ResidualKind};
 use serde_json::{Map, Value};
 use std::ops::Range;
@@ -158,7 +159,7 @@ fn means(run: &RunTable) -> Result<Trace, String> {
         return Err(format!("a {} run has no means at steady state", run.kind()));
     }
     let mean = |values: &[f64]| -> Vec<f64> {
-        let over = |rows: &Range<usize>| values[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+        let over = |rows: &Range<usize>| mean(&values[rows.clone()]);
         states.iter().map(|(_, rows)| over(rows)).collect()
     };
     let trace = run.trace();

@@ -228,7 +228,7 @@ fn variance_at(measured: &[(f64, f64)], q: f64) -> f64 {
 
 fn capability(measured: &[(f64, f64)], lower: Option<f64>, upper: Option<f64>) -> Option<Capability> {
     let between = Between::of(measured)?;
-    let t = student::quantile(measured.len() as f64 - 1.0, 0.975)?;
+    let t = student::t95(measured.len() as f64 - 1.0)?;
     let nearest = |mean: f64| {
         let below = lower.map(|lower| mean - lower);
         let above = upper.map(|upper| upper - mean);

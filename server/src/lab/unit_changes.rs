@@ -129,7 +129,7 @@ fn prediction(centre: f64, squares: f64, freedom: usize, variance_factor: f64) -
     if freedom < LEAST_FREEDOM {
         return None;
     }
-    let t = student::quantile(freedom as f64, 0.975)?;
+    let t = student::t95(freedom as f64)?;
     let reach = t * (squares / freedom as f64 * variance_factor).sqrt();
     reach.is_finite().then_some([centre - reach, centre + reach])
 }

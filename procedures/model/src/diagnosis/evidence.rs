@@ -10,7 +10,7 @@ use crate::stats::{jackknife, student};
 /// logarithm of the ratio. `None` with too few folds.
 pub fn reduction(before: &LinearModel, after: &LinearModel) -> Option<[f64; 2]> {
     let (before, after) = (validation_losses(before), validation_losses(after));
-    let t = student::quantile(before.len() as f64 - 1.0, 0.975)?;
+    let t = student::t95(before.len() as f64 - 1.0)?;
     let (log, error) = jackknife::log_ratio(&before, &after);
     let share = |log: f64| 1.0 - (0.5 * log).exp();
     let ci95 = [share(log + t * error), share(log - t * error)];

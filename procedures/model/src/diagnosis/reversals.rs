@@ -28,7 +28,7 @@ pub fn region(model: &TwoStageModel, reach: f64, fit: &Fit, reference: Option<&R
     let samples = of_turn.iter().map(|t| t.1).sum();
     let means: Vec<f64> = of_turn.iter().filter(|t| t.1 > 0).map(|(sum, count)| sum / *count as f64).collect();
     let mean = summary::mean(&means);
-    let t = student::quantile(means.len() as f64 - 1.0, 0.975).filter(|_| means.len() >= 3)?;
+    let t = student::t95(means.len() as f64 - 1.0).filter(|_| means.len() >= 3)?;
     let half_width = t * summary::standard_error(&means);
     let side = if mean > 0.0 { "low" } else { "high" };
     let measure = reference.map_or_else(String::new, |y| format!(", {}", y.compare(mean.abs())));

@@ -7,6 +7,7 @@ use crate::preprocess::sweeps::brake_torque_of_current;
 use crate::preprocess::{Prepared, Problem, Reduce};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::signal::{Signal, Signals};
+use crate::stats::summary::mean;
 use crate::view::View;
 use jointbench_instrument::Kind;
 use std::collections::HashSet;
@@ -39,7 +40,7 @@ pub fn simulate(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gea
     let samples = signals(&samples_of, &choice.stretches, prepared, gear);
     let mut points = Signals::new(samples_of.chunks.len());
     for (signal, values) in samples.iter() {
-        let mean = |c: &std::ops::Range<usize>| values[c.clone()].iter().sum::<f64>() / c.len() as f64;
+        let mean = |c: &std::ops::Range<usize>| mean(&values[c.clone()]);
         points.set(signal, samples_of.chunks.iter().map(mean).collect());
     }
     let rows = samples_of.chunks.len();

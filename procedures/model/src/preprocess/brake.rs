@@ -1,6 +1,6 @@
 //! Brake runs: braking torque over the coil current.
 
-use crate::preprocess::chunks::Source;
+use crate::preprocess::chunks::{CHUNK_S, Source};
 use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::segments;
 use crate::preprocess::{Prepared, sample_s, sweeps};
@@ -8,8 +8,6 @@ use crate::signal::{Signal, Signals};
 use crate::view::Constants;
 use crate::{ModelError, Options};
 use jointbench_instrument::{Motion, RunTable};
-
-const CHUNK_S: f64 = 0.04;
 
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
     let column = |name: &str| run.column(name).unwrap_or_default();

@@ -6,12 +6,18 @@ use crate::preprocess::memo::Memo;
 use crate::preprocess::{Problem, Reduce, residual_acceleration};
 use crate::report::fit::{Preparation, ResidualKind};
 use crate::signal::{Signal, Signals};
+use crate::stats::summary::mean;
 use crate::thresholds::{EVEN_PART, EVEN_SPEED};
 use crate::view::{Constants, View};
 use jointbench_instrument::RunTable;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
+
+/// Length of a chunk [s], whose mean is one row.
+pub const CHUNK_S: f64 = 0.04;
+/// Largest number of rows; a longer run is thinned. More rows take time and hardly change a fit.
+pub const MOST_ROWS: usize = 12_000;
 
 /// The samples of a run in model quantities.
 pub struct Source {
@@ -95,8 +101,7 @@ impl Source {
         let Some(velocity) = self.signals.find(Signal::Velocity) else { return leg.clone() };
         // A model file may demand chunks that are longer than the leg.
         let chunk = chunk.min(leg.len()).max(1);
-        let means: Vec<f64> =
-            velocity[leg.clone()].chunks(chunk).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
+        let means: Vec<f64> = velocity[leg.clone()].chunks(chunk).map(mean).collect();
         let kept = usual(means.iter().map(|mean| mean.abs()).collect());
         let is_even = |mean: &f64| (mean.abs() - kept).abs() <= EVEN_SPEED * kept;
         let (first, last) = (means.iter().position(is_even), means.iter().rposition(is_even));
@@ -150,7 +155,7 @@ impl Source {
 pub fn problem(samples: &Source, layout: Layout) -> Problem {
     let Layout { chunks, group, condition, phase, settled, inputs } = layout;
     let points = if settled { steady_means(samples, &chunks, &group) } else { means(samples, &chunks) };
-    let target = mean(&samples.target, &chunks);
+    let target = chunk_means(&samples.target, &chunks);
     let (block, blocks) = blocks::blocks(&group, 48);
     let left_out_unit = if settled { blocks::left_out_unit(&condition, &group) } else { &condition };
     let (mut fold, folds) = blocks::folds(left_out_unit, &block, 10);
@@ -203,13 +208,13 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
     problem
 }
 
-fn mean(values: &[f64], chunks: &[Range<usize>]) -> Vec<f64> {
-    chunks.iter().map(|c| values[c.clone()].iter().sum::<f64>() / c.len() as f64).collect()
+fn chunk_means(values: &[f64], chunks: &[Range<usize>]) -> Vec<f64> {
+    chunks.iter().map(|c| mean(&values[c.clone()])).collect()
 }
 
 fn means(samples: &Source, chunks: &[Range<usize>]) -> Signals {
     let mut points = Signals::new(chunks.len());
-    samples.signals.iter().for_each(|(signal, values)| points.set(signal, mean(values, chunks)));
+    samples.signals.iter().for_each(|(signal, values)| points.set(signal, chunk_means(values, chunks)));
     points
 }
 

@@ -1,12 +1,13 @@
 //! Currents in steps: during a change, the readings of current and torque and the coil current belong to different
 //! moments.
 
+use crate::stats::summary::mean;
 use crate::thresholds::{DWELL_CHANGE, DWELL_NOISE, DWELL_NOISES};
 
 /// For each chunk of `n` samples: whether the current is constant there and in a margin before and after. Empty if
 /// the current has no steps.
 pub fn held(current: &[f64], n: usize) -> Vec<bool> {
-    let means: Vec<f64> = current.chunks(n).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
+    let means: Vec<f64> = current.chunks(n).map(mean).collect();
     let steps: Vec<f64> = means.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
     let mut sorted = steps.clone();
     sorted.sort_by(f64::total_cmp);

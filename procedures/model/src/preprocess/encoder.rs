@@ -10,7 +10,7 @@ use crate::stats::summary::peak;
 use crate::view::Constants;
 use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
-use std::f64::consts::{PI, TAU};
+use jointbench_instrument::units::wrapped;
 
 /// Short, so that errors within one pole pair are not averaged out at slow speed.
 const CHUNK_S: f64 = 0.01;
@@ -78,11 +78,7 @@ fn difference(test: &[f64], reference: &[f64]) -> Vec<f64> {
     let raw = || test.iter().zip(reference).map(|(t, r)| t - r);
     let (sin, cos) = raw().fold((0.0, 0.0), |(s, c), d| (s + d.sin(), c + d.cos()));
     let middle = sin.atan2(cos);
-    raw().map(|d| middle + wrap(d - middle)).collect()
-}
-
-fn wrap(angle: f64) -> f64 {
-    (angle + PI).rem_euclid(TAU) - PI
+    raw().map(|d| middle + wrapped(d - middle)).collect()
 }
 
 fn unwrap(angle: &[f64]) -> Vec<f64> {
@@ -91,7 +87,7 @@ fn unwrap(angle: &[f64]) -> Vec<f64> {
     angle
         .iter()
         .map(|a| {
-            turned += wrap(a - last);
+            turned += wrapped(a - last);
             last = *a;
             angle[0] + turned
         })

@@ -29,6 +29,7 @@ fn resultant(readings: &[f64], count: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stats::summary::mean;
 
     const COUNT: f64 = TAU / 16_384.0;
 
@@ -51,7 +52,7 @@ mod tests {
         let speed = 3.001 * COUNT;
         let errors = turning(speed, COUNT).into_iter().zip(turning(speed, 0.0)).map(|(read, angle)| read - angle);
         let errors: Vec<f64> = errors.collect();
-        let means = errors.chunks(50).map(|part| part.iter().sum::<f64>() / part.len() as f64);
+        let means = errors.chunks(50).map(mean);
         let largest = means.fold(0.0f64, |largest, mean| largest.max(mean.abs()));
         let bound = 0.5 * encoder_count(&turning(speed, COUNT));
         assert!((0.9 * bound..=bound).contains(&largest), "{largest} {bound}");

@@ -1,7 +1,7 @@
 //! Stiffness runs: torsion between motor and link over the link torque.
 
 use crate::linear::cholesky::Cholesky;
-use crate::preprocess::chunks::Source;
+use crate::preprocess::chunks::{CHUNK_S, Source};
 use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::segments;
 use crate::preprocess::encoder_count::encoder_count;
@@ -15,8 +15,6 @@ use crate::words::figure;
 use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
 use std::collections::BTreeMap;
-
-const CHUNK_S: f64 = 0.04;
 
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
     let column = |name: &str| run.column(name).unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use crate::hysteresis_operators;
 use crate::linear::Basis;
-use crate::preprocess::chunks::{Layout, Source, problem};
+use crate::preprocess::chunks::{Layout, MOST_ROWS, Source, problem};
 use crate::preprocess::design::blocks;
 use crate::preprocess::design::replicates::Same;
 use crate::preprocess::{Prepared, Problem, current_dwells, initial_hysteresis_state, loading_history};
@@ -13,9 +13,6 @@ use crate::thresholds::{SAME_LEVEL, SMALL_LEVEL};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Kind, RunTable};
 use std::ops::Range;
-
-/// Largest number of rows; of a longer run only every n-th chunk is used.
-const MOST_ROWS: usize = 12_000;
 
 pub fn prepare(
     run: &RunTable,

@@ -1,8 +1,8 @@
 //! Statistics that are independent of models.
 
 pub(crate) mod grouped;
-pub(crate) mod jackknife;
+pub mod jackknife;
 pub(crate) mod permutation_test;
 pub mod proportion;
 pub mod student;
-pub(crate) mod summary;
+pub mod summary;

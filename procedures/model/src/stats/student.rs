@@ -2,9 +2,14 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Half width of a 95 % interval in standard errors. Two without a degree of freedom.
+/// Half width of a 95 % interval in standard errors. `None` without a degree of freedom.
+pub fn t95(freedom: f64) -> Option<f64> {
+    quantile(freedom, 0.975)
+}
+
+/// The same, and two without a degree of freedom.
 pub fn half_width_95(freedom: f64) -> f64 {
-    quantile(freedom, 0.975).unwrap_or(2.0)
+    t95(freedom).unwrap_or(2.0)
 }
 
 /// The value (in standard errors) that a share of the distribution stays below. `None` without a degree of freedom.

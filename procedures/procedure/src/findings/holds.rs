@@ -1,6 +1,7 @@
 //! Holds: rows with constant set-points, and means over their steady-state ends.
 
 use jointbench_instrument::RunTable;
+use jointbench_model::stats::summary::mean;
 use std::ops::Range;
 
 /// Consecutive rows of one step with one set-point of speed and one of the brake.
@@ -19,7 +20,7 @@ impl Hold {
     /// The mean of a column over the last `share` of the rows.
     pub fn mean(&self, column: &[f64], share: f64) -> f64 {
         let tail = self.tail(share);
-        column[tail.clone()].iter().sum::<f64>() / tail.len() as f64
+        mean(&column[tail.clone()])
     }
 
     /// The last `share` of the rows, at least one.

@@ -1,5 +1,6 @@
 //! A straight line through means, with the intervals of its two parameters.
 
+use super::solve::t95;
 use jointbench_model::stats::student;
 
 /// y = offset + slope·x by least squares over points of equal weight.
@@ -24,7 +25,7 @@ impl Mean {
     /// `None` below two values.
     pub fn of(values: &[f64]) -> Option<Self> {
         let n = values.len() as f64;
-        let t = student::quantile(n - 1.0, 0.975)?;
+        let t = student::t95(n - 1.0)?;
         let value = values.iter().sum::<f64>() / n;
         let variance = values.iter().map(|v| (v - value).powi(2)).sum::<f64>() / (n - 1.0);
         let reach = t * (variance / n).sqrt();
@@ -47,7 +48,7 @@ impl Line {
         let offset = y0 - slope * x0;
         let left = sum(&|x, y| (y - slope * x).powi(2));
         let variance = left / (n - 2.0);
-        let t = student::quantile(n - 2.0, 0.975).unwrap_or(f64::INFINITY);
+        let t = t95(n - 2.0);
         let around = |value: f64, share: f64| {
             let reach = t * (variance * share).sqrt();
             [value - reach, value + reach]

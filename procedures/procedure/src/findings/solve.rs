@@ -1,6 +1,6 @@
 //! Least squares with few parameters and their intervals.
 
-use jointbench_model::stats::student;
+use jointbench_model::stats::{jackknife, student};
 use nalgebra::{SMatrix, SVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -41,7 +41,7 @@ pub fn solve<const N: usize>(rows: &[[f64; N]], y: &[f64]) -> Option<Solved<N>> 
 
 /// Half width of a 95 % interval, in standard errors. Infinite without a degree of freedom.
 pub fn t95(freedom: f64) -> f64 {
-    student::quantile(freedom, 0.975).unwrap_or(f64::INFINITY)
+    student::t95(freedom).unwrap_or(f64::INFINITY)
 }
 
 /// 95 % interval of a standard deviation, for independent normal deviations.
@@ -52,10 +52,8 @@ pub fn spread_ci95(spread: f64, freedom: f64) -> Option<[f64; 2]> {
 
 /// Half width of a 95 % interval, from the values of a figure without each of several parts (jackknife).
 pub fn jackknife95(without: &[f64]) -> f64 {
-    let n = without.len() as f64;
-    let mean = without.iter().sum::<f64>() / n;
-    let variance = (n - 1.0) / n * without.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
-    t95(n - 1.0) * variance.sqrt()
+    let variance = jackknife::variance_about_mean(without.iter().copied());
+    t95(without.len() as f64 - 1.0) * variance.sqrt()
 }
 
 #[cfg(test)]

@@ -2,8 +2,9 @@
 
 use crate::bench_facts::BenchFacts;
 use jointbench_instrument::bench::JointConstants;
+use jointbench_instrument::units::wrapped;
 use jointbench_instrument::{Kind, Limits, RunTable};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 impl BenchFacts {
     /// A bench that can do what the run has shown.
@@ -67,7 +68,7 @@ fn motor_rad(run: &RunTable, gear_ratio: f64) -> Vec<f64> {
         Kind::Brake => column("position_rad").iter().map(|q| gear_ratio * q).collect(),
         Kind::Encoder => {
             let angle = column("reference_position_rad");
-            let step = |pair: &[f64]| (pair[1] - pair[0] + PI).rem_euclid(TAU) - PI;
+            let step = |pair: &[f64]| wrapped(pair[1] - pair[0]);
             let steps = angle.first().copied().into_iter().chain(angle.windows(2).map(step));
             steps
                 .scan(0.0, |at, step| {

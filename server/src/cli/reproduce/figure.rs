@@ -2,6 +2,7 @@
 
 use super::titled;
 use crate::report::with_interval;
+use jointbench_model::stats::summary::mean;
 use jointbench_procedure::reproduce::Comparison;
 
 /// Fraction of the seeds in which the interval has to contain the value.
@@ -32,7 +33,6 @@ impl Figure {
 
     /// Mean of the measured values, and mean half width of their intervals.
     pub fn measured(&self) -> (String, Option<String>) {
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let width = self.holds(1).map(|_| with_interval(mean(&self.half_widths), None, &self.one.found.unit).0);
         (self.shown(mean(&self.values)), width)
     }

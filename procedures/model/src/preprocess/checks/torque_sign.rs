@@ -2,6 +2,7 @@
 
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::checks::blocks;
+use crate::stats::summary::mean;
 use crate::thresholds::{IN_COMMON, LOAD_SHARE, SLIPPED_IN_COMMON, STEADY_CHANGE, TORQUE_RATIO};
 use jointbench_instrument::RunTable;
 use std::ops::Range;
@@ -18,7 +19,7 @@ pub fn clash(run: &RunTable, blocks: &[blocks::Block]) -> Option<String> {
         .unzip();
     let last = velocity.len().saturating_sub(1);
     let block = |(i, range): (usize, Range<usize>)| {
-        let mean = |values: &[f64]| values[range.clone()].iter().sum::<f64>() / range.len() as f64;
+        let mean = |values: &[f64]| mean(&values[range.clone()]);
         Block {
             velocity: velocity[i],
             change: velocity[(i + 1).min(last)] - velocity[i.saturating_sub(1)],

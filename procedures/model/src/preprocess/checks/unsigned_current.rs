@@ -2,6 +2,7 @@
 //! in both needs a current of both signs, unless a constant load exceeds its friction.
 
 use crate::preprocess::checks::blocks::Block;
+use crate::stats::summary::mean;
 use crate::thresholds::{CANCELLED_WORK, MAGNITUDE_DIP};
 use jointbench_instrument::{Kind, RunTable};
 
@@ -10,14 +11,14 @@ pub fn unsigned(run: &RunTable, blocks: &[Block]) -> Option<String> {
         return None;
     }
     let (position, current) = (run.column("motor_position_rad")?, run.column("motor_current_a")?);
-    let mean = current.iter().sum::<f64>() / current.len() as f64;
+    let middle = mean(current);
     let least = current.iter().copied().fold(f64::INFINITY, f64::min);
-    if !(0.0..MAGNITUDE_DIP * mean).contains(&least) {
+    if !(0.0..MAGNITUDE_DIP * middle).contains(&least) {
         return None;
     }
     let of_block = |(block, _): &Block| {
         let moved = position[block.end] - position[block.start];
-        moved * current[block.clone()].iter().sum::<f64>() / block.len() as f64
+        moved * mean(&current[block.clone()])
     };
     let work = blocks.iter().map(of_block);
     let (net, both) = work.fold((0.0, 0.0), |(net, both), work| (net + work, both + work.abs()));

@@ -4,7 +4,7 @@
 //! and attenuates a periodic effect at speed exactly as its data. Ramps and reversals are kept separate, because
 //! signals of different instruments are not aligned there and friction has hysteresis.
 
-use crate::preprocess::chunks::{Layout, Source, problem};
+use crate::preprocess::chunks::{CHUNK_S, Layout, MOST_ROWS, Source, problem};
 use crate::preprocess::design::{blocks, segments};
 use crate::preprocess::friction::unmeasured_gravity;
 use crate::preprocess::{Prepared, Problem};
@@ -16,11 +16,8 @@ use jointbench_instrument::RunTable;
 use rayon::prelude::*;
 use std::ops::Range;
 
-const CHUNK_S: f64 = 0.04;
+/// Shorter where the speed changes.
 const MOVING_CHUNK_S: f64 = 0.02;
-/// Largest number of rows; neighbouring chunks of a longer run are averaged, because a steady state needs few of
-/// them.
-const MOST_ROWS: usize = 12_000;
 /// Chunks around a reversal in which the jerk is set to zero.
 const REACH: usize = 3;
 /// Largest number of rows around reversals; of a longer run only some pairs of segments are used.

@@ -4,6 +4,7 @@
 //! nonlinear operations. A lower one filters every regressor and the torque before decimation. The motion is derived
 //! from the position only, so that no signal has a delay against it.
 
+use crate::preprocess::chunks::MOST_ROWS;
 use crate::preprocess::friction::bristles;
 use crate::preprocess::friction::layout::Layout;
 use crate::preprocess::friction::signals::{Work, filtered, read};
@@ -24,8 +25,6 @@ const OTHER_CUTOFFS: [f64; 2] = [0.5, 5.0 / 3.0];
 const MOST_OF_RATE: f64 = 0.2;
 /// Rows in each period of the corner frequency.
 const ROWS: f64 = 4.0;
-/// Largest number of rows; a longer run is decimated further, down to two rows in each period.
-const MOST_ROWS: f64 = 12_000.0;
 /// Width of the direction change, as a multiple of the velocity noise, or this share of the fastest speed.
 const NOISES: f64 = 2.0;
 const LEAST_SPEED: f64 = 1e-4;
@@ -35,7 +34,8 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
     let rate_hz = 1.0 / work.even.step_s;
     let cutoff_hz = corner(options, rate_hz)?;
     let whole = work.torque.len() as f64 * work.even.step_s * cutoff_hz;
-    let rows = ROWS.min((MOST_ROWS / whole).max(2.0));
+    // A long run is decimated further, down to two rows in each period.
+    let rows = ROWS.min((MOST_ROWS as f64 / whole).max(2.0));
     let every = decimation(options, &work, rate_hz / (rows * cutoff_hz));
     let velocity = work.signals.find(Signal::Velocity).unwrap_or_default().to_vec();
     let band = given.map_or_else(|| noise(&velocity, &work, cutoff_hz), |given| given.band_rad_s);

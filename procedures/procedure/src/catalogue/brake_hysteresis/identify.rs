@@ -6,6 +6,7 @@ use crate::brake_model::{BrakeModel, CurrentHistory};
 use crate::findings::{Hold, Mean, Unusable, holds, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
+use jointbench_model::stats::summary::mean;
 
 /// Steady-state share at the end of a hold.
 pub(in super::super) const SETTLED: f64 = 0.35;
@@ -188,10 +189,6 @@ fn width(sweep: &Sweep, current_a: f64) -> Option<f64> {
     };
     let mut crossings = sweep.points.windows(2).filter_map(at);
     Some(crossings.next_back()? - crossings.next()?)
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// `None` for a single value.

@@ -2,6 +2,7 @@
 
 use crate::findings::{Mean, combined, directions, quantity, scatter, solve};
 use crate::identification::{Axis, Figure, Form, Mark, Quantity, Series};
+use jointbench_model::stats::summary::mean;
 use jointbench_model::words;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -70,7 +71,7 @@ pub(in crate::catalogue) fn with_resolution(mean: Mean, step: f64) -> Mean {
 fn deviation(all: &[f64]) -> Option<(f64, [f64; 2])> {
     let freedom = all.len() as f64 - 1.0;
     let chi_squared = ChiSquared::new(freedom).ok()?;
-    let mean = all.iter().sum::<f64>() / all.len() as f64;
+    let mean = mean(all);
     let squares: f64 = all.iter().map(|torque| (torque - mean).powi(2)).sum();
     let ends = [0.975, 0.025].map(|share| (squares / chi_squared.inverse_cdf(share)).sqrt());
     Some(((squares / freedom).sqrt(), ends))

@@ -8,6 +8,7 @@
 use super::method::Method;
 use crate::findings::Mean;
 use jointbench_instrument::RunTable;
+use jointbench_model::stats::summary::mean;
 
 /// Averaging time of the drive current before the comparison with the feedforward.
 const WINDOW_S: f64 = 0.1;
@@ -51,7 +52,7 @@ impl Followed {
             let period = first..first + rows.len();
             first = period.end;
             let error = &mut self.error_rad[period.clone()];
-            let mean = error.iter().sum::<f64>() / error.len() as f64;
+            let mean = mean(error);
             error.iter_mut().for_each(|e| *e -= mean);
             periods.push(figures_of_period(error, &self.velocity_rad_s[period.clone()], &changed[period]));
         }

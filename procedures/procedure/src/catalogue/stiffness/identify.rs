@@ -5,6 +5,7 @@ use crate::findings::{Hold, Mean, Unusable, holds, interval_of, parameter, quant
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, SeriesRole, Verdict};
 use crate::thresholds::{BETTER_CURVE, LOST_MOTION, SAME_CURVE};
 use jointbench_instrument::RunTable;
+use jointbench_model::stats::summary::mean;
 use jointbench_model::{Definition, Fit, ModelSpec, Options, UserEffect, UserParameter, fit, residuals};
 use std::ops::Range;
 
@@ -131,7 +132,7 @@ fn stiffness((inverse, ci95): (f64, [f64; 2]), bearing: f64) -> [Quantity; 2] {
 fn point(run: &RunTable, rows: &Range<usize>, gear: f64) -> Point {
     let mean = |name: &str| {
         let column = &run.column(name).unwrap_or_default()[rows.clone()];
-        column.iter().sum::<f64>() / column.len() as f64
+        mean(column)
     };
     (mean("link_torque_nm"), mean("motor_position_rad") / gear - mean("link_position_rad"))
 }
@@ -199,7 +200,7 @@ fn loops(reversals: &[Reversal]) -> Vec<Quantity> {
     let area = ["loop_area", "A", "Loop area at maximum load", "J"];
     let of = |words, figure: &dyn Fn(&Reversal) -> Option<f64>| {
         let values: Vec<f64> = reversals.iter().filter_map(figure).collect();
-        let value = values.iter().sum::<f64>() / values.len() as f64;
+        let value = mean(&values);
         (!values.is_empty()).then(|| quantity(words, value, Mean::of(&values).map(|mean| mean.ci95)))
     };
     let found = [of(width, &Reversal::width), of(lost, &Reversal::lost_motion), of(area, &|one| Some(one.area_j()))];
@@ -298,7 +299,7 @@ fn crossing(branch: &[Point], torque: f64) -> Option<f64> {
         .filter(|pair| (pair[0].0 - torque) * (pair[1].0 - torque) <= 0.0 && pair[0].0 != pair[1].0)
         .map(|pair| pair[0].1 + (torque - pair[0].0) / (pair[1].0 - pair[0].0) * (pair[1].1 - pair[0].1))
         .collect();
-    (!crossings.is_empty()).then(|| crossings.iter().sum::<f64>() / crossings.len() as f64)
+    (!crossings.is_empty()).then(|| mean(&crossings))
 }
 
 /// The selected model over the held loads, separately for each direction.
