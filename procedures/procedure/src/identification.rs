@@ -69,6 +69,11 @@ impl Identification {
         Self { verdict: Verdict::Failed, summary: why.into(), advice: Some(advice.into()), ..Self::default() }
     }
 
+    /// The run does not decide, with the reason and advice.
+    pub fn inconclusive(why: impl Into<String>, advice: impl Into<String>) -> Self {
+        Self { verdict: Verdict::Inconclusive, ..Self::failed(why, advice) }
+    }
+
     /// The result for a run and its state: an incomplete run has not reached its purpose, independent of its partial
     /// results. `can_resume`: the rest of the run may be measured later. `step`: where it ended, such as `step 3 of 41`.
     pub fn of_run(mut self, run: RunId, state: RunState, can_resume: bool, step: Option<&str>) -> Self {

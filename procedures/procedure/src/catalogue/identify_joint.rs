@@ -269,14 +269,10 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
 /// A part without rows, after the earlier ones.
 fn none_of(part: &dyn Procedure, before: &Identification) -> Identification {
     match before.verdict {
-        Verdict::Inconclusive if waits(part) => Identification {
-            verdict: Verdict::Inconclusive,
-            advice: Some("Follow the advice of the friction part, then repeat the run.".into()),
-            ..Identification::failed(
-                "Not performed, because friction is not determined well enough for feed-forward.",
-                "",
-            )
-        },
+        Verdict::Inconclusive if waits(part) => Identification::inconclusive(
+            "Not performed, because friction is not determined well enough for feed-forward.",
+            "Follow the advice of the friction part, then repeat the run.",
+        ),
         _ => Identification::failed("The run ended before this part.", "Repeat the run."),
     }
 }

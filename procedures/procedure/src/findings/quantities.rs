@@ -1,9 +1,8 @@
-//! Parameters of a fit as quantities, points as series.
+//! Parameters of a fit as quantities of a result.
 
-use crate::identification::{Identification, Mark, Quantity, Series};
-use jointbench_instrument::TableFault;
+use crate::identification::Quantity;
 use jointbench_model::words::{self, Scale};
-use jointbench_model::{Fit, ModelError, Parameter, ParameterState};
+use jointbench_model::{Fit, Parameter, ParameterState};
 
 /// A parameter that the run identifies.
 pub(crate) fn parameter<'f>(fit: &'f Fit, effect: &str, name: &str) -> Option<&'f Parameter> {
@@ -56,67 +55,6 @@ pub(crate) fn quantity([name, symbol, title, unit]: [&str; 4], value: f64, ci95:
     }
 }
 
-pub(crate) fn scatter(label: &str, points: impl IntoIterator<Item = (f64, f64)>) -> Series {
-    let (x, y) = points.into_iter().unzip();
-    Series::new(label, Mark::Points, x, y)
-}
-
-/// A line through `steps` + 1 points from end to end. The last point is exactly the end, because a rounding error
-/// beyond it could make a power of a negative number NaN.
-pub(crate) fn curve(label: &str, [from, to]: [f64; 2], steps: u32, y: impl Fn(f64) -> f64) -> Series {
-    let x: Vec<f64> = (0..=steps).map(|i| from + (to - from) * (f64::from(i) / f64::from(steps))).collect();
-    let y = x.iter().map(|x| y(*x)).collect();
-    Series::new(label, Mark::Line, x, y)
-}
-
-/// Why a run is not usable, with advice.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Unusable {
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    #[error(transparent)]
-    Table(#[from] TableFault),
-    /// Missing data and advice, each as a sentence.
-    #[error("{0} {1}")]
-    InsufficientData(&'static str, &'static str),
-    #[error("{} {SCATTERED}", scattered(*.rest_nm))]
-    Scattered { rest_nm: f64 },
-}
-
-const SCATTERED: &str = "To find the missing effect, open the run in the workbench or diagnose its export \
-    (jointbench export RUN, jointbench diagnose run-RUN.csv), or add repeats.";
-
-fn scattered(rest_nm: f64) -> String {
-    let rest = words::figure(rest_nm, "Nm");
-    format!("{rest} RMS of the torque is unexplained by speed, too much to determine friction.")
-}
-
-impl Unusable {
-    /// Missing data and advice, each as a sentence.
-    fn sentences(&self) -> [String; 2] {
-        match self {
-            Self::InsufficientData(lacking, cure) => [lacking, cure].map(|sentence| (*sentence).to_owned()),
-            Self::Scattered { rest_nm } => [scattered(*rest_nm), SCATTERED.to_owned()],
-            // The message contains what to do about the run.
-            Self::Model(_) | Self::Table(_) => [sentence(&self.to_string()), "Repeat the run.".to_owned()],
-        }
-    }
-}
-
-fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map(|first| format!("{}{}.", first.to_uppercase(), letters.as_str())).unwrap_or_default()
-}
-
-/// An unusable run gets a verdict too.
-pub(crate) fn verdict(found: Result<Identification, Unusable>) -> Option<Identification> {
-    let failed = |fault: Unusable| {
-        let [lacking, cure] = fault.sentences();
-        Identification::failed(lacking, cure)
-    };
-    Some(found.unwrap_or_else(failed))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -125,14 +63,5 @@ mod tests {
     fn a_narrow_interval_is_given_by_its_half_width() {
         assert_eq!(bounded((1.2e-4, [-2e-4, 4.4e-4]), "Nm"), "120 µNm [-200 … 440]");
         assert_eq!(bounded((0.779_41, [0.779_39, 0.779_43]), "Nm"), "779 mNm ± 20.0 µNm");
-    }
-
-    #[test]
-    fn a_curve_ends_at_its_given_end() {
-        for i in 0..1000 {
-            let top = 160.0 + f64::from(i) * 0.0137;
-            let drawn = curve("model, negative", [-top, 0.0], 200, |v| (-v).powf(0.8));
-            assert!(drawn.x.last() == Some(&0.0) && drawn.y.iter().all(|y| y.is_finite()), "from {top}");
-        }
     }
 }

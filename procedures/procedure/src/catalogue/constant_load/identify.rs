@@ -25,12 +25,10 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
     let demanded_nm = curves.demanded_nm(values).map_err(|_| FEW)?;
     let speeds_rad_s: Vec<f64> = curves.0.iter().map(|curve| curve.speed_rad_s).collect();
     if let Err(why) = curves.currents(&speeds_rad_s, demanded_nm) {
-        return Ok(Identification {
-            verdict: Verdict::Inconclusive,
-            summary: format!("The torque was not held: {why}."),
-            advice: Some("Change torque_nm or top_current.".into()),
-            ..Identification::default()
-        });
+        return Ok(Identification::inconclusive(
+            format!("The torque was not held: {why}."),
+            "Change torque_nm or top_current.",
+        ));
     }
     let reached: Vec<Reached> = speeds_rad_s.iter().filter_map(|speed| Reached::at(run, *speed)).collect();
     if reached.is_empty() || reached.len() < curves.0.len() {

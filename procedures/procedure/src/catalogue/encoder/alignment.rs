@@ -1,7 +1,6 @@
 //! Mounting tolerance of the sensor, and its best position.
 
 use super::edges::{DIRECTIONS, Direction, Found, found};
-use super::quantities::{insufficient_data, quantity};
 use super::sweeps::sweeps;
 use super::tested;
 use super::tolerance::{self, Judgement};
@@ -9,7 +8,7 @@ use super::{ACCELERATION, EncoderLinearity, both_ways, counts, meta, radial, sam
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, ProcedureInfo, findable};
-use crate::findings::solve;
+use crate::findings::{quantity, solve};
 use crate::identification::{Axis, Figure, FollowUp, Form, Identification, Mark, Quantity, Series};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -107,7 +106,10 @@ impl Procedure for EncoderAlignment {
             DIRECTIONS.iter().filter_map(|direction| Some((direction, found(run, direction)?))).collect();
         if found.is_empty() {
             let what = "The periods were not consistent at any position away from the stage zero.";
-            return insufficient_data(what, "Align the stage zero with the sensor position, and let the run finish.");
+            return Some(Identification::inconclusive(
+                what,
+                "Align the stage zero with the sensor position, and let the run finish.",
+            ));
         }
         let mut quantities: Vec<Quantity> =
             found.iter().filter_map(|(direction, found)| direction.quantity(found)).collect();

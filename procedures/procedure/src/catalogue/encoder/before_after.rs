@@ -1,6 +1,6 @@
 //! The error over the turn before and after the look-up table, as figures.
 
-use super::quantities::histogram;
+use super::series::histogram;
 use super::spectrum::{ORDERS, PolePairs, Waves};
 use super::sweeps::Sweep;
 use super::table::{Table, means};

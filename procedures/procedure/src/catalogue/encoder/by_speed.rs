@@ -1,7 +1,6 @@
 //! Rows by speed: encoder difference, delay, and delay beyond the expected one at each speed.
 
-use super::quantities::quantity;
-use crate::findings::{Solved, solve, t95};
+use crate::findings::{Solved, quantity, solve, t95};
 use crate::identification::{Axis, Figure, Form, Mark, Quantity, Series};
 use crate::thresholds::SAME_SET_POINT;
 use std::f64::consts::TAU;

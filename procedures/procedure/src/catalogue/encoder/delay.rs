@@ -1,12 +1,12 @@
 //! Delay of the encoder under test: its difference to the reference over the speed.
 
 use super::by_speed::{BySpeed, Known, Lines, Point};
-use super::quantities::{insufficient_data, quantity};
 use super::sweeps::sweeps;
 use super::{ACCELERATION, both_ways, counts, meta, point_rad, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, ProcedureInfo, ZERO_IS_LOST, findable};
+use crate::findings::quantity;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -81,7 +81,7 @@ impl Procedure for EncoderDelay {
         let Some(lines) = Lines::of(&points) else {
             let what = "Delay and offset cannot be distinguished, because fewer than two speeds were measured in both \
                         directions.";
-            return insufficient_data(what, "Let the run finish, with at least two speeds.");
+            return Some(Identification::inconclusive(what, "Let the run finish, with at least two speeds."));
         };
         let solved = lines.solved;
         let [offset_rad, hysteresis_rad, delay_s, half_difference_s] = solved.values;

@@ -1,7 +1,7 @@
 //! The directions along the axes of the stage, and the limits of consistent periods.
 
-use super::quantities::quantity;
 use crate::column_names::POSE;
+use crate::findings::quantity;
 use crate::identification::Quantity;
 use jointbench_instrument::RunTable;
 use jointbench_instrument::roles::Pose;

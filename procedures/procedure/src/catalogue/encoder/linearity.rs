@@ -1,7 +1,6 @@
 //! Shape of the error over the turn, the look-up table for it, and the remaining precision (figs 4.4 to 4.11).
 
 use super::before_after::{Left, Stage, figures};
-use super::quantities::{insufficient_data, quantity};
 use super::reduction::Reduction;
 use super::spectrum::PolePairs;
 use super::sweeps::{Sweep, sweeps};
@@ -10,13 +9,14 @@ use super::{ACCELERATION, both_ways, counts, meta, point_rad, radial, sample_rat
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, ProcedureInfo, ZERO_IS_LOST, findable};
-use crate::findings::{jackknife95, solve};
+use crate::findings::{jackknife95, quantity, solve};
 use crate::identification::{Identification, Quantity, SeriesRole, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
 use crate::stage_pose::StagePose;
 use crate::thresholds::TARGET_BITS;
 use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::stats::summary::mean;
 use std::f64::consts::TAU;
 
 pub struct EncoderLinearity;
@@ -90,17 +90,20 @@ impl Procedure for EncoderLinearity {
         if known.len() < 4 || unseen.len() < 2 {
             let what =
                 "The run lacks two speeds in both directions for the estimation, or further turns for the validation.";
-            return insufficient_data(what, "Let the run finish, with at least two repeats.");
+            return Some(Identification::inconclusive(what, "Let the run finish, with at least two repeats."));
         }
         let Some(terms) = Terms::of(&known) else {
-            return insufficient_data(
+            return Some(Identification::inconclusive(
                 "Offset, hysteresis and delay cannot be distinguished.",
                 "Choose two different speeds.",
-            );
+            ));
         };
         let Some(table) = Table::of(&known, &terms, values.count("table_size") as usize) else {
             let what = "More than 10 % of the table entries contain no data.";
-            return insufficient_data(what, "Choose more turns, a higher sample rate or a smaller table.");
+            return Some(Identification::inconclusive(
+                what,
+                "Choose more turns, a higher sample rate or a smaller table.",
+            ));
         };
         let before = |sweep: &Sweep, i: usize| sweep.error_rad[i] - terms.offset_rad;
         let direct = |sweep: &Sweep, i: usize| before(sweep, i) - table.at(sweep.angle_rad[i] + sweep.error_rad[i]);
@@ -226,7 +229,7 @@ fn repeatability(known: &[Sweep], unseen: &[Sweep]) -> Option<Quantity> {
         let each: Vec<_> = alike.iter().map(|sweep| means(std::iter::once(*sweep), PLACES, &error)).collect();
         for place in 0..PLACES {
             let seen: Vec<f64> = each.iter().filter_map(|means| means[place]).collect();
-            let mean = seen.iter().sum::<f64>() / seen.len() as f64;
+            let mean = mean(&seen);
             squares += seen.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
             freedom += seen.len().saturating_sub(1) as f64;
         }

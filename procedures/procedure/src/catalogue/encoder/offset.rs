@@ -1,12 +1,12 @@
 //! Zero offset of the encoder under test relative to the reference.
 
-use super::quantities::{histogram, insufficient_data, quantity, scatter};
+use super::series::{histogram, scatter};
 use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, ProcedureInfo, ZERO_IS_LOST, findable};
-use crate::findings::t95;
+use crate::findings::{quantity, t95};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -65,7 +65,7 @@ impl Procedure for EncoderOffset {
             .collect();
         if pairs.len() < 2 {
             let what = "The scatter is unknown, because fewer than two turns in each direction were measured.";
-            return insufficient_data(what, "Let the run finish, with at least two repeats.");
+            return Some(Identification::inconclusive(what, "Let the run finish, with at least two repeats."));
         }
         let (offset_rad, offset_reach) = mean(pairs.iter().map(|[up, down]| 0.5 * (up + down)));
         let (apart_rad, apart_reach) = mean(pairs.iter().map(|[up, down]| up - down));

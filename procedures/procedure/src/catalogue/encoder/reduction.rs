@@ -1,10 +1,9 @@
 //! Error of the look-up table, whose entries are few, relative to the smoothed error over the turn.
 
-use super::quantities::quantity;
 use super::spectrum::last_order;
 use super::sweeps::Sweep;
 use super::table::{Class, Table, Terms};
-use crate::findings::jackknife95;
+use crate::findings::{jackknife95, quantity};
 use crate::identification::Quantity;
 use jointbench_model::thresholds::ALPHA;
 use std::f64::consts::{LN_2, TAU};

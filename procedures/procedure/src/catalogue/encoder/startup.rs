@@ -1,19 +1,20 @@
 //! Change of the zero of the encoder under test between power-ups (start-up initialisation error).
 
 use super::offset::step_rad;
-use super::quantities::{histogram, insufficient_data, quantity};
+use super::series::histogram;
 use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::bench_facts::BenchFacts;
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, ProcedureInfo, findable};
-use crate::findings::{Mean, scatter, spread_ci95};
+use crate::findings::{Mean, quantity, scatter, spread_ci95};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{InitialState, Plan, PlanFault};
 use crate::stage_pose::StagePose;
 use crate::thresholds::START_APART;
 use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::stats::summary::mean;
 
 pub struct EncoderStartup;
 
@@ -72,14 +73,17 @@ impl Procedure for EncoderStartup {
                 _ => None,
             };
             let offsets: Vec<f64> = power_up.chunks(2).filter_map(of_pair).collect();
-            let Some(zero) = mean(&offsets) else { continue };
+            if offsets.len() < 2 {
+                continue;
+            }
+            let zero = mean(&offsets);
             within += offsets.iter().map(|offset| (offset - zero).powi(2)).sum::<f64>();
             pairs += offsets.len() as f64 - 1.0;
             zeros.push(zero);
         }
         let (Some(offset), true) = (Mean::of(&zeros), zeros.len() >= 3 && pairs > 0.0) else {
             let what = "The variation is unknown, because fewer than three power-ups were completed.";
-            return insufficient_data(what, "Let the run finish.");
+            return Some(Identification::inconclusive(what, "Let the run finish."));
         };
         let freedom = zeros.len() as f64 - 1.0;
         let spread = (zeros.iter().map(|zero| (zero - offset.value).powi(2)).sum::<f64>() / freedom).sqrt();
@@ -123,10 +127,6 @@ impl Procedure for EncoderStartup {
             ..Identification::default()
         })
     }
-}
-
-fn mean(values: &[f64]) -> Option<f64> {
-    (values.len() > 1).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
 fn figures(zeros: &[f64]) -> Vec<Figure> {

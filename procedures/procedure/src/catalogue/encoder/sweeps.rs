@@ -4,7 +4,8 @@ use super::SETTLE_S;
 use crate::column_names::POSE;
 use crate::findings::solve;
 use jointbench_instrument::RunTable;
-use std::f64::consts::{PI, TAU};
+use jointbench_instrument::units::wrapped;
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// Whole turns at one speed.
@@ -38,11 +39,6 @@ impl Sweep {
         let [mean_rad, c1, s1, c2, s2] = solve(&rows, &self.error_rad)?.values;
         Some(Shape { mean_rad, once_rad: [c1, s1], twice_rad: [c2, s2] })
     }
-}
-
-/// n by the wrap rule for a turn: ((n + k/2) mod k) − k/2.
-pub fn wrapped(n_rad: f64) -> f64 {
-    (n_rad + PI).rem_euclid(TAU) - PI
 }
 
 /// Every part at constant speed of at least one turn, in the order of the run. Empty if the columns are not those of
@@ -120,17 +116,5 @@ impl<'a> Columns<'a> {
             angle_rad,
             radial_m: self.pose.first().map_or(0.0, |radial| radial[first]),
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_wrap_rule_brings_every_difference_to_the_nearest_turn() {
-        for (n, aligned) in [(0.1, 0.1), (TAU - 0.1, -0.1), (-TAU - 0.2, -0.2), (17.0 * TAU + 3.0, 3.0)] {
-            assert!((wrapped(n) - aligned).abs() < 1e-9, "{n}");
-        }
     }
 }

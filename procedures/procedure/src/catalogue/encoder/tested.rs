@@ -2,7 +2,7 @@
 //! axis.
 
 use super::edges::{DIRECTIONS, Direction, Found};
-use super::quantities::quantity;
+use crate::findings::quantity;
 use crate::identification::Quantity;
 
 /// The largest distance up to which the periods were consistent at each position of the search, in all directions of

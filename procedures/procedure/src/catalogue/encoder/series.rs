@@ -1,7 +1,6 @@
-//! Results of an encoder: quantities, series, and the message for a run that is too short.
+//! Points and histograms of an encoder.
 
-pub(super) use crate::findings::quantity;
-use crate::identification::{Identification, Mark, Series, Verdict};
+use crate::identification::{Mark, Series};
 
 /// Largest number of points in a figure, evenly spaced.
 const MOST_POINTS: usize = 1500;
@@ -22,13 +21,4 @@ pub fn histogram(label: &str, values: &[f64], bins: usize) -> Series {
     }
     let x = (0..bins).map(|bin| low + (bin as f64 + 0.5) * width).collect();
     Series::new(label, Mark::Bars, x, shares)
-}
-
-pub fn insufficient_data(what: &str, advice: &str) -> Option<Identification> {
-    Some(Identification {
-        verdict: Verdict::Inconclusive,
-        summary: what.into(),
-        advice: Some(advice.into()),
-        ..Identification::default()
-    })
 }
