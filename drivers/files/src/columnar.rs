@@ -23,7 +23,7 @@ use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Rows decoded at a time.
-const BATCH_ROWS: usize = 1 << 16;
+pub(crate) const BATCH_ROWS: usize = 1 << 16;
 /// Whole numbers up to here are exact as doubles.
 const LARGEST_EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
 

@@ -1,5 +1,6 @@
 //! Reads the doubles of a Parquet file column by column, so that a file of any length needs little memory.
 
+use crate::columnar::BATCH_ROWS;
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
 use arrow_schema::DataType;
@@ -8,9 +9,6 @@ use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use std::fs::File;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-
-/// Rows decoded at a time.
-const BATCH_ROWS: usize = 1 << 16;
 
 /// Passes the values of each column of doubles, in the order of the columns, in pieces. Columns of other types are
 /// skipped.

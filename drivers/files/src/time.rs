@@ -11,11 +11,10 @@ use crate::options::{ReadOptions, TimeFrom};
 use crate::order::{self, Order};
 use crate::raw::RawTable;
 use crate::text::{Content, Stamp};
-use crate::unit::Unit;
+use crate::unit::{DAY_S, Unit};
 use jointbench_instrument::{Meta, TableFault};
 
 const TIME: &str = "time_s";
-const DAY_S: f64 = 86_400.0;
 
 /// Gives the table a rising time in seconds. Returns the first rows of all recordings except the first one.
 pub(crate) fn settle(

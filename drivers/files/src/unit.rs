@@ -34,7 +34,7 @@ const LBF_FT: f64 = LBF * FOOT;
 const OZF_IN: f64 = LBF_IN / 16.0;
 const KGF: f64 = 9.806_65;
 const DEGREE: f64 = TAU / 360.0;
-const DAY_S: f64 = 86_400.0;
+pub(crate) const DAY_S: f64 = 86_400.0;
 /// 0 °C in kelvin.
 const ICE_K: f64 = 273.15;
 
