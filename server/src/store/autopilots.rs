@@ -37,13 +37,7 @@ impl Store {
         step["at"] = now().into();
         let text = serde_json::to_string(&step)?;
         let cells = [autopilot.into(), (last + 1).into(), (&text).into()];
-        sqlx::query("INSERT INTO autopilot_steps (autopilot, sequence, step, checksum) VALUES (?, ?, ?, ?)")
-            .bind(autopilot)
-            .bind(last + 1)
-            .bind(&text)
-            .bind(AUTOPILOT_STEPS.seal(&cells))
-            .execute(&mut *writer)
-            .await?;
+        AUTOPILOT_STEPS.insert(&cells).execute(&mut *writer).await?;
         writer.commit().await?;
         Ok(step)
     }

@@ -38,15 +38,7 @@ impl Store {
     ) -> Result<(), StoreError> {
         let at = now();
         let cells = [bench.into(), procedure.into(), run.into(), by.into(), (&at).into()];
-        sqlx::query("INSERT INTO calibrations (bench, procedure, run, who, at, checksum) VALUES (?, ?, ?, ?, ?, ?)")
-            .bind(bench)
-            .bind(procedure)
-            .bind(run)
-            .bind(by)
-            .bind(&at)
-            .bind(CALIBRATIONS.seal(&cells))
-            .execute(&self.writer)
-            .await?;
+        CALIBRATIONS.insert(&cells).execute(&self.writer).await?;
         Ok(())
     }
 }

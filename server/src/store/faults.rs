@@ -16,14 +16,7 @@ impl Store {
 
     pub async fn keep_fault(&self, bench: &str, instrument: &str, at: &str, text: &str) -> Result<(), StoreError> {
         let cells = [bench.into(), instrument.into(), text.into(), at.into()];
-        sqlx::query("INSERT INTO instrument_faults (bench, instrument, at, text, checksum) VALUES (?, ?, ?, ?, ?)")
-            .bind(bench)
-            .bind(instrument)
-            .bind(at)
-            .bind(text)
-            .bind(INSTRUMENT_FAULTS.seal(&cells))
-            .execute(&self.writer)
-            .await?;
+        INSTRUMENT_FAULTS.insert(&cells).execute(&self.writer).await?;
         Ok(())
     }
 }

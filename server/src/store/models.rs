@@ -159,7 +159,7 @@ async fn insert_model(writer: &mut SqliteConnection, new: &NewModel, before: &[S
     let fit = serde_json::to_string(&new.fit)?;
     let options = serde_json::to_string(&new.options)?;
     let created_at = now();
-    let checksum = MODELS.seal(&[
+    let cells = [
         new.run.into(),
         new.parent.into(),
         (&new.kind).into(),
@@ -177,33 +177,9 @@ async fn insert_model(writer: &mut SqliteConnection, new: &NewModel, before: &[S
         (&excluded).into(),
         (&new.by).into(),
         new.tried.into(),
-    ]);
-    let id = sqlx::query_scalar(
-        "INSERT INTO models (run, more_runs, excluded, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
-         noise_floor_rms, options, who, created_at, made_to_try, checksum) \
-         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id",
-    )
-    .bind(new.run)
-    .bind(more_runs)
-    .bind(excluded)
-    .bind(new.parent)
-    .bind(&new.kind)
-    .bind(effects)
-    .bind(added)
-    .bind(removed)
-    .bind(fit)
-    .bind(&new.residual)
-    .bind(new.rms)
-    .bind(new.validation_rms)
-    .bind(new.noise_floor_rms)
-    .bind(options)
-    .bind(&new.by)
-    .bind(created_at)
-    .bind(new.tried)
-    .bind(checksum)
-    .fetch_one(writer)
-    .await?;
-    Ok(id)
+    ];
+    let row = MODELS.insert(&cells).fetch_one(writer).await?;
+    Ok(row.try_get("id")?)
 }
 
 async fn insert_diagnosis(
@@ -214,9 +190,8 @@ async fn insert_diagnosis(
 ) -> Result<i64, StoreError> {
     let text = serde_json::to_string(diagnosis)?;
     let cells = [model.into(), (&text).into(), created_at.into()];
-    let insert = sqlx::query("INSERT INTO diagnoses (model, diagnosis, created_at, checksum) VALUES (?, ?, ?, ?)");
-    let inserted = insert.bind(model).bind(&text).bind(created_at).bind(DIAGNOSES.seal(&cells)).execute(writer).await?;
-    Ok(inserted.last_insert_rowid())
+    let row = DIAGNOSES.insert(&cells).fetch_one(writer).await?;
+    Ok(row.try_get("id")?)
 }
 
 fn diagnosis_record(row: &SqliteRow) -> Result<DiagnosisRecord, StoreError> {

@@ -30,15 +30,7 @@ impl Store {
         exists(&mut writer, run).await?;
         let created_at = now();
         let cells = [run.into(), at_s.into(), text.into(), (&created_at).into()];
-        let row =
-            sqlx::query("INSERT INTO notes (run, at_s, text, created_at, checksum) VALUES (?, ?, ?, ?, ?) RETURNING *")
-                .bind(run)
-                .bind(at_s)
-                .bind(text)
-                .bind(&created_at)
-                .bind(NOTES.seal(&cells))
-                .fetch_one(&mut *writer)
-                .await?;
+        let row = NOTES.insert(&cells).fetch_one(&mut *writer).await?;
         writer.commit().await?;
         record(&row)
     }

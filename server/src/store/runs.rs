@@ -285,15 +285,7 @@ pub(super) async fn insert_events(
         let kind = data.remove("kind").and_then(|kind| Some(kind.as_str()?.to_owned())).unwrap_or_default();
         let data = serde_json::to_string(&data)?;
         let cells = [run.into(), sequence.into(), event.at_s.into(), (&kind).into(), (&data).into()];
-        sqlx::query("INSERT INTO events (run, sequence, at_s, kind, data, checksum) VALUES (?, ?, ?, ?, ?, ?)")
-            .bind(run)
-            .bind(sequence)
-            .bind(event.at_s)
-            .bind(&kind)
-            .bind(&data)
-            .bind(EVENTS.seal(&cells))
-            .execute(&mut *writer)
-            .await?;
+        EVENTS.insert(&cells).execute(&mut *writer).await?;
         match &event.kind {
             EventKind::Safe { safe } => super::safety::keep_safe(writer, run, *safe).await?,
             EventKind::State { reason: Some(reason), .. } => keep_reason(writer, run, Some(reason)).await?,

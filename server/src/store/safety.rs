@@ -145,19 +145,7 @@ async fn insert(writer: &mut SqliteConnection, bench: &str, record: &SafetyRecor
         record.by.as_ref().into(),
         (&record.at).into(),
     ];
-    sqlx::query(
-        "INSERT INTO bench_safety (bench, blocked, stopped, reason, run, who, at, checksum) VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
-    )
-    .bind(bench)
-    .bind(record.blocked)
-    .bind(record.stopped)
-    .bind(&record.reason)
-    .bind(record.run)
-    .bind(&record.by)
-    .bind(&record.at)
-    .bind(BENCH_SAFETY.seal(&cells))
-    .execute(writer)
-    .await?;
+    BENCH_SAFETY.insert(&cells).execute(writer).await?;
     Ok(())
 }
 

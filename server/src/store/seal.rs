@@ -9,8 +9,9 @@
 //! length first.
 
 use super::StoreError;
-use sqlx::sqlite::SqliteRow;
-use sqlx::{Decode, Row, Sqlite, TypeInfo, ValueRef};
+use sqlx::query::Query;
+use sqlx::sqlite::{SqliteArguments, SqliteRow};
+use sqlx::{AssertSqlSafe, Decode, Row, Sqlite, TypeInfo, ValueRef};
 
 /// The columns that a checksum covers, and the columns that identify a row in messages.
 #[derive(Debug)]
@@ -20,14 +21,49 @@ pub struct Sealed {
     /// Column of the checksum.
     pub checksum: &'static str,
     pub names: &'static [&'static str],
+    /// A number that identifies a row of its owner.
+    pub key: &'static str,
+    pub owner: Owner,
 }
 
-const fn sealed(table: &'static str, columns: &'static [&'static str], names: &'static [&'static str]) -> Sealed {
-    Sealed { table, columns, checksum: "checksum", names }
+/// What a row belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Owner {
+    /// No run.
+    Store,
+    /// The run of the same number.
+    SameRun,
+    Run,
+    /// A model of a run.
+    Model,
+    /// The samples of a run, which are checked block by block.
+    Samples,
+}
+
+impl Owner {
+    /// Condition that selects the rows of run `?1`, or the rows of no run without a number.
+    pub fn condition(self) -> &'static str {
+        match self {
+            Owner::Store => "?1 IS NULL",
+            Owner::SameRun => "id = ?1",
+            Owner::Run | Owner::Samples => "run = ?1",
+            Owner::Model => "model IN (SELECT id FROM models WHERE run = ?1)",
+        }
+    }
+}
+
+const fn sealed(
+    owner: Owner,
+    table: &'static str,
+    columns: &'static [&'static str],
+    names: &'static [&'static str],
+) -> Sealed {
+    Sealed { table, columns, checksum: "checksum", names, key: "id", owner }
 }
 
 /// The constant data of a run.
 pub const RUNS: Sealed = sealed(
+    Owner::SameRun,
     "runs",
     &["bench", "procedure", "kind", "simulated", "created_at", "parameters", "provenance", "meta"],
     &["id"],
@@ -35,30 +71,43 @@ pub const RUNS: Sealed = sealed(
 /// The progress of a run.
 pub const RUN_STATES: Sealed = Sealed {
     checksum: "state_checksum",
-    ..sealed("runs", &["id", "state", "safe", "reason", "started_at", "finished_at", "rows"], &["id"])
+    ..sealed(Owner::SameRun, "runs", &["id", "state", "safe", "reason", "started_at", "finished_at", "rows"], &["id"])
 };
 /// The unit under test of a run, and its operator.
 pub const RUN_UNITS: Sealed = Sealed {
     checksum: "unit_checksum",
-    ..sealed("run_units", &["id", "serial", "part", "revision", "batch", "operator"], &["id"])
+    ..sealed(Owner::SameRun, "run_units", &["id", "serial", "part", "revision", "batch", "operator"], &["id"])
 };
-pub const EVENTS: Sealed = sealed("events", &["run", "sequence", "at_s", "kind", "data"], &["run", "sequence"]);
-pub const CHANNELS: Sealed = sealed("channels", &["run", "place", "name", "resolution"], &["run", "place"]);
-pub const BLOCKS: Sealed =
-    sealed("blocks", &["run", "channel", "first_row", "rows", "data"], &["run", "channel", "first_row", "rows"]);
+pub const EVENTS: Sealed =
+    sealed(Owner::Run, "events", &["run", "sequence", "at_s", "kind", "data"], &["run", "sequence"]);
+pub const CHANNELS: Sealed = Sealed {
+    key: "place",
+    ..sealed(Owner::Run, "channels", &["run", "place", "name", "resolution"], &["run", "place"])
+};
+pub const BLOCKS: Sealed = sealed(
+    Owner::Samples,
+    "blocks",
+    &["run", "channel", "first_row", "rows", "data"],
+    &["run", "channel", "first_row", "rows"],
+);
 pub const SPANS: Sealed =
-    sealed("spans", &["run", "first_row", "rows", "from_s", "to_s"], &["run", "first_row", "rows"]);
+    sealed(Owner::Samples, "spans", &["run", "first_row", "rows", "from_s", "to_s"], &["run", "first_row", "rows"]);
 pub const COARSE: Sealed = Sealed {
     checksum: "coarse_checksum",
-    ..sealed("spans", &["run", "first_row", "rows", "coarse"], &["run", "first_row", "rows"])
+    ..sealed(Owner::Samples, "spans", &["run", "first_row", "rows", "coarse"], &["run", "first_row", "rows"])
 };
 pub const FINE: Sealed = Sealed {
     checksum: "fine_checksum",
-    ..sealed("spans", &["run", "first_row", "rows", "fine"], &["run", "first_row", "rows"])
+    ..sealed(Owner::Samples, "spans", &["run", "first_row", "rows", "fine"], &["run", "first_row", "rows"])
 };
-pub const TAIL: Sealed =
-    sealed("tail", &["run", "first_row", "rows", "from_s", "to_s", "data"], &["run", "first_row", "rows"]);
+pub const TAIL: Sealed = sealed(
+    Owner::Samples,
+    "tail",
+    &["run", "first_row", "rows", "from_s", "to_s", "data"],
+    &["run", "first_row", "rows"],
+);
 pub const MODELS: Sealed = sealed(
+    Owner::Run,
     "models",
     &[
         "run",
@@ -81,44 +130,58 @@ pub const MODELS: Sealed = sealed(
     ],
     &["run", "id"],
 );
-pub const DIAGNOSES: Sealed = sealed("diagnoses", &["model", "diagnosis", "created_at"], &["model", "id"]);
-pub const BENCH_SAFETY: Sealed =
-    sealed("bench_safety", &["bench", "blocked", "stopped", "reason", "run", "who", "at"], &["bench", "id"]);
-pub const NOTES: Sealed = sealed("notes", &["run", "at_s", "text", "created_at"], &["run", "id"]);
+pub const DIAGNOSES: Sealed =
+    sealed(Owner::Model, "diagnoses", &["model", "diagnosis", "created_at"], &["model", "id"]);
+pub const BENCH_SAFETY: Sealed = sealed(
+    Owner::Store,
+    "bench_safety",
+    &["bench", "blocked", "stopped", "reason", "run", "who", "at"],
+    &["bench", "id"],
+);
+pub const NOTES: Sealed = sealed(Owner::Run, "notes", &["run", "at_s", "text", "created_at"], &["run", "id"]);
 pub const CALIBRATIONS: Sealed =
-    sealed("calibrations", &["bench", "procedure", "run", "who", "at"], &["bench", "procedure", "id"]);
+    sealed(Owner::Store, "calibrations", &["bench", "procedure", "run", "who", "at"], &["bench", "procedure", "id"]);
 pub const INSTRUMENT_FAULTS: Sealed =
-    sealed("instrument_faults", &["bench", "instrument", "text", "at"], &["bench", "instrument", "id"]);
-pub const OWN_EFFECTS: Sealed =
-    sealed("own_effects", &["kind", "effect", "version", "definition", "created_at"], &["effect", "version"]);
+    sealed(Owner::Store, "instrument_faults", &["bench", "instrument", "text", "at"], &["bench", "instrument", "id"]);
+pub const OWN_EFFECTS: Sealed = sealed(
+    Owner::Store,
+    "own_effects",
+    &["kind", "effect", "version", "definition", "created_at"],
+    &["effect", "version"],
+);
 /// Which users' effects the diagnosis of a run may suggest.
-pub const EFFECT_USES: Sealed = sealed("effect_uses", &["run", "kind", "effect", "used", "who", "at"], &["run", "id"]);
+pub const EFFECT_USES: Sealed =
+    sealed(Owner::Run, "effect_uses", &["run", "kind", "effect", "used", "who", "at"], &["run", "id"]);
 pub const UNIT_REFERENCES: Sealed =
-    sealed("unit_references", &["serial", "is_reference", "who", "at"], &["serial", "id"]);
-pub const AUTOPILOT_STEPS: Sealed =
-    sealed("autopilot_steps", &["autopilot", "sequence", "step"], &["autopilot", "sequence"]);
-pub const KEPT: Sealed = sealed("kept", &["subject", "id", "what", "software", "packed"], &["subject", "id", "what"]);
+    sealed(Owner::Store, "unit_references", &["serial", "is_reference", "who", "at"], &["serial", "id"]);
+pub const AUTOPILOT_STEPS: Sealed = Sealed {
+    // The only key of two numbers.
+    key: "(autopilot << 32) + sequence",
+    ..sealed(Owner::Store, "autopilot_steps", &["autopilot", "sequence", "step"], &["autopilot", "sequence"])
+};
+pub const KEPT: Sealed =
+    sealed(Owner::Store, "kept", &["subject", "id", "what", "software", "packed"], &["subject", "id", "what"]);
 
-/// Every checksum that [`super::verify`] compares. The cache (`kept`) is excluded: its results are computed again.
+/// Every checksum that [`super::verify`] compares, in this order. The cache (`kept`) is excluded: its results are computed again.
 pub const ALL: [&Sealed; 20] = [
     &RUNS,
     &RUN_STATES,
     &RUN_UNITS,
-    &EVENTS,
     &CHANNELS,
+    &EVENTS,
     &BLOCKS,
     &SPANS,
     &COARSE,
     &FINE,
     &TAIL,
+    &NOTES,
+    &EFFECT_USES,
     &MODELS,
     &DIAGNOSES,
     &BENCH_SAFETY,
-    &NOTES,
     &CALIBRATIONS,
     &INSTRUMENT_FAULTS,
     &OWN_EFFECTS,
-    &EFFECT_USES,
     &UNIT_REFERENCES,
     &AUTOPILOT_STEPS,
 ];
@@ -157,6 +220,21 @@ impl Sealed {
             }
         }
         i64::from(hasher.finalize())
+    }
+
+    /// The statement that inserts a row with its checksum and returns it. Values in the order of [`Self::columns`].
+    pub fn insert(&self, cells: &[Cell<'_>]) -> Query<'static, Sqlite, SqliteArguments> {
+        let Sealed { table, columns, checksum, .. } = self;
+        let places = vec!["?"; columns.len() + 1].join(", ");
+        let sql = format!("INSERT INTO {table} ({}, {checksum}) VALUES ({places}) RETURNING *", columns.join(", "));
+        let bound = cells.iter().fold(sqlx::query(AssertSqlSafe(sql)), |query, cell| match *cell {
+            Cell::Null => query.bind(None::<i64>),
+            Cell::Integer(value) => query.bind(value),
+            Cell::Real(value) => query.bind(value),
+            Cell::Text(bytes) => query.bind(String::from_utf8_lossy(bytes)),
+            Cell::Blob(bytes) => query.bind(bytes),
+        });
+        bound.bind(self.seal(cells))
     }
 
     /// The expected checksum of a row.

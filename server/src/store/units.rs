@@ -37,14 +37,7 @@ impl Store {
     pub async fn set_unit_reference(&self, serial: &str, is_reference: bool, by: &str) -> Result<(), StoreError> {
         let at = now();
         let cells = [serial.into(), i64::from(is_reference).into(), by.into(), (&at).into()];
-        sqlx::query("INSERT INTO unit_references (serial, is_reference, who, at, checksum) VALUES (?, ?, ?, ?, ?)")
-            .bind(serial)
-            .bind(is_reference)
-            .bind(by)
-            .bind(&at)
-            .bind(UNIT_REFERENCES.seal(&cells))
-            .execute(&self.writer)
-            .await?;
+        UNIT_REFERENCES.insert(&cells).execute(&self.writer).await?;
         Ok(())
     }
 }
@@ -88,13 +81,6 @@ pub(super) async fn insert_unit(
     };
     let texts = [serial, part, revision, batch, operator];
     let cells = std::iter::once(run.into()).chain(texts.map(Into::into)).collect::<Vec<_>>();
-    let mut insert = sqlx::query(
-        "INSERT INTO run_units (id, serial, part, revision, batch, operator, unit_checksum) VALUES (?, ?, ?, ?, ?, ?, ?)",
-    )
-    .bind(run);
-    for text in texts {
-        insert = insert.bind(text);
-    }
-    insert.bind(RUN_UNITS.seal(&cells)).execute(writer).await?;
+    RUN_UNITS.insert(&cells).execute(writer).await?;
     Ok(())
 }

@@ -40,18 +40,7 @@ impl Store {
                 .await?;
         let (text, created_at) = (serde_json::to_string(definition)?, now());
         let cells = [kind.into(), effect.into(), version.into(), (&text).into(), (&created_at).into()];
-        let row = sqlx::query(
-            "INSERT INTO own_effects (kind, effect, version, definition, created_at, checksum) \
-             VALUES (?, ?, ?, ?, ?, ?) RETURNING *",
-        )
-        .bind(kind)
-        .bind(effect)
-        .bind(version)
-        .bind(&text)
-        .bind(&created_at)
-        .bind(OWN_EFFECTS.seal(&cells))
-        .fetch_one(&mut *writer)
-        .await?;
+        let row = OWN_EFFECTS.insert(&cells).fetch_one(&mut *writer).await?;
         writer.commit().await?;
         record(&row)
     }
@@ -67,18 +56,7 @@ impl Store {
     ) -> Result<(), StoreError> {
         let at = now();
         let cells = [run.into(), kind.into(), effect.into(), used.into(), by.into(), (&at).into()];
-        sqlx::query(
-            "INSERT INTO effect_uses (run, kind, effect, used, who, at, checksum) VALUES (?, ?, ?, ?, ?, ?, ?)",
-        )
-        .bind(run)
-        .bind(kind)
-        .bind(effect)
-        .bind(used)
-        .bind(by)
-        .bind(&at)
-        .bind(EFFECT_USES.seal(&cells))
-        .execute(&self.writer)
-        .await?;
+        EFFECT_USES.insert(&cells).execute(&self.writer).await?;
         Ok(())
     }
 

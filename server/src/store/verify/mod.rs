@@ -12,7 +12,7 @@ pub use report::{Readable, VerifyReport};
 use super::keeper::{losses, missing};
 use super::mark::Mark;
 use super::open::{file_to_read, to_read};
-use super::seal::{self, Sealed};
+use super::seal::{self, Owner, Sealed};
 use super::values::now;
 use super::{Store, StoreError};
 use jointbench_procedure::RunId;
@@ -21,15 +21,6 @@ use sqlx::{Connection, Row, SqliteConnection};
 use std::path::Path;
 use std::time::Duration;
 
-/// Tables whose rows belong to no run.
-const OF_NO_RUN: [&Sealed; 6] = [
-    &seal::BENCH_SAFETY,
-    &seal::CALIBRATIONS,
-    &seal::INSTRUMENT_FAULTS,
-    &seal::OWN_EFFECTS,
-    &seal::UNIT_REFERENCES,
-    &seal::AUTOPILOT_STEPS,
-];
 /// Limits the number of faults that SQLite's own check lists.
 const MOST_FAULTS: &str = "PRAGMA integrity_check(100)";
 
@@ -52,7 +43,7 @@ async fn check_database(mut database: SqliteConnection, mark: Option<&Mark>) -> 
     let mut report = VerifyReport { checked_at: now(), ..VerifyReport::default() };
     check_file(&mut database, &mut report).await;
     check_losses(&mut database, mark, &mut report).await;
-    for sealed in OF_NO_RUN {
+    for sealed in of_no_run() {
         check_rows(&mut database, sealed, None, &mut report).await;
     }
     for run in run_ids(&mut database, &mut report).await {
@@ -71,7 +62,7 @@ impl Store {
     pub async fn check(&self, pace: Duration) -> Result<VerifyReport, StoreError> {
         let mut report = VerifyReport { checked_at: now(), ..VerifyReport::default() };
         report.lost = self.losses().await?;
-        for sealed in OF_NO_RUN {
+        for sealed in of_no_run() {
             check_rows(&mut *self.readers.acquire().await?, sealed, None, &mut report).await;
         }
         let runs = run_ids(&mut *self.readers.acquire().await?, &mut report).await;
@@ -86,16 +77,18 @@ impl Store {
     }
 }
 
+fn of_no_run() -> impl Iterator<Item = &'static Sealed> {
+    seal::ALL.into_iter().filter(|sealed| sealed.owner == Owner::Store)
+}
+
 /// Checks one run with all its records.
 async fn check_run(database: &mut SqliteConnection, run: RunId, report: &mut VerifyReport) {
     report.runs += 1;
-    for sealed in [&seal::RUNS, &seal::RUN_STATES, &seal::RUN_UNITS, &seal::CHANNELS, &seal::EVENTS] {
+    let of_run = |sealed: &&Sealed| matches!(sealed.owner, Owner::SameRun | Owner::Run | Owner::Model);
+    for sealed in seal::ALL.into_iter().filter(of_run) {
         check_rows(database, sealed, Some(run), report).await;
     }
     samples::check(database, run, report).await;
-    for sealed in [&seal::NOTES, &seal::EFFECT_USES, &seal::MODELS, &seal::DIAGNOSES] {
-        check_rows(database, sealed, Some(run), report).await;
-    }
 }
 
 /// Tests id by id if SQLite cannot scan the table.

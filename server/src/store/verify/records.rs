@@ -56,28 +56,14 @@ pub fn what(fault: &StoreError) -> String {
     }
 }
 
-/// The key of a row, and the condition that selects the rows of a run.
-fn keys(sealed: &Sealed) -> (&'static str, &'static str) {
-    match sealed.table {
-        "runs" | "run_units" => ("id", "id = ?1"),
-        "channels" => ("place", "run = ?1"),
-        "events" => ("sequence", "run = ?1"),
-        "diagnoses" => ("id", "model IN (SELECT id FROM models WHERE run = ?1)"),
-        // The only key of two numbers.
-        "autopilot_steps" => ("(autopilot << 32) + sequence", "?1 IS NULL"),
-        "notes" | "effect_uses" | "models" => ("id", "run = ?1"),
-        _ => ("id", "?1 IS NULL"),
-    }
-}
-
 async fn row_ids(
     database: &mut SqliteConnection,
     sealed: &Sealed,
     run: Option<RunId>,
     report: &mut VerifyReport,
 ) -> Vec<i64> {
-    let (key, of_run) = keys(sealed);
-    let sql = format!("SELECT {key} FROM {} WHERE {of_run} ORDER BY 1", sealed.table);
+    let (key, condition) = (sealed.key, sealed.owner.condition());
+    let sql = format!("SELECT {key} FROM {} WHERE {condition} ORDER BY 1", sealed.table);
     match sqlx::query_scalar(AssertSqlSafe(sql)).bind(run).fetch_all(database).await {
         Ok(ids) => ids,
         Err(fault) => {
@@ -94,8 +80,8 @@ async fn row(
     run: Option<RunId>,
     id: &i64,
 ) -> Result<Option<SqliteRow>, StoreError> {
-    let (key, of_run) = keys(sealed);
-    let sql = format!("SELECT * FROM {} WHERE {of_run} AND {key} = ?2", sealed.table);
+    let (key, condition) = (sealed.key, sealed.owner.condition());
+    let sql = format!("SELECT * FROM {} WHERE {condition} AND {key} = ?2", sealed.table);
     Ok(sqlx::query(AssertSqlSafe(sql)).bind(run).bind(id).fetch_optional(database).await?)
 }
 
@@ -103,7 +89,8 @@ impl Store {
     /// Adds checksums to rows of an older release, slice by slice. Earlier damage remains undetected.
     pub(super) async fn seal_old_rows(&self) -> Result<(), StoreError> {
         for sealed in super::seal::ALL {
-            let key = if matches!(sealed.table, "channels" | "autopilot_steps") { "0" } else { "id" };
+            // A key within a run or an autopilot gives no order over the table: each slice is the first one.
+            let key = if sealed.key == "id" { "id" } else { "0" };
             let mut behind = -1;
             while let Some(last) = self.seal_slice(sealed, key, behind).await? {
                 behind = last;
