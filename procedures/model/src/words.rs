@@ -95,7 +95,8 @@ impl Scale {
     }
 }
 
-fn is_prefixed(unit: &str) -> bool {
+/// Whether sentences write this unit with a prefix.
+pub fn is_prefixed(unit: &str) -> bool {
     unit.starts_with("Nm") || unit.starts_with("rad") || unit == "N" || unit == "m"
 }
 

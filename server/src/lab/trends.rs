@@ -3,6 +3,7 @@
 use super::{Answer, Lab};
 use crate::store::{RunFilter, RunRecord, Search};
 use crate::view::{TrendRun, Trends};
+use jointbench_model::stats::summary::mean;
 use jointbench_procedure::RunState;
 
 /// Limit of a plot.
@@ -22,7 +23,8 @@ impl Lab {
             ..RunFilter::default()
         };
         let (total, records) = self.inner.store.runs(&filter).await?;
-        let records: Vec<&RunRecord> = records.iter().rev().filter(|record| has_result(record)).collect();
+        let records: Vec<&RunRecord> =
+            records.iter().rev().filter(|record| has_result(record.state, &record.procedure)).collect();
         let (found, pending) = self.quantities_of_runs(records, |record| record.id).await?;
         let mut runs = Vec::new();
         for (record, quantities) in found {
@@ -53,10 +55,11 @@ impl Lab {
         let middles = view.columns.iter().flat_map(|column| column.min.iter().zip(&column.max));
         let middles: Vec<f64> =
             middles.map(|(low, high)| (low + high) / 2.0).filter(|middle| middle.is_finite()).collect();
-        Ok((!middles.is_empty()).then(|| middles.iter().sum::<f64>() / middles.len() as f64))
+        Ok((!middles.is_empty()).then(|| mean(&middles)))
     }
 }
 
-fn has_result(record: &RunRecord) -> bool {
-    record.state == RunState::Completed && jointbench_procedure::procedure(&record.procedure).is_some()
+/// Whether a run is complete and has a verdict. An imported run has none.
+pub(super) fn has_result(state: RunState, procedure: &str) -> bool {
+    state == RunState::Completed && jointbench_procedure::procedure(procedure).is_some()
 }

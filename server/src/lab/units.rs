@@ -1,13 +1,13 @@
 //! Units under test: the unit of a new run, the list of units and their first-pass yield.
 
 use super::names::{LONGEST_UNIT_TEXT, checked};
+use super::trends::has_result;
 use super::{Answer, Lab, LabError};
 use crate::limits::{self, LimitsFile, Measured};
 use crate::store::{Search, UnitRunRecord};
 use crate::view::{FirstPassYield, Identified, LimitOutcome, NewRun, Unit, UnitList, UnitSummary, YieldGroup, reread};
 use jointbench_instrument::Meta;
 use jointbench_model::stats::proportion::wilson_interval;
-use jointbench_procedure::RunState;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -145,9 +145,8 @@ fn summary(runs: &[&UnitRunRecord]) -> Option<UnitSummary> {
     })
 }
 
-/// An imported run has no verdict.
 fn is_complete(run: &UnitRunRecord) -> bool {
-    run.state == RunState::Completed && jointbench_procedure::procedure(&run.procedure).is_some()
+    has_result(run.state, &run.procedure)
 }
 
 fn verdict(run: &UnitRunRecord) -> Option<Identified> {
@@ -203,6 +202,7 @@ fn yields<'r>(units: impl Iterator<Item = &'r Vec<&'r UnitRunRecord>>) -> Vec<Fi
 #[cfg(test)]
 mod tests {
     use super::*;
+    use jointbench_procedure::RunState;
 
     fn run(run: i64, serial: &str, batch: Option<&str>, state: RunState, verdict: Option<&str>) -> UnitRunRecord {
         UnitRunRecord {

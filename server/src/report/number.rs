@@ -2,9 +2,9 @@
 
 use jointbench_model::words;
 
-/// Whether this unit can have a prefix.
+/// Whether this unit can have a prefix. In a table, currents, times and voltages have one too.
 fn takes_prefix(unit: &str) -> bool {
-    ["N", "m", "A", "s", "V"].contains(&unit) || unit.starts_with("Nm") || unit.starts_with("rad")
+    words::is_prefixed(unit) || ["A", "s", "V"].contains(&unit)
 }
 
 /// `32.14 mNm` and `31.90 … 32.38`: one unit, and two digits of the half-width.

@@ -1,7 +1,8 @@
 //! Names and values of facts as a table.
 
 use crate::view::typed;
-use jointbench_instrument::units::{quantity_of, unit_of};
+use jointbench_instrument::units::unit_of;
+use jointbench_model::words;
 use jointbench_procedure::procedure;
 use maud::{Markup, html};
 use serde_json::{Map, Value};
@@ -18,7 +19,7 @@ pub fn pairs(values: &Map<String, Value>) -> Markup {
 
 /// Title of a parameter: `warm_up_s` becomes warm up [s].
 pub fn title(name: &str) -> String {
-    let quantity = quantity_of(name).unwrap_or(name).replace('_', " ");
+    let quantity = words::spoken(name);
     unit_of(name).map_or(quantity.clone(), |unit| format!("{quantity} [{unit}]"))
 }
 

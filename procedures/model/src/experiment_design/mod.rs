@@ -158,13 +158,13 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let known = menu.iter().filter(|choice| !choice.stretches.is_empty());
     let simulated: Vec<_> = known.map(|choice| (choice, simulate(choice, &prepared, &model, gear))).collect();
-    let is_simulated = !simulated.is_empty();
+    let has_choices = !simulated.is_empty();
     let side = Side::new(&model.main, &noise);
     let offer = RunPlanner { menu, simulated, prepared: &prepared, model: &model, side, noise, options };
     let mut in_vain = Vec::new();
     for (effect, alternatives) in &open.ties {
         let (experiment, vain) = offer.distinguish(effect, alternatives, open)?;
-        let vain = vain.filter(|_| is_simulated);
+        let vain = vain.filter(|_| has_choices);
         if let Some(mut next) = experiment {
             next.why
                 .extend(vain.map(|vain| format!("; no run within the given limits is expected to distinguish {vain}")));
