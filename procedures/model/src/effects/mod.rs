@@ -3,6 +3,7 @@
 pub(crate) mod brake;
 pub(crate) mod encoder;
 pub(crate) mod friction;
+mod linear;
 pub(crate) mod stiffness;
 
 pub use crate::effects::friction::teeth::{ONLY_WEIGHT, WITH_WEIGHT};

@@ -12,8 +12,8 @@ pub(crate) mod velocity_dependence;
 use crate::effect::Effect;
 
 pub static ALL: &[&dyn Effect] = &[
-    &drag::Drag,
-    &torque_per_current::TorquePerCurrent,
+    &drag::DRAG,
+    &torque_per_current::TORQUE_PER_CURRENT,
     &saturation::Saturation,
     &hysteresis::Hysteresis,
     &velocity_dependence::VelocityDependence,

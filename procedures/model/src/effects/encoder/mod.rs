@@ -2,6 +2,7 @@
 
 pub(crate) mod delay;
 pub(crate) mod direction_hysteresis;
+pub(crate) mod fixed_harmonic;
 pub(crate) mod harmonic_1;
 pub(crate) mod harmonic_2;
 pub(crate) mod harmonic_n;
@@ -14,14 +15,14 @@ pub(crate) mod temperature_drift;
 use crate::effect::Effect;
 
 pub static ALL: &[&dyn Effect] = &[
-    &offset::Offset,
-    &delay::Delay,
-    &harmonic_1::Harmonic1,
-    &harmonic_2::Harmonic2,
+    &offset::OFFSET,
+    &delay::DELAY,
+    &harmonic_1::HARMONIC_1,
+    &harmonic_2::HARMONIC_2,
     &harmonic_n::HarmonicN,
     &pole_period::PolePeriod,
-    &direction_hysteresis::DirectionHysteresis,
-    &temperature_drift::TemperatureDrift,
+    &direction_hysteresis::DIRECTION_HYSTERESIS,
+    &temperature_drift::TEMPERATURE_DRIFT,
     &slip::Slip,
     &startup_offset::StartupOffset,
 ];

@@ -28,10 +28,10 @@ pub(crate) mod viscous_sublinear;
 use crate::effect::Effect;
 
 pub static ALL: &[&dyn Effect] = &[
-    &inertia::Inertia,
+    &inertia::INERTIA,
     &load_transmission::LoadTransmission,
-    &coulomb::Coulomb,
-    &viscous::Viscous,
+    &coulomb::COULOMB,
+    &viscous::VISCOUS,
     &stribeck::Stribeck,
     &direction_offset::DirectionOffset,
     &viscous_asymmetry::ViscousAsymmetry,
@@ -41,13 +41,13 @@ pub static ALL: &[&dyn Effect] = &[
     &load_quadratic::LoadQuadratic,
     &load_viscous::LoadViscous,
     &stribeck_load::StribeckLoad,
-    &temperature_viscous::TemperatureViscous,
-    &temperature_coulomb::TemperatureCoulomb,
+    &temperature_viscous::TEMPERATURE_VISCOUS,
+    &temperature_coulomb::TEMPERATURE_COULOMB,
     &gravity::Gravity,
     &cogging::Cogging,
     &friction_ripple::FrictionRipple,
     &torque_constant_saturation::TorqueConstantSaturation,
     &drift::Drift,
     &presliding::Presliding,
-    &signal_delay::SignalDelay,
+    &signal_delay::SIGNAL_DELAY,
 ];

@@ -14,14 +14,14 @@ pub(crate) mod transmission_error;
 use crate::effect::Effect;
 
 pub static ALL: &[&dyn Effect] = &[
-    &offset::Offset,
-    &compliance::Compliance,
-    &directional_offset::DirectionalOffset,
+    &offset::OFFSET,
+    &compliance::COMPLIANCE,
+    &directional_offset::DIRECTIONAL_OFFSET,
     &backlash::Backlash,
     &hardening::Hardening,
     &torsional_hysteresis::TorsionalHysteresis,
     &transmission_error::TransmissionError,
-    &temperature_compliance::TemperatureCompliance,
+    &temperature_compliance::TEMPERATURE_COMPLIANCE,
     &creep::Creep,
-    &delay::Delay,
+    &delay::DELAY,
 ];
