@@ -1585,7 +1585,7 @@ class TrialError(BaseModel):
     unit: str
 
 
-UndecidedReason = TypeAliasType("UndecidedReason", Literal['contradictory_columns', 'too_few_blocks', 'no_noise_floor', 'above_noise_floor', 'impossible_parameter'])
+UndecidedReason = TypeAliasType("UndecidedReason", Literal['contradictory_columns', 'too_few_blocks', 'no_noise_floor', 'above_noise_floor', 'impossible_parameter', 'nuisance_terms'])
 """Why a verdict is undecided."""
 
 

@@ -19,7 +19,7 @@ pub(crate) mod refused;
 pub(crate) mod removal;
 pub(crate) mod staged_search;
 #[cfg(test)]
-mod tiny;
+pub(crate) mod tiny;
 
 use crate::preprocess::Prepared;
 use crate::selection::model_selection::ModelSelection;
