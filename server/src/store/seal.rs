@@ -162,7 +162,8 @@ pub const AUTOPILOT_STEPS: Sealed = Sealed {
 pub const KEPT: Sealed =
     sealed(Owner::Store, "kept", &["subject", "id", "what", "software", "packed"], &["subject", "id", "what"]);
 
-/// Every checksum that [`super::verify`] compares, in this order. The cache (`kept`) is excluded: its results are computed again.
+/// Every checksum that [`super::verify`] compares, in this order. The cache (`kept`) is excluded: its results are
+/// computed again.
 pub const ALL: [&Sealed; 20] = [
     &RUNS,
     &RUN_STATES,

@@ -46,6 +46,5 @@ it('breaks a label that has no room between its words', () => {
 it('names settings as in the form', () => {
 	const fields = [{ name: 'top_speed_rad_s', title: 'Maximum speed (motor)' }, { name: 'repeats', title: 'Repeats of the profile' }];
 	expect(withLabels('set top_speed_rad_s = 120 or less, or add repeats', fields)).toBe('set “Maximum speed (motor)” = 120 or less, or add repeats');
-	expect(withLabels('Increase repeats, or reduce top_speed_rad_s.', fields)).toBe('Increase “Repeats of the profile”, or reduce “Maximum speed (motor)”.');
 	expect(withLabels('stop_top_speed_rad_s', fields)).toBe('stop_top_speed_rad_s');
 });

@@ -88,14 +88,9 @@ export function displayText(sentence: string, effects: Titles = []): string {
 	return replaced.charAt(0).toUpperCase() + withMinusSigns(replaced.slice(1));
 }
 
-/**
- * Settings in a sentence of the daemon by their labels in the form. A name without underscore is a common word, except
- * directly after a verb that changes it: “Increase levels”.
- */
-export function withLabels(sentence: string, fields: readonly { name: string; title: string }[] = []): string {
-	const before = (name: string) => (name.includes('_') ? '(?<![\\w.])' : '(?<=\\b(increase|reduce) )');
-	return fields.reduce((text, { name, title }) => text.replaceAll(new RegExp(`${before(name)}${name}(?!\\w)`, 'gi'), `“${title}”`), sentence);
-}
+/** Settings in a sentence of the daemon by their labels in the form. A name without underscore is a common word. */
+export const withLabels = (sentence: string, fields: readonly { name: string; title: string }[] = []): string =>
+	fields.filter(({ name }) => name.includes('_')).reduce((text, { name, title }) => text.replaceAll(new RegExp(`(?<![\\w.])${name}(?!\\w)`, 'g'), `“${title}”`), sentence);
 
 /** The end of a path, which says more than its beginning. Names stay complete. */
 export const pathEnd = (name: string): string => (/[\\/]/.test(name) ? `…/${name.split(/[\\/]/).filter(Boolean).slice(-2).join('/')}` : name);

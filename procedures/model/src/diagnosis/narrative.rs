@@ -273,6 +273,7 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
     let blocks = found.start.main.problem.blocks;
     // The smallest possible p-value of sign flips with this number of blocks.
     let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
+    let worse = fits.last().and_then(|fit| worse_than_no_model(fit));
     let (reason, text) = match verdict {
         _ if !found.start.prepared.data_errors.is_empty() => {
             (UndecidedReason::ContradictoryColumns, "the recording has the data problem above".to_owned())
@@ -282,11 +283,8 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
         }
         Verdict::Adequate if found.floor.rms.is_none() => (UndecidedReason::NoNoiseFloor, found.floor.source.clone()),
         Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => above_floor(found),
-        Verdict::Adequate | Verdict::MissingEffect => {
-            let worse = fits.last().filter(|_| verdict == Verdict::Adequate).and_then(|fit| worse_than_no_model(fit));
-            let worse = worse.map(|text| (UndecidedReason::NuisanceTerms, text));
-            worse.or_else(|| Some((UndecidedReason::ImpossibleParameter, impossible(fits)?)))?
-        }
+        Verdict::Adequate if worse.is_some() => (UndecidedReason::NuisanceTerms, worse?),
+        Verdict::Adequate | Verdict::MissingEffect => (UndecidedReason::ImpossibleParameter, impossible(fits)?),
         Verdict::UnexplainedStructure => return None,
     };
     Some(Undecided { reason, text })
@@ -305,7 +303,7 @@ fn above_floor(found: &Findings) -> (UndecidedReason, String) {
     (UndecidedReason::AboveNoiseFloor, why)
 }
 
-/// The sentence for effects that predict worse than no model: the nuisance terms explain the run.
+/// The sentence for effects that predict worse than no model. Only nuisance terms explain such a run.
 fn worse_than_no_model(fit: &Fit) -> Option<String> {
     let alone = fit.effects_rms.filter(|alone| alone * fit.relative_error > fit.rms)?;
     let alone = figure(alone, &fit.unit);

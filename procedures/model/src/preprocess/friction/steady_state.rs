@@ -16,7 +16,7 @@ use jointbench_instrument::RunTable;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Shorter where the speed changes.
+/// Length of a chunk where the speed changes [s].
 const MOVING_CHUNK_S: f64 = 0.02;
 /// Chunks around a reversal in which the jerk is set to zero.
 const REACH: usize = 3;
