@@ -40,6 +40,10 @@ pub enum RejectionReason {
     ModelFull,
     /// With it, the error is not smaller.
     NoReduction,
+    /// It acts within the shortest displacement that the run resolves.
+    Unresolved,
+    /// Its size is physically impossible.
+    Implausible,
 }
 
 /// An effect that this data cannot show.

@@ -1,9 +1,12 @@
 //! Rules that a candidate of the evidence search has to pass, one file for each rule, and the list in which they run.
 
+pub(crate) mod dissipation;
 pub(crate) mod error_reduction;
 pub(crate) mod friction_direction;
 pub(crate) mod model_size;
 pub(crate) mod nonzero_size;
+pub(crate) mod possible_size;
+pub(crate) mod shortest_reach;
 pub(crate) mod significance;
 pub(crate) mod standard_error;
 pub(crate) mod whole_error;
@@ -62,13 +65,16 @@ struct Rule {
 }
 
 /// All rules by name, in the order in which they run.
-const RULES: [(&str, Rule); 7] = [
+const RULES: [(&str, Rule); 10] = [
     ("significance", Rule { reason: RejectionReason::NotSignificant, test: Test::Figures(significance::passes) }),
     ("standard error", Rule { reason: RejectionReason::FewBlocks, test: Test::Figures(standard_error::passes) }),
     ("error reduction", Rule { reason: RejectionReason::FormError, test: Test::Figures(error_reduction::passes) }),
     ("model size", Rule { reason: RejectionReason::ModelFull, test: Test::Figures(model_size::passes) }),
+    ("shortest reach", Rule { reason: RejectionReason::Unresolved, test: Test::Model(shortest_reach::passes) }),
     ("friction direction", Rule { reason: RejectionReason::FormError, test: Test::Model(friction_direction::passes) }),
     ("nonzero size", Rule { reason: RejectionReason::FormError, test: Test::Model(nonzero_size::passes) }),
+    ("possible size", Rule { reason: RejectionReason::Implausible, test: Test::Model(possible_size::passes) }),
+    ("dissipation", Rule { reason: RejectionReason::Implausible, test: Test::Model(dissipation::passes) }),
     ("whole error", Rule { reason: RejectionReason::NoReduction, test: Test::Model(whole_error::passes) }),
 ];
 

@@ -1,8 +1,11 @@
 //! The model with the candidate gives it a size.
 //!
 //! A coefficient that cannot be negative is held at zero if its estimate is negative by chance. If all coefficients of
-//! the candidate are, the error falls because of its nuisance terms only: another form, or form error.
+//! the candidate are, the error falls because of its nuisance terms only: another form, or form error. A candidate that
+//! changes the direction of friction has the size of the Coulomb friction.
 
+use crate::effects::changes_direction;
+use crate::effects::friction::coulomb;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::solution::Solution;
 use crate::selection::evidence_search::rules::Refit;
@@ -14,6 +17,7 @@ pub(super) fn passes(refit: &Refit) -> bool {
 
 pub(in crate::selection::evidence_search) fn has_size(id: &str, model: &LinearModel) -> bool {
     let Some(solution) = Solution::of(model) else { return true };
+    let id = if changes_direction(id) { coulomb::ID } else { id };
     let mut first = 0;
     for term in &model.terms {
         let range = first..first + term.columns.len();
