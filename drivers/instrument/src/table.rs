@@ -4,6 +4,7 @@ use crate::skew::align;
 use crate::zero::subtract;
 use crate::{Kind, Meta, Trace};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// One run, ready for a model: it has the required columns, and its time is finite and rises.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -198,6 +199,19 @@ impl RunTable {
         self.trace.column(name)
     }
 
+    /// A copy without some rows. `left_out` are ranges of rows in rising order that do not overlap; at least one row
+    /// remains.
+    pub fn without(&self, left_out: &[Range<usize>]) -> Self {
+        let keep = |column: &Vec<f64>| {
+            let ends = left_out.iter().map(|range| range.start).chain([column.len()]);
+            let starts = [0].into_iter().chain(left_out.iter().map(|range| range.end));
+            starts.zip(ends).flat_map(|(start, end)| &column[start..end]).copied().collect()
+        };
+        let columns = self.trace.columns().iter().map(keep).collect();
+        let trace = Trace::from_columns(self.trace.channels().to_vec(), columns);
+        Self { kind: self.kind, meta: self.meta.clone(), trace }
+    }
+
     /// Facts and samples, without a copy.
     pub fn into_parts(self) -> (Meta, Trace) {
         (self.meta, self.trace)
@@ -312,6 +326,15 @@ mod tests {
             table(&[NAMES[0], NAMES[1], NAMES[2], "kp"], &[&[0.0, 0.0, 0.1, 5.0], &[0.1, 0.0, 0.1, 5.0]]).unwrap();
         assert_eq!(table.len(), 2);
         assert_eq!(table.column("kp"), Some(&[5.0, 5.0][..]));
+    }
+
+    #[test]
+    fn rows_are_left_out() {
+        let rows: Vec<[f64; 3]> = (0..8).map(|i| [f64::from(i), 10.0 + f64::from(i), 0.5]).collect();
+        let rows: Vec<&[f64]> = rows.iter().map(|row| &row[..]).collect();
+        let rest = table(&NAMES, &rows).unwrap().without(&[0..2, 5..6]);
+        assert_eq!(rest.column("time_s"), Some(&[2.0, 3.0, 4.0, 6.0, 7.0][..]));
+        assert_eq!(rest.column(NAMES[1]), Some(&[12.0, 13.0, 14.0, 16.0, 17.0][..]));
     }
 
     #[test]

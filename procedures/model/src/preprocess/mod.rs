@@ -23,7 +23,7 @@ pub(crate) mod unknown_columns;
 use crate::effect::Regime;
 use crate::effects::changes_direction;
 use crate::preprocess::checks::unit_mismatch::DataErrors;
-use crate::preprocess::checks::{metadata, unit_mismatch};
+use crate::preprocess::checks::{metadata, sensor_faults, unit_mismatch};
 use crate::preprocess::design::replicates::DifferentMotion;
 use crate::preprocess::filter::{ABREAST, LowPass};
 use crate::preprocess::form_error::FormError;
@@ -146,6 +146,8 @@ pub struct Prepared {
     /// Missing or wrong test conditions, in sentences.
     pub(crate) warnings: Vec<String>,
     pub(crate) about: Preparation,
+    /// Rows of the run that are left out, because their torque was not read.
+    pub(crate) left_out: Vec<Range<usize>>,
 }
 
 impl Prepared {
@@ -165,6 +167,7 @@ impl Prepared {
             data_errors: DataErrors::default(),
             warnings: Vec::new(),
             about,
+            left_out: Vec::new(),
         }
     }
 
@@ -174,15 +177,21 @@ impl Prepared {
         let chunks = if self.main.settled { &self.main.view.chunks[..] } else { &[] };
         let mut states: Vec<(i64, Range<usize>)> = Vec::new();
         for (row, chunk) in chunks.iter().enumerate() {
+            let chunk = self.row(chunk.start)..self.row(chunk.end - 1) + 1;
             match states.last_mut() {
                 // Chunks of one steady state follow each other without a gap.
                 Some((segment, rows)) if *segment == self.main.segment[row] && rows.end == chunk.start => {
                     rows.end = chunk.end;
                 }
-                _ => states.push((self.main.segment[row], chunk.clone())),
+                _ => states.push((self.main.segment[row], chunk)),
             }
         }
         states
+    }
+
+    /// Row of the run of a row that was not left out.
+    fn row(&self, kept: usize) -> usize {
+        self.left_out.iter().fold(kept, |row, out| if row >= out.start { row + out.len() } else { row })
     }
 
     /// The problem that a model of these effects is judged on. Presliding replaces the direction by its state.
@@ -277,6 +286,18 @@ pub(crate) fn prepare_with(
             return Err(ModelError::TooLarge { column: channel.name.clone(), value: *value });
         }
     }
+    let (left_out, unread) = sensor_faults::unread(run);
+    let kept = run.len() - left_out.iter().map(Range::len).sum::<usize>();
+    if left_out.is_empty() || kept < SHORTEST {
+        return prepare_rows(run, options, bristles);
+    }
+    let mut prepared = prepare_rows(&run.without(&left_out), options, bristles)?;
+    prepared.warnings.extend(unread.into_iter().map(|text| format!("{text}; these rows are left out")));
+    Ok(Prepared { left_out, ..prepared })
+}
+
+/// The same for a run whose rows all have a reading of the torque.
+fn prepare_rows(run: &RunTable, options: &Options, bristles: Option<&Bristles>) -> Result<Prepared, ModelError> {
     let (prepared, response) = match run.kind() {
         Kind::Friction => (friction::prepare(run, options, bristles)?, "motor_current_a"),
         Kind::Encoder => (encoder::prepare(run, options)?, "test_position_rad − reference_position_rad"),

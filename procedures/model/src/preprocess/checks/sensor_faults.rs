@@ -23,21 +23,49 @@ fn columns(kind: Kind) -> (&'static [&'static str], &'static str) {
 
 /// Columns with a stuck or saturated sensor, each in a sentence.
 pub fn failed(run: &RunTable) -> Vec<String> {
-    let (names, angle) = columns(run.kind());
-    let found = names.iter().filter_map(|name| {
+    let fault = |column: Column| clipped(run, &column).or_else(|| stuck_text(run, &column, &column.stuck(run)));
+    suspicious(run).filter_map(fault).collect()
+}
+
+/// Rows without a reading of the torque, in order, and a sentence for each column with such rows: its sensor is stuck.
+pub fn unread(run: &RunTable) -> (Vec<Range<usize>>, Vec<String>) {
+    let (mut rows, mut texts) = (Vec::new(), Vec::new());
+    for column in suspicious(run) {
+        let stuck = column.stuck(run);
+        texts.extend(stuck_text(run, &column, &stuck));
+        rows.extend(stuck);
+    }
+    rows.sort_by_key(|range: &Range<usize>| range.start);
+    rows.dedup_by(|next, range| {
+        let overlap = next.start <= range.end;
+        range.end = if overlap { range.end.max(next.end) } else { range.end };
+        overlap
+    });
+    (rows, texts)
+}
+
+/// A column of fine readings, with its long ranges of equal values.
+struct Column<'r> {
+    name: &'static str,
+    values: &'r [f64],
+    same: Vec<Range<usize>>,
+}
+
+fn suspicious(run: &RunTable) -> impl Iterator<Item = Column<'_>> {
+    columns(run.kind()).0.iter().filter_map(|name| {
         let values = run.column(name)?;
         let same = stretches_of_one_value(values);
         let resting: usize = same.iter().map(|range| range.len() - 1).sum();
-        let long: Vec<&Range<usize>> = same.iter().filter(|range| range.len() >= SATURATED_SAMPLES as usize).collect();
+        let long: Vec<Range<usize>> =
+            same.iter().filter(|range| range.len() >= SATURATED_SAMPLES as usize).cloned().collect();
         let long_resting: usize = long.iter().map(|range| range.len() - 1).sum();
         let rest = (values.len() - 1 - long_resting).max(1) as f64;
         // One long stretch is a fault; a coarse column has many.
         let longest = long.iter().map(|range| range.len() - 1).max().unwrap_or(0);
         let is_fine = (resting - long_resting) as f64 <= (1.0 - FINE_READINGS) * rest
             && 2 * (long_resting - longest) < values.len() - 1 - longest;
-        is_fine.then(|| clipped(run, name, values, &long).or_else(|| stuck(run, name, values, &long, angle)))?
-    });
-    found.collect()
+        is_fine.then_some(Column { name, values, same: long })
+    })
 }
 
 /// Ranges of equal neighbouring values.
@@ -50,7 +78,7 @@ fn stretches_of_one_value(values: &[f64]) -> Vec<Range<usize>> {
     ends.filter(|range| range.len() > 1).collect()
 }
 
-fn clipped(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>]) -> Option<String> {
+fn clipped(run: &RunTable, Column { name, values, same }: &Column) -> Option<String> {
     let (low, high) = range(values);
     let at = |end: f64| same.iter().filter(|range| values[range.start] == end).map(|range| range.len()).sum::<usize>();
     let (end, count) = [(high, at(high)), (low, at(low))].into_iter().max_by_key(|(_, count)| *count)?;
@@ -63,21 +91,36 @@ fn clipped(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>]) -
     })
 }
 
-fn stuck(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>], angle: &str) -> Option<String> {
-    let (time_s, angle) = (run.column("time_s")?, run.column(angle)?);
-    let is_moving = |range: &Range<usize>| {
-        let angle = &angle[range.clone()];
-        2 * angle.windows(2).filter(|pair| pair[0] != pair[1]).count() > range.len()
+impl Column<'_> {
+    /// The ranges of one value while the joint moves.
+    fn stuck(&self, run: &RunTable) -> Vec<Range<usize>> {
+        let Some((time_s, angle)) = run.column("time_s").zip(run.column(columns(run.kind()).1)) else {
+            return Vec::new();
+        };
+        let is_stuck = |range: &&Range<usize>| {
+            let moves = angle[(*range).clone()].windows(2).filter(|pair| pair[0] != pair[1]).count();
+            let lasts_s = time_s[range.end - 1] - time_s[range.start];
+            2 * moves > range.len() && range.len() >= STUCK_SAMPLES as usize && lasts_s >= STUCK_S
+        };
+        self.same.iter().filter(is_stuck).cloned().collect()
+    }
+}
+
+fn stuck_text(run: &RunTable, Column { name, values, .. }: &Column, stuck: &[Range<usize>]) -> Option<String> {
+    let time_s = run.column("time_s")?;
+    let longest = stuck.iter().max_by_key(|range| range.len())?;
+    let others = match stuck.len() - 1 {
+        0 => String::new(),
+        1 => ", and in another stretch".into(),
+        count => format!(", and in {count} other stretches"),
     };
-    let range = same.iter().filter(|range| is_moving(range)).max_by_key(|range| range.len())?;
-    let (from_s, to_s) = (time_s[range.start], time_s[range.end - 1]);
-    (range.len() >= STUCK_SAMPLES as usize && to_s - from_s >= STUCK_S).then(|| {
-        let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
-        format!(
-            "{name} stays at {} from {from_s:.3} s to {to_s:.3} s, while the joint moves: the drive was off, or the sensor was not read",
-            figure(values[range.start], &unit)
-        )
-    })
+    let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
+    Some(format!(
+        "{name} stays at {} from {:.3} s to {:.3} s{others}, while the joint moves: the drive was off, or the sensor was not read",
+        figure(values[longest.start], &unit),
+        time_s[longest.start],
+        time_s[longest.end - 1]
+    ))
 }
 
 /// Single outliers, in a sentence.
@@ -167,6 +210,11 @@ mod tests {
         );
         let stuck = failed(&run(|i, current| if (1000..1100).contains(&i) { 0.7 } else { current }));
         assert!(matches!(&stuck[..], [one] if one.contains("from 4.000 s to 4.396 s")), "{stuck:?}");
+        assert_eq!(unread(&whole), (Vec::new(), Vec::new()));
+        let (rows, texts) = unread(&run(|i, current| if i % 1000 < 100 { 0.0 } else { current }));
+        assert_eq!(rows, [0..100, 1000..1100, 2000..2100, 3000..3100]);
+        assert!(texts[0].starts_with("motor_current_a stays at 0.00 A from"), "{texts:?}");
+        assert!(texts[0].contains(", and in 3 other stretches, while the joint moves: the drive was off"), "{texts:?}");
         let spiked = spikes(&run(|i, current| if i % 997 == 500 { 6.0 } else { current })).unwrap_or_default();
         assert!(spiked.starts_with("motor_current_a has 4 samples that stand alone, the first at 2.000 s"), "{spiked}");
     }
