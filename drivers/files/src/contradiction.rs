@@ -60,7 +60,7 @@ pub fn idle_velocity(columns: &[Column], kind: Kind) -> Option<(usize, Note)> {
     (is_idle && high - low > MOVES).then(|| {
         let moved = high - low;
         let message = format!(
-            "{speed} stays at 0 in every row, while {angle} moves by {moved:.3} rad: the column is omitted, and the velocity is the slope of the position"
+            "“{speed}” stays at 0 in every row, while “{angle}” moves by {moved:.3} rad: the column is omitted, and the velocity is the slope of the position"
         );
         (place, Note::with(message, ProposedOption::new("leave", speed)))
     })
@@ -98,12 +98,11 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
     }
     if (mean / DEGREES - 1.0).abs() < SAME_LEAP {
         let message =
-            format!("{name} leaps by {mean:.1} {} times: perhaps it is in degrees within a turn", leaps.len());
+            format!("“{name}” jumps by {mean:.1} {} times: perhaps it is in degrees within a turn", leaps.len());
         return Some(Note::with(message, ProposedOption::new("unit", format!("{name}=deg")).and("unwrap", name)));
     }
     let period = if is_turn { String::new() } else { format!("={mean:.4}") };
-    let message =
-        format!("{name} leaps by {mean:.3} rad {} times, as an angle that begins anew after a turn", leaps.len());
+    let message = format!("“{name}” jumps by {mean:.3} rad {} times, as an angle that wraps after a turn", leaps.len());
     Some(Note::with(message, ProposedOption::new("unwrap", format!("{name}{period}"))))
 }
 
@@ -118,7 +117,7 @@ fn in_degrees(run: &RunTable, name: &str) -> Option<Note> {
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let is_turn = |from: f64| (low - from).abs() < END_TOLERANCE && (high - from - DEGREES).abs() < END_TOLERANCE;
     [0.0, -DEGREES / 2.0].into_iter().any(is_turn).then(|| {
-        let message = format!("{name} ranges from {low:.1} to {high:.1} rad: perhaps it is in degrees");
+        let message = format!("“{name}” ranges from {low:.1} to {high:.1} rad: perhaps it is in degrees");
         Note::with(message, ProposedOption::new("unit", format!("{name}=deg")))
     })
 }
@@ -137,7 +136,7 @@ fn taken_power(run: &RunTable) -> Option<Note> {
     let (sum, both) = (1..angles.len()).map(work).fold((0.0, 0.0), |(sum, both), work| (sum + work, both + work.abs()));
     (sum < -TAKES * both).then(|| {
         let message =
-            "motor_current_a opposes nearly all motion, and a motor drives its joint: perhaps it has the other sign";
+            "“motor_current_a” opposes nearly all motion, and a motor drives its joint: perhaps it has the other sign";
         Note::with(message, ProposedOption::new("scale", "motor_current_a=-1"))
     })
 }
@@ -175,14 +174,14 @@ fn slope(run: &RunTable, speed: &str, angle: &str) -> Option<Note> {
         () if is(60.0 / TAU) => ("it is in rpm".to_owned(), unit(speed, "rpm")),
         () if is(360.0 / TAU) => ("it is in deg/s".to_owned(), unit(speed, "deg/s")),
         () if is(1.0 / TAU) => ("it is in turns/s".to_owned(), unit(speed, "rev/s")),
-        () if is(TAU / 360.0) => (format!("{angle} is in degrees"), unit(angle, "deg")),
-        () if is(TAU) => (format!("{angle} is in turns"), unit(angle, "rev")),
+        () if is(TAU / 360.0) => (format!("“{angle}” is in degrees"), unit(angle, "deg")),
+        () if is(TAU) => (format!("“{angle}” is in turns"), unit(angle, "rev")),
         () if is(-1.0) => ("it has the other sign".to_owned(), scale(speed, -1.0)),
-        () if is(gear) => (format!("{angle} is that of the other side of the gear"), scale(angle, gear)),
+        () if is(gear) => (format!("“{angle}” is that of the other side of the gear"), scale(angle, gear)),
         () if is(1.0 / gear) => ("it is that of the other side of the gear".to_owned(), scale(speed, gear)),
         () => return None,
     };
-    Some(Note::with(format!("{speed} is {ratio:.3} times the slope of {angle}: perhaps {guess}"), option))
+    Some(Note::with(format!("“{speed}” is {ratio:.3} times the slope of “{angle}”: perhaps {guess}"), option))
 }
 
 #[cfg(test)]
@@ -236,9 +235,9 @@ mod tests {
         let (place, note) = idle_velocity(&columns(0.0, 1.0), Kind::Friction).unwrap();
         assert!(
             place == 1
-                && note
-                    .message
-                    .contains("motor_velocity_rad_s stays at 0 in every row, while motor_position_rad moves by 9.000")
+                && note.message.contains(
+                    "“motor_velocity_rad_s” stays at 0 in every row, while “motor_position_rad” moves by 9.000"
+                )
         );
         assert!(idle_velocity(&columns(1.0, 1.0), Kind::Friction).is_none());
         assert!(idle_velocity(&columns(0.0, 1e-3), Kind::Friction).is_none(), "at rest");
@@ -263,7 +262,11 @@ mod tests {
     fn a_wrapped_angle_is_reported_and_made_continuous() {
         let wrapped = run(1.0, |x| x.rem_euclid(TAU));
         let message = proposals(&wrapped)[0].to_string();
-        assert!(message.contains("leaps by 6.") && message.ends_with("(--unwrap motor_position_rad)"), "{message}");
+        assert!(
+            message.starts_with("“motor_position_rad” jumps by 6.")
+                && message.ends_with("(--unwrap motor_position_rad)"),
+            "{message}"
+        );
         let mut values = wrapped.column("motor_position_rad").unwrap().to_vec();
         unwrap(&mut values, TAU);
         let whole = run(1.0, |x| x);

@@ -197,7 +197,7 @@ pub fn apply(columns: &mut [Column], meta: &Meta, notes: &mut Vec<Note>) {
             source.is_unit_open = unit.is_none() && was.to_lowercase() != column;
             source.unit = unit.map(|(text, _)| text);
             if was != column {
-                notes.push(Note::with(format!("{column} is {was}"), other_source(column)));
+                notes.push(Note::with(format!("“{column}” is “{was}”"), other_source(column)));
             }
             continue;
         }
@@ -206,11 +206,11 @@ pub fn apply(columns: &mut [Column], meta: &Meta, notes: &mut Vec<Note>) {
             Some((text, unit)) if !unit.is_si() => {
                 source.values.iter_mut().for_each(|value| *value = unit.to_si(*value));
                 notes.push(Note::with(
-                    format!("{column} is {was}, converted from {text}"),
+                    format!("“{column}” is “{was}”, converted from {text}"),
                     ProposedOption::open("map", format!("{column}={was}")).and("unit", format!("{column}=UNIT")),
                 ));
             }
-            _ => notes.push(Note::with(format!("{column} is {was}"), other_source(column))),
+            _ => notes.push(Note::with(format!("“{column}” is “{was}”"), other_source(column))),
         }
     }
 }

@@ -42,7 +42,7 @@ pub fn settle(table: &mut RawTable, meta: &mut Meta, guessed: &[Proposal]) -> Re
         Some(place) => table.columns[place] = numbers,
         None => table.columns.insert(0, numbers),
     }
-    let mut counted = "time_s counts the rows";
+    let mut counted = "“time_s” counts the rows";
     if meta.kind == Some(Kind::Friction)
         && let Some(speed) = table.place(SPEED)
     {
@@ -53,7 +53,7 @@ pub fn settle(table: &mut RawTable, meta: &mut Meta, guessed: &[Proposal]) -> Re
         };
         let values = table.columns[speed].values.iter().map(&mut turned).collect();
         table.columns.insert(1, Column::new(ANGLE, values));
-        counted = "time_s counts the rows, and motor_position_rad adds up their speeds";
+        counted = "“time_s” counts the rows, and “motor_position_rad” adds up their speeds";
     }
     let message = format!("each row is one steady operating point: {counted}");
     table.notes.push(Note::with(message, ProposedOption::flag("operating_points")));

@@ -91,7 +91,7 @@ impl RawTable {
         match &self.proposed_names {
             None => self.leave_index(),
             Some(proposed) if self.columns.iter().any(|column| column.name.is_empty()) => {
-                let message = "no line names the columns: they are called column_1, column_2 and so on";
+                let message = "no line names the columns: they are called “column_1”, “column_2” and so on";
                 self.notes.push(Note::with(message, ProposedOption::open("names", proposed)));
             }
             Some(_) => {}
@@ -102,7 +102,7 @@ impl RawTable {
             if column.name.is_empty() {
                 column.name = format!("column_{}", place + 1);
                 if !is_nameless {
-                    let message = format!("column {} has no name and is called {}", place + 1, column.name);
+                    let message = format!("column {} has no name and is called “{}”", place + 1, column.name);
                     self.notes.push(Note::new(message));
                 }
             }
@@ -111,7 +111,7 @@ impl RawTable {
                 let more = (2..).map(|number| format!("{twice}_{number}")).find(|name| !taken.contains(name));
                 column.name = more.unwrap_or_default();
                 let message = format!(
-                    "{twice} stands twice among the names: the first is taken, the other is called {}",
+                    "two columns are called “{twice}”: the first is taken, the other is called “{}”",
                     column.name
                 );
                 self.notes.push(Note::new(message));

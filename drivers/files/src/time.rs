@@ -87,19 +87,19 @@ fn to_seconds(column: &mut Column, meta: &Meta) -> Result<Option<Note>, FileFaul
             unroll_days(values);
         }
         return Ok(Some(Note::new(format!(
-            "{TIME} counts the seconds from the stamp in the first row, {}",
+            "“{TIME}” counts the seconds from the stamp in the first row, {}",
             column.first.first().map_or("", String::as_str)
         ))));
     }
     let (unit, note) = match (&column.unit, column.is_unit_open) {
         (Some(text), _) => {
             let unit = Unit::parse(text).unwrap_or(Unit::SI);
-            (unit, (!unit.is_si()).then(|| Note::with(format!("{TIME} was converted from {text}"), other_unit())))
+            (unit, (!unit.is_si()).then(|| Note::with(format!("“{TIME}” was converted from {text}"), other_unit())))
         }
         // Seconds since 1970 are only valid as dates before 2100.
         (None, is_open) if is_open || values.first().is_some_and(|first| *first > EPOCH_S.end) => {
             let (name, why) = open_unit(values, meta.sample_rate_hz)?;
-            let message = format!("{TIME} has no unit and was taken as {name}, {why}");
+            let message = format!("“{TIME}” has no unit and was taken as {name}, {why}");
             (Unit::parse(name).unwrap_or(Unit::SI), Some(Note::with(message, other_unit())))
         }
         (None, _) => (Unit::SI, None),
@@ -200,7 +200,7 @@ fn from_rate(table: &mut RawTable, hz: f64, whence: &str) {
         Some(place) => table.columns[place] = Column::new(TIME, values),
         None => table.columns.insert(0, Column::new(TIME, values)),
     }
-    table.notes.push(Note::new(format!("{TIME} counts the rows, {hz} a second, by {whence}")));
+    table.notes.push(Note::new(format!("“{TIME}” counts the rows, {hz} a second, by {whence}")));
 }
 
 /// A 32-bit counter wraps after this many ticks.
@@ -215,7 +215,7 @@ fn refuse_overflow(table: &RawTable, place: usize, file: &str) -> Result<(), Fil
     let is_of = |period: &f64| back.iter().all(|row| LOST.contains(&((values[row - 1] - values[*row]) / period)));
     let period = [1e-3, 1e-6, 1e-9].map(|tick_s| tick_s * OVERFLOW).into_iter().find(is_of);
     let (Some(period), Some(row)) = (period, back.first()) else { return Ok(()) };
-    let message = "the time begins anew as a counter of 32 bits does that overflows".to_owned();
+    let message = "the time restarts, as a 32-bit counter does when it overflows".to_owned();
     let fault = FileFault::Choice { message, options: vec![ProposedOption::new("unwrap", format!("{TIME}={period}"))] };
     Err(FileError { place: Box::new(table.located(file, *row)), fault }.in_column(TIME))
 }

@@ -171,12 +171,12 @@ impl RawTable {
             };
             if found.truths > 0 && why.is_none() {
                 notes.push(Note::with(
-                    format!("{} is 1 for true and 0 for false", column.name),
+                    format!("“{}” is 1 for true and 0 for false", column.name),
                     ProposedOption::new("leave", &column.name),
                 ));
             }
             why.is_none_or(|why| {
-                notes.push(Note::new(format!("column {} is omitted: {why}", column.name)));
+                notes.push(Note::new(format!("column “{}” is omitted: {why}", column.name)));
                 left.push(column.name.clone());
                 false
             })
@@ -200,7 +200,7 @@ impl RawTable {
                 if counts_of(unit, &name) == Some(unit) { stated.incomplete() } else { stated }
             };
             let asked = |units: &[&str]| {
-                let message = format!("the file says {text} for column {name}");
+                let message = format!("the file says {text} for column “{name}”");
                 Err(FileFault::Choice { message, options: units.iter().map(|unit| option(unit)).collect() })
             };
             let is_renamed = column.source != name && options.map.iter().any(|(of, _)| *of == name);
@@ -218,16 +218,16 @@ impl RawTable {
             let message = match unit {
                 Some(unit) if fits || (unit.is_linear() && motion == Motion::Linear) => {
                     column.values.iter_mut().for_each(|value| *value = unit.to_si(*value));
-                    format!("{name} is {}, converted from {text}", column.source)
+                    format!("“{name}” is “{}”, converted from {text}", column.source)
                 }
                 Some(unit) if unit.is_linear() => {
-                    let message = format!("the file says {text} for column {name}, a unit of a linear axis");
+                    let message = format!("the file says {text} for column “{name}”, a unit of a linear axis");
                     return Err(FileFault::Choice { message, options: vec![ProposedOption::words(LINEAR)] });
                 }
                 Some(_) => return asked(&[si]),
                 None => match counts_of(&text, &name) {
                     Some(counts) => return asked(&[counts, si]),
-                    None => format!("{name} is {}, read as {si}", column.source),
+                    None => format!("“{name}” is “{}”, read as {si}", column.source),
                 },
             };
             self.notes.push(Note::with(message, ProposedOption::open("unit", format!("{name}=UNIT"))));
@@ -312,7 +312,7 @@ impl Understood {
             })?,
         };
         if !starts.is_empty() {
-            let message = format!("the file holds {} recordings, numbered in column run", starts.len() + 1);
+            let message = format!("the file holds {} recordings, numbered in column “run”", starts.len() + 1);
             notes.push(Note::with(message, ProposedOption::flag("split_runs")));
         }
         if !meta.operating_points {

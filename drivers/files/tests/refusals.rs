@@ -307,7 +307,7 @@ fn counts_are_asked_for_their_number_per_turn() {
 fn a_unit_of_another_quantity_or_of_a_sliding_axis_is_refused() {
     let text = "time_s,theta_m,Iq [V]\n0,0,0.5\n1,1,0.5\n";
     let map = ["motor_position_rad=theta_m", "motor_current_a=Iq [V]"];
-    assert!(mapped(text, &map, &[]).unwrap_err().contains("the file says V for column motor_current_a"));
+    assert!(mapped(text, &map, &[]).unwrap_err().contains("the file says V for column “motor_current_a”"));
     let message = mapped(text, &map, &["motor_current_a=A", "motor_position_rad=m"]).unwrap_err();
     assert!(message.contains("linear axis") && message.contains("\"motion\": \"linear\""), "{message}");
     let run = mapped(text, &map, &["motor_current_a=A"]).unwrap();

@@ -178,7 +178,7 @@ fn a_preview_shows_the_interpretation_and_stores_nothing() {
     let (status, run) = upload(&daemon, foreign, &choices);
     assert_eq!((status, &run["rows"]), (201, &3.into()), "{run}");
     let understood = run["provenance"]["imported"]["understood"].as_str().unwrap();
-    assert!(understood.contains("column remark is omitted: it holds words"), "{understood}");
+    assert!(understood.contains("column “remark” is omitted: it holds words"), "{understood}");
     let (status, problem) = upload(&daemon, foreign, &[("unit", "motor_position_rad=furlong")]);
     assert!(status == 422 && problem["detail"].as_str().unwrap().contains("expected COLUMN=UNIT"), "{problem}");
 }

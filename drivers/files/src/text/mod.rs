@@ -20,7 +20,7 @@ pub use stamp::Stamp;
 
 use crate::column::Column;
 use crate::error::{FileError, FileFault};
-use crate::note::{Note, plural, shell};
+use crate::note::{Note, plural};
 use crate::raw::{Odd, RawTable};
 use crate::{ProposedOption, ReadOptions};
 use layout::Layout;
@@ -195,8 +195,8 @@ fn finish(mut table: RawTable, layout: &Layout, name: &str) -> Result<RawTable, 
         ));
     }
     if !table.named_again.is_empty() {
-        let times = plural(table.named_again.len(), "more time");
-        table.notes.push(Note::new(format!("the line of names stands {times} between the rows and was skipped")));
+        let times = plural(table.named_again.len(), "time");
+        table.notes.push(Note::new(format!("the line of names is repeated {times} between the rows and was skipped")));
     }
     Ok(table)
 }
@@ -216,16 +216,16 @@ fn notes(layout: &Layout, pieces: &Pieces<'_>) -> Vec<Note> {
         notes.push(Note::new(message));
     }
     if matches!(layout.separator, Separator::Blanks | Separator::Sign(b'|')) {
-        notes.push(Note::new(format!("columns are parted by {}", layout.separator.name())));
+        notes.push(Note::new(format!("columns are separated by {}", layout.separator.name())));
     }
     if layout.decimal == Decimal::Comma {
-        notes.push(Note::with("decimals stand behind commas", ProposedOption::new("decimal", "point")));
+        notes.push(Note::with("numbers have a decimal comma", ProposedOption::new("decimal", "point")));
     }
     if let Some(line) = layout.units_line {
         notes.push(Note::new(format!("line {line} was taken as units")));
     }
     if !layout.extra_names.is_empty() {
-        let names: Vec<String> = layout.extra_names.iter().map(|name| shell(name)).collect();
+        let names: Vec<String> = layout.extra_names.iter().map(|name| format!("“{name}”")).collect();
         notes.push(Note::new(format!("no row has a value for {}", names.join(", "))));
     }
     notes

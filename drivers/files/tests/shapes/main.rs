@@ -103,24 +103,24 @@ fn skipped_and_assumed_parts_are_noted() {
         ("pandas_index.csv", &["the first column counts the rows and is omitted"]),
         ("csv_comments.csv", &["2 comment lines above the names skipped"]),
         ("csv_units_line.csv", &["line 2 was taken as units"]),
-        ("pandas_german.csv", &["decimals stand behind commas (--decimal point)"]),
+        ("pandas_german.csv", &["numbers have a decimal comma (--decimal point)"]),
         (
             "calc_units_latin1.csv",
-            &["read as windows-1252", "motor_position_rad is Motor Position [°], converted from °"],
+            &["read as windows-1252", "“motor_position_rad” is “Motor Position [°]”, converted from °"],
         ),
         (
             "pandas_gaps.csv",
             &[
-                "column remark is omitted: it holds words",
-                "column oil_temperature is omitted: 30 of 40 cells are empty",
+                "column “remark” is omitted: it holds words",
+                "column “oil_temperature” is omitted: 30 of 40 cells are empty",
             ],
         ),
-        ("pandas_bool.csv", &["valid is 1 for true and 0 for false (--leave valid)"]),
+        ("pandas_bool.csv", &["“valid” is 1 for true and 0 for false (--leave valid)"]),
         ("csv_cut_off.csv", &["truncated and omitted"]),
-        ("labview.lvm", &["no row has a value for Comment", "time_s has no unit and was taken as s"]),
-        ("epoch_ms.csv", &["time_s has no unit and was taken as ms, since 1970"]),
-        ("pandas_datetime.csv", &["time_s counts the seconds from the stamp in the first row, 2026-01-02 10:00:00"]),
-        ("named_again.csv", &["the line of names stands 1 more time between the rows"]),
+        ("labview.lvm", &["no row has a value for “Comment”", "“time_s” has no unit and was taken as s"]),
+        ("epoch_ms.csv", &["“time_s” has no unit and was taken as ms, since 1970"]),
+        ("pandas_datetime.csv", &["“time_s” counts the seconds from the stamp in the first row, 2026-01-02 10:00:00"]),
+        ("named_again.csv", &["the line of names is repeated 1 time between the rows"]),
     ] {
         let message = message(name);
         assert!(words.iter().all(|word| message.contains(word)), "{name}: {message}");

@@ -76,7 +76,7 @@ fn a_clock_that_ticks_more_slowly_than_rows_come_is_reported_and_spread() {
     assert!(time_s.iter().enumerate().all(|(row, time)| (time - 0.005 * row as f64).abs() < 0.005), "{time_s:?}");
     let (counted, notes) = take(&ticking, &Choices { time_from_rate: Some(200.0), ..Choices::default() }).unwrap();
     assert!((counted.column("time_s").unwrap()[299] - 1.495).abs() < 1e-12);
-    assert!(notes[0].message.contains("counts the rows, 200 a second"), "{notes:?}");
+    assert!(notes[0].message.contains("“time_s” counts the rows, 200 a second"), "{notes:?}");
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn several_recordings_in_a_file_are_reported_and_split() {
     refused(&twice, &["line 22, column time_s: the time begins again: the file holds 2 recordings. Use --split-runs"]);
     let (run, notes) = take(&twice, &Choices { split_runs: true, ..Choices::default() }).unwrap();
     assert_eq!(run.column("run").unwrap().iter().sum::<f64>(), 20.0);
-    assert!(notes.iter().any(|note| note.message.contains("2 recordings, numbered in column run")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.message.contains("2 recordings, numbered in column “run”")), "{notes:?}");
     let slip = rows((0..40).map(|row| if row == 30 { 0.285 } else { 0.01 * f64::from(row) }));
     refused(&slip, &["line 32", "in 1 of 40 rows the time goes back", "Use --time-from-rate 100"]);
 }
@@ -134,7 +134,7 @@ fn a_line_of_units_that_contradicts_a_name_is_asked_about() {
     refused(
         text,
         &[
-            "the file says deg for column motor_position_rad",
+            "the file says deg for column “motor_position_rad”",
             "--unit motor_position_rad=deg or --unit motor_position_rad=rad",
         ],
     );
@@ -156,7 +156,7 @@ fn names_that_are_empty_or_there_twice_are_given() {
         (run.column("motor_position_rad").unwrap(), run.column("motor_current_a").unwrap()),
         (&[7.0, 8.0][..], &[0.1, 0.1][..])
     );
-    assert!(notes.iter().any(|note| note.message.contains("motor_current_a stands twice")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.message.contains("two columns are called “motor_current_a”")), "{notes:?}");
 }
 
 #[test]
@@ -216,7 +216,7 @@ fn a_comment_in_the_last_column_is_no_row_of_another_width() {
     text.extend((1..30).map(|row| format!("0.{row:02}\t0.5\t0.1\n")));
     let (run, notes) = take(&text, &Choices::default()).unwrap();
     assert_eq!((run.len(), run.column("Comment")), (30, None));
-    assert!(notes.iter().any(|note| note.message.contains("column Comment is omitted: it holds words")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.message.contains("column “Comment” is omitted: it holds words")), "{notes:?}");
 }
 
 #[test]
@@ -232,7 +232,7 @@ fn a_counter_that_overflows_goes_on() {
     let message = take(&text, &choices(&[])).unwrap_err().to_string();
     assert!(
         message.ends_with(
-            "the time begins anew as a counter of 32 bits does that overflows. Use --unwrap time_s=4294.967296"
+            "the time restarts, as a 32-bit counter does when it overflows. Use --unwrap time_s=4294.967296"
         ),
         "{message}"
     );
