@@ -1,6 +1,10 @@
 //! The result of a procedure from its run: a verdict in words, quantities with their intervals, figures. It is a pure
 //! function of the stored run, so that newer code can repeat it.
 
+mod quantity;
+
+pub use quantity::{Direction, Quantity};
+
 use crate::recorder::RunId;
 use crate::state::RunState;
 use serde::{Deserialize, Serialize};
@@ -150,45 +154,6 @@ pub struct FollowUp {
     pub parameters: Map<String, Value>,
     /// Its purpose, in a few words.
     pub why: String,
-}
-
-/// One figure of a result, in SI units.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Quantity {
-    /// Stable and unique in its identification: `tau_c_positive`. Scripts and limits depend on it.
-    pub name: String,
-    /// As in the source document: `τ_c⁺`.
-    pub symbol: String,
-    /// In words: "Coulomb friction, positive direction".
-    pub title: String,
-    /// The title without the part of a campaign and without the configuration: "Coulomb friction". Absent: the title
-    /// contains neither.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub base_title: Option<String>,
-    /// The direction or method for which it holds: "positive direction".
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub configuration: Option<String>,
-    /// SI symbol; empty for a share or a count.
-    pub unit: String,
-    /// Estimate, in the unit of the quantity.
-    pub value: f64,
-    /// 95 % interval, if the run determines one.
-    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
-    pub ci95: Option<[f64; 2]>,
-}
-
-impl Quantity {
-    /// The quantity for one of several configurations, which its title names.
-    pub fn in_configuration(self, configuration: &str) -> Self {
-        let title = format!("{}, {configuration}", self.title);
-        Self { base_title: Some(self.title), configuration: Some(configuration.to_owned()), title, ..self }
-    }
-
-    /// The quantity as one of a part of a campaign, with its id and title.
-    pub fn in_part(self, id: &str, title: &str) -> Self {
-        let (name, title) = (format!("{id}.{}", self.name), format!("{title}: {}", self.title));
-        Self { base_title: Some(self.base_title.unwrap_or(self.title)), name, title, ..self }
-    }
 }
 
 /// A plot of a result.

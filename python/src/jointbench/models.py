@@ -561,7 +561,7 @@ class ImportForm(BaseModel):
     """`column=unit`, such as `motor_position_rad=deg`; may be repeated."""
 
     unwrap: list[str] | None = None
-    """`column` or `column=period`: an angle that begins anew after a turn is made continuous; may be repeated."""
+    """`column` or `column=period`: an angle that wraps after a turn is made continuous; may be repeated."""
 
 
 class ImportOption(BaseModel):
@@ -1144,37 +1144,6 @@ class ProposedImport(BaseModel):
     """As it is written on the command line."""
 
 
-class Quantity(BaseModel):
-    """One figure of a result, in SI units."""
-
-    base_title: str | None = None
-    """
-    The title without the part of a campaign and without the configuration: "Coulomb friction". Absent: the title
-    contains neither.
-    """
-
-    ci95: tuple[float, float] | None = None
-    """95 % interval, if the run determines one."""
-
-    configuration: str | None = None
-    """The direction or method for which it holds: "positive direction"."""
-
-    name: str
-    """Stable and unique in its identification: `tau_c_positive`. Scripts and limits depend on it."""
-
-    symbol: str
-    """As in the source document: `τ_c⁺`."""
-
-    title: str
-    """In words: "Coulomb friction, positive direction"."""
-
-    unit: str
-    """SI symbol; empty for a share or a count."""
-
-    value: float
-    """Estimate, in the unit of the quantity."""
-
-
 class QuantityChange(BaseModel):
     """The change of one quantity, in its unit."""
 
@@ -1197,6 +1166,18 @@ class QuantityChange(BaseModel):
     title: str
     unit: str
     """SI symbol; empty for a fraction or a count."""
+
+
+QuantityDirection = TypeAliasType("QuantityDirection", Literal['positive', 'negative'])
+"""Direction of motion for which a quantity holds."""
+
+
+class QuantityTitle(BaseModel):
+    """A quantity of these runs, for a choice."""
+
+    name: str
+    title: str
+    """Its title in the newest run."""
 
 
 class QueuePause(BaseModel):
@@ -1547,34 +1528,6 @@ class TradeOff(BaseModel):
     """The other parameter, as `effect.parameter`."""
 
 
-class TrendRun(BaseModel):
-    """What one complete run has found, and under which conditions."""
-
-    bench: str
-    created_at: str
-    procedure: str
-    quantities: list[Quantity]
-    run: int
-    tags: list[str]
-    temperature_c: float | None = None
-    """Mean over the run; `null` where no temperature was measured."""
-
-    unit: str | None = None
-    """Serial number of the unit under test."""
-
-
-class Trends(BaseModel):
-    """What complete runs have found, the oldest first."""
-
-    left_out: Annotated[int, Field(ge=0)]
-    """Older runs that the search finds too."""
-
-    pending: Annotated[int, Field(ge=0)]
-    """Runs whose figures are not computed yet: repeat the request."""
-
-    runs: list[TrendRun]
-
-
 class TrialError(BaseModel):
     """Validation error (cross-validated RMS) without and with an effect under trial, on the same samples."""
 
@@ -1756,17 +1709,6 @@ class ControlPoint(BaseModel):
     value: float
     violates: list[ControlRule]
     """Rules that this point violates."""
-
-
-class Earlier(BaseModel):
-    """Results of an earlier run of the same bench and procedure."""
-
-    created_at: str
-    holds: bool
-    """Applied to the bench: reference for changes."""
-
-    quantities: list[Quantity]
-    run: int
 
 
 class Effect(BaseModel):
@@ -2281,6 +2223,41 @@ class ProcedureRefusal(BaseModel):
     """Cause and remedy."""
 
 
+class Quantity(BaseModel):
+    """One figure of a result, in SI units or in percent."""
+
+    base_symbol: str | None = None
+    """The symbol without the direction: `τ_c`. Absent: the symbol contains none."""
+
+    base_title: str | None = None
+    """
+    The title without the part of a campaign and without the configuration: "Coulomb friction". Absent: the title
+    contains neither.
+    """
+
+    ci95: tuple[float, float] | None = None
+    """95 % interval, if the run determines one."""
+
+    configuration: str | None = None
+    """The direction or method for which it holds: "positive direction"."""
+
+    direction: QuantityDirection | None = None
+    name: str
+    """Stable and unique in its identification: `tau_c_positive`. Scripts and limits depend on it."""
+
+    symbol: str
+    """As in the source document: `τ_c⁺`."""
+
+    title: str
+    """In words: "Coulomb friction, positive direction"."""
+
+    unit: str
+    """SI symbol, or `%`; empty for a ratio or a count."""
+
+    value: float
+    """Estimate, in the unit of the quantity."""
+
+
 class QueueEntry(BaseModel):
     """A run that waits or waited for its bench."""
 
@@ -2443,6 +2420,34 @@ class Suggestion(BaseModel):
     """What the effect is, its evidence and its confounded effects, in sentences."""
 
 
+class TrendRun(BaseModel):
+    """What one complete run has found, and under which conditions."""
+
+    bench: str
+    created_at: str
+    procedure: str
+    quantities: list[Quantity]
+    run: int
+    tags: list[str]
+    temperature_c: float | None = None
+    """Mean over the run; `null` where no temperature was measured."""
+
+    unit: str | None = None
+    """Serial number of the unit under test."""
+
+
+class Trends(BaseModel):
+    """What complete runs have found, the oldest first."""
+
+    left_out: Annotated[int, Field(ge=0)]
+    """Older runs that the search finds too."""
+
+    pending: Annotated[int, Field(ge=0)]
+    """Runs whose figures are not computed yet: repeat the request."""
+
+    runs: list[TrendRun]
+
+
 class UnitList(BaseModel):
     total: Annotated[int, Field(ge=0)]
     """Number of units that match the search."""
@@ -2561,8 +2566,8 @@ class ControlChart(BaseModel):
     """In the order of their runs, at most 500."""
 
     procedure: str
-    quantities: list[str]
-    """Names of the quantities that these runs have."""
+    quantities: list[QuantityTitle]
+    """The quantities that these runs have, by name."""
 
     quantity: str
     """Name, symbol, title and unit of the quantity. Without points: the requested name, and no unit."""
@@ -2573,6 +2578,17 @@ class ControlChart(BaseModel):
     symbol: str
     title: str
     unit: str
+
+
+class Earlier(BaseModel):
+    """Results of an earlier run of the same bench and procedure."""
+
+    created_at: str
+    holds: bool
+    """Applied to the bench: reference for changes."""
+
+    quantities: list[Quantity]
+    run: int
 
 
 class EffectCheck(BaseModel):

@@ -104,7 +104,7 @@ pub struct ImportForm {
     missing: Option<Vec<String>>,
     /// `column=unit`, such as `motor_position_rad=deg`; may be repeated.
     unit: Option<Vec<String>>,
-    /// `column` or `column=period`: an angle that begins anew after a turn is made continuous; may be repeated.
+    /// `column` or `column=period`: an angle that wraps after a turn is made continuous; may be repeated.
     unwrap: Option<Vec<String>>,
     /// Names of the columns with commas between, for a table without a line of names.
     names: Option<String>,

@@ -7,7 +7,7 @@
 use super::{Answer, Lab, LabError};
 use crate::limits::{self, Requirement};
 use crate::store::UnitRunRecord;
-use crate::view::{Capability, ControlChart, ControlPoint, ControlRule, EmptyChart, Quantity};
+use crate::view::{Capability, ControlChart, ControlPoint, ControlRule, EmptyChart, Quantity, QuantityTitle};
 use jointbench_model::stats::proportion::Z95;
 use jointbench_model::stats::student;
 use jointbench_procedure::RunState;
@@ -78,13 +78,11 @@ fn chosen(found: &[Found], name: Option<&str>) -> Option<Quantity> {
     chosen.cloned()
 }
 
-/// The names of all quantities.
-fn names(found: &[Found]) -> Vec<String> {
-    let mut names: Vec<String> =
-        found.iter().flat_map(|(_, all)| all.iter().map(|quantity| quantity.name.clone())).collect();
-    names.sort();
-    names.dedup();
-    names
+/// All quantities by name, with their titles in the newest run.
+fn titles(found: &[Found]) -> Vec<QuantityTitle> {
+    let all = found.iter().flat_map(|(_, quantities)| quantities);
+    let titles: BTreeMap<&str, &str> = all.map(|one| (one.name.as_str(), one.title.as_str())).collect();
+    titles.into_iter().map(|(name, title)| QuantityTitle { name: name.to_owned(), title: title.to_owned() }).collect()
 }
 
 /// A chart without points, and why it has none.
@@ -102,7 +100,7 @@ fn empty(found: &[Found], procedure: &str, quantity: Option<&str>) -> ControlCha
         sigma: None,
         control_limits: None,
         capability: None,
-        quantities: names(found),
+        quantities: titles(found),
         pending: 0,
     }
 }
@@ -148,7 +146,7 @@ fn chart(found: &[Found], of: &Quantity, procedure: &str, limit: Option<&Require
         sigma,
         control_limits: sigma.map(|sigma| [mean - 3.0 * sigma, mean + 3.0 * sigma]),
         capability: bounds.and_then(|[lower, upper]| capability(&measured, lower, upper)),
-        quantities: names(found),
+        quantities: titles(found),
         pending: 0,
     }
 }

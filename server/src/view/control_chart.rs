@@ -64,6 +64,14 @@ pub enum EmptyChart {
     NoQuantity,
 }
 
+/// A quantity of these runs, for a choice.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct QuantityTitle {
+    pub name: String,
+    /// Its title in the newest run.
+    pub title: String,
+}
+
 /// Individuals chart of a quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ControlChart {
@@ -86,8 +94,8 @@ pub struct ControlChart {
     pub control_limits: Option<[f64; 2]>,
     /// Absent without limits, or with fewer than five values with an interval.
     pub capability: Option<Capability>,
-    /// Names of the quantities that these runs have.
-    pub quantities: Vec<String>,
+    /// The quantities that these runs have, by name.
+    pub quantities: Vec<QuantityTitle>,
     /// Runs whose results are not computed yet: repeat the request.
     pub pending: u64,
 }

@@ -158,7 +158,8 @@ fn a_quantity_of_the_units_has_a_control_chart_and_a_capability() {
     assert_eq!((&capability["lower"], &capability["upper"]), (&json!(0.001), &json!(0.09)), "in Nm: {chart}");
     let lowest = capability["cpk_ci95"][0].as_f64().unwrap();
     assert!(lowest > 1.0 && chart["sigma"].as_f64().unwrap() < 0.01, "{chart}");
-    assert!(chart["quantities"].as_array().unwrap().contains(&"c_v".into()), "{chart}");
+    let viscous = json!({"name": "c_v", "title": "Viscous friction (motor)"});
+    assert!(chart["quantities"].as_array().unwrap().contains(&viscous), "{chart}");
 
     let (status, other) = daemon.get("/api/v1/units/chart?procedure=friction&quantity=tau_x");
     assert_eq!((status, &other["empty"], &other["mean"]), (200, &json!("no_quantity"), &Value::Null), "{other}");

@@ -19,16 +19,17 @@ it('sets what was found for several ways side by side, and nothing else', () => 
 	const made = (symbol: string, what: string) => ['none', 'Coulomb, interpolated', 'observer'].map((way, i) => ({ name: `${symbol}${i}`, symbol, title: `${what}, ${way}`, base_title: what, configuration: way, unit: 'rad', value: i }));
 	const found = [...made('ρ_1', 'Sum of the errors'), ...made('ρ_1/ρ_10', 'Sum of the errors, share of none')];
 	const table = configurationTable(found);
-	expect(table?.configurations).toEqual(['none', 'Coulomb, interpolated', 'observer']);
+	expect([table?.head, table?.configurations]).toEqual(['configuration', ['none', 'Coulomb, interpolated', 'observer']]);
 	expect(table?.rows.map(({ title, of }) => [title, ...of.map((one) => one.value)])).toEqual([
 		['Sum of the errors', 0, 1, 2],
 		['Sum of the errors, share of none', 0, 1, 2],
 	]);
 	expect(configurationTable(found.slice(1))).toBeNull();
 	expect(configurationTable([...found, { ...found[0]!, name: 'gain', symbol: 'κ', base_title: 'Gain' }])).toEqual(table);
-	const directions = (symbol: string, what: string) => [['⁺', 'positive direction'], ['⁻', 'negative direction']].map(([sign, way]) => ({ name: `${symbol}${way}`, symbol: `${symbol}${sign}`, title: `${what}, ${way}`, base_title: what, configuration: way, unit: 'Nm', value: 1 }));
+	const directions = (symbol: string, what: string) =>
+		([['⁺', 'positive'], ['⁻', 'negative']] as const).map(([sign, direction]) => ({ name: `${symbol}_${direction}`, symbol: `${symbol}${sign}`, base_symbol: symbol, title: `${what}, ${direction} direction`, base_title: what, configuration: `${direction} direction`, direction, unit: 'Nm', value: 1 }));
 	const both = configurationTable([...directions('τ_c', 'Coulomb friction'), ...directions('c_v', 'Viscous friction')]);
-	expect(both?.configurations).toEqual(['positive direction', 'negative direction']);
+	expect([both?.head, both?.configurations]).toEqual(['direction', ['positive', 'negative']]);
 	expect(both?.rows.map(({ symbol, title }) => [symbol, title])).toEqual([['τ_c', 'Coulomb friction'], ['c_v', 'Viscous friction']]);
 	const inVoltsAndNm = configurationTable([...directions('τ_s', 'Breakaway friction'), ...directions('τ_s', 'Breakaway friction (motor)')]);
 	expect(new Set(inVoltsAndNm?.rows.map(({ key }) => key)).size).toBe(2);

@@ -66,26 +66,28 @@ export const baseTitle = ({ base_title, title }: Pick<IdentifiedQuantity, 'base_
 
 /** Results for several directions, methods or speeds. */
 export interface ResultTable {
+	/** What the rows differ in. */
+	head: 'direction' | 'configuration';
 	configurations: string[];
 	/** Two quantities may share a symbol, such as τ_s in volts and newton metres. */
 	rows: { key: string; symbol: string; title: string; of: IdentifiedQuantity[] }[];
 }
 
-/** `τ_c` of `τ_c⁺` and `τ_c⁻`. */
-const withoutDirection = (symbol: string) => symbol.replace(/[⁺⁻]$/, '');
-
 /** A row per configuration, for at least two quantities with a value for each of at least two configurations. */
 export function configurationTable(quantities: readonly IdentifiedQuantity[]): ResultTable | null {
 	const byTitle = new Map<string, IdentifiedQuantity[]>();
 	for (const one of quantities.filter(({ configuration }) => configuration)) {
-		const key = `${withoutDirection(one.symbol)} ${baseTitle(one)}`;
+		const key = `${one.base_symbol ?? one.symbol} ${baseTitle(one)}`;
 		byTitle.set(key, [...(byTitle.get(key) ?? []), one]);
 	}
 	const groups = [...byTitle];
-	const configurations = (groups.toSorted(([, a], [, b]) => b.length - a.length)[0]?.[1] ?? []).flatMap(({ configuration }) => configuration ?? []);
-	const hasEach = (of: IdentifiedQuantity[]) => of.length === configurations.length && of.every((one, i) => one.configuration === configurations[i]);
-	const rows = groups.filter(([, of]) => hasEach(of)).map(([key, of]) => ({ key, symbol: withoutDirection(of[0]!.symbol), title: baseTitle(of[0]!), of }));
-	return configurations.length > 1 && rows.length > 1 ? { configurations, rows } : null;
+	const longest = groups.toSorted(([, a], [, b]) => b.length - a.length)[0]?.[1] ?? [];
+	const nameOf = ({ direction, configuration }: IdentifiedQuantity) => direction ?? configuration ?? '';
+	const configurations = longest.map(nameOf);
+	const hasEach = (of: IdentifiedQuantity[]) => of.length === configurations.length && of.every((one, i) => nameOf(one) === configurations[i]);
+	const rows = groups.filter(([, of]) => hasEach(of)).map(([key, of]) => ({ key, symbol: of[0]!.base_symbol ?? of[0]!.symbol, title: baseTitle(of[0]!), of }));
+	const head = longest.every(({ direction }) => direction) ? 'direction' : 'configuration';
+	return configurations.length > 1 && rows.length > 1 ? { head, configurations, rows } : null;
 }
 
 /** A part of a campaign with its quantities and figures. */

@@ -6,12 +6,12 @@ const point = (unit: string, value: number, violates: ControlChart['points'][num
 const chart: ControlChart = {
 	procedure: 'friction', quantity: 'tau_c', symbol: 'τ_c', title: 'Coulomb friction', unit: 'Nm',
 	empty: null, points: [point('A', 1), point('B', 2, ['beyond_three_sigma'])],
-	mean: 1.5, sigma: 0.1, control_limits: [1.2, 1.8], capability: null, quantities: ['tau_c'], pending: 0,
+	mean: 1.5, sigma: 0.1, control_limits: [1.2, 1.8], capability: null, quantities: [{ name: 'tau_c', title: 'Coulomb friction' }], pending: 0,
 };
 
 it('draws units, those that violate a rule apart, with mean and control limits in one unit', () => {
 	const figure = controlFigure(chart, { factor: 1000, unit: 'mNm' });
-	expect(figure.series.map(({ label, y }) => [label, ...y])).toEqual([['units', 1000], ['violates a rule', 2000], ['mean', 1500, 1500], ['control limits, ± 3 σ', 1200, 1200], ['control limits, ± 3 σ', 1800, 1800]]);
+	expect(figure.series.map(({ label, y }) => [label, ...y])).toEqual([['units', 1000], ['violates a rule', 2000], ['mean 1500 mNm', 1500, 1500], ['control limits (± 3 σ) 1200 mNm and 1800 mNm', 1200, 1200], ['control limits (± 3 σ) 1200 mNm and 1800 mNm', 1800, 1800]]);
 	expect(figure.x.names).toEqual(['A', 'B']);
 	expect(figure.series[0]!.band).toEqual([[900, 1100]]);
 });

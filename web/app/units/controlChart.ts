@@ -1,6 +1,6 @@
 import type { Capability, ControlChart } from '../api/types';
 import type { Figure, Series } from '../figure/figure';
-import { type Scale, formatNumber } from '../format/number';
+import { type Scale, formatNumber, formatQuantity } from '../format/number';
 
 type Rule = ControlChart['points'][number]['violates'][number];
 
@@ -24,15 +24,18 @@ export function controlFigure(chart: ControlChart, { factor, unit }: Scale): Fig
 		return { label, mark: 'points', x: shown.map(({ i }) => (named ? i : i + 1)), y: shown.map(({ value }) => value * factor), band: shown.map(({ value, ci95 }) => (ci95 ?? [value, value]).map((end) => end * factor)) };
 	};
 	const ends = named ? [0, points.length - 1] : [1, points.length];
-	const line = (label: string, value: number | null | undefined): Series[] => (value == null ? [] : [{ label, mark: 'line', x: ends, y: [value * factor, value * factor] }]);
+	/** Lines at the given values, whose label states them. */
+	const lines = (label: string, values: readonly (number | null | undefined)[]): Series[] => {
+		const heights = values.flatMap((value) => (value == null ? [] : [value * factor]));
+		const text = `${label} ${heights.map((y) => formatQuantity(y, unit, 4)).join(' and ')}`;
+		return heights.map((y) => ({ label: text, mark: 'line', x: ends, y: [y, y] }));
+	};
 	const series = [
 		of('units', (violates) => !violates),
 		of('violates a rule', (violates) => violates),
-		...line('mean', mean),
-		...line('control limits, ± 3 σ', limits?.[0]),
-		...line('control limits, ± 3 σ', limits?.[1]),
-		...line('limits of the part', capability?.lower),
-		...line('limits of the part', capability?.upper),
+		...lines('mean', [mean]),
+		...lines('control limits (± 3 σ)', limits ?? []),
+		...lines('limits of the part', [capability?.lower, capability?.upper]),
 	].filter(({ x }) => x.length > 0);
 	const x = named ? { label: 'unit', unit: '', names: points.map((point) => point.unit) } : { label: 'unit, in the order of the runs', unit: '' };
 	return { name: `chart-${chart.quantity}`, title: chart.title, form: 'cartesian', x, y: { label: chart.title, unit }, series };

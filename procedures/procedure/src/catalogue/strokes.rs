@@ -10,7 +10,7 @@ use crate::findings::{
     Line, Plateau, Unusable, curve, jackknife95, legs, plateaus, quantity, scatter, select_legs, settled, solve,
     verdict,
 };
-use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
+use crate::identification::{Axis, Direction, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
 use crate::thresholds::{FASTER_LEG, VAGUE_OFFSET};
@@ -192,22 +192,18 @@ fn without_gravity(prepared: &Prepared, points: &[Plateau], fastest_rad_s: f64) 
     Some(Lines { sides: [line(0), line(1)], half_difference: Some((half(&values), interval(&half))) })
 }
 
-/// Names of a direction in quantities and symbols.
-const DIRECTIONS: [(&str, &str); 2] = [("positive", "⁺"), ("negative", "⁻")];
-
 impl Lines {
     /// The directions that have a line.
-    fn fitted(&self) -> Vec<(&'static str, &'static str, &Line)> {
-        let sides = DIRECTIONS.into_iter().zip(&self.sides);
-        sides.filter_map(|((suffix, mark), (_, line))| Some((suffix, mark, line.as_ref()?))).collect()
+    fn fitted(&self) -> Vec<(Direction, &Line)> {
+        let sides = Direction::ALL.into_iter().zip(&self.sides);
+        sides.filter_map(|(direction, (_, line))| Some((direction, line.as_ref()?))).collect()
     }
 
     fn quantities(&self) -> Vec<Quantity> {
         let mut quantities = Vec::new();
-        for (suffix, mark, line) in self.fitted() {
-            let named = |name: &str, symbol: &str, title: &str, unit: &str, value: f64, ci95: Option<[f64; 2]>| {
-                let words = [&format!("{name}_{suffix}"), &format!("{symbol}{mark}"), title, unit];
-                quantity(words, value, ci95).in_configuration(&format!("{suffix} direction"))
+        for (direction, line) in self.fitted() {
+            let named = |name, symbol, title, unit, value, ci95| {
+                quantity([name, symbol, title, unit], value, ci95).in_direction(direction)
             };
             let offset_ci95 = Some(line.offset_ci95);
             quantities.extend([
@@ -231,10 +227,10 @@ impl Lines {
     }
 
     fn sentences(&self) -> Vec<String> {
-        let line = |(suffix, _, line): (&str, &str, &Line)| {
+        let line = |(direction, line): (Direction, &Line)| {
             let [offset, slope] =
                 [(line.offset, "Nm"), (line.slope, "Nm·s/rad")].map(|(v, unit)| words::figure(v, unit));
-            format!("Line in {suffix} direction: {offset} at zero speed, slope {slope}.")
+            format!("Line in {} direction: {offset} at zero speed, slope {slope}.", direction.word())
         };
         self.fitted().into_iter().map(line).collect()
     }
@@ -252,7 +248,8 @@ impl Lines {
         }
         let is_vague =
             |line: &Line| 0.5 * (line.offset_ci95[1] - line.offset_ci95[0]) > VAGUE_OFFSET * line.offset.abs();
-        let vague: Vec<&str> = fitted.iter().filter(|(.., line)| is_vague(line)).map(|(suffix, ..)| *suffix).collect();
+        let vague: Vec<&str> =
+            fitted.iter().filter(|(_, line)| is_vague(line)).map(|(direction, _)| direction.word()).collect();
         if !vague.is_empty() && self.half_difference.is_some() {
             return Some(format!(
                 "Friction at zero speed is not determined in {} direction: no sensor measures gravity. The half difference of both \
@@ -261,7 +258,8 @@ impl Lines {
             ));
         }
         let is_flat = |line: &Line| line.slope_ci95[0] <= 0.0 && line.slope_ci95[1] >= 0.0;
-        let motion = |(suffix, _, line): &(&str, &str, &Line)| format!("{suffix} motion (r² {:.2})", line.r2);
+        let motion =
+            |(direction, line): &(Direction, &Line)| format!("{} motion (r² {:.2})", direction.word(), line.r2);
         let flat: Vec<String> = fitted.iter().filter(|(.., line)| is_flat(line)).map(motion).collect();
         let other = "Diagnose the run to find the cause of the differences, or increase top_speed_rad_s.";
         (!flat.is_empty()).then(|| format!("Speed has no significant linear effect in {}. {other}", flat.join(" and ")))
@@ -269,12 +267,13 @@ impl Lines {
 
     fn figure(&self, top_rad_s: f64) -> Figure {
         let mut series = Vec::new();
-        for (((suffix, _), ends), (points, line)) in
-            DIRECTIONS.into_iter().zip([[0.0, top_rad_s], [-top_rad_s, 0.0]]).zip(&self.sides)
+        for ((direction, ends), (points, line)) in
+            Direction::ALL.into_iter().zip([[0.0, top_rad_s], [-top_rad_s, 0.0]]).zip(&self.sides)
         {
-            series.push(scatter(suffix, points.clone()));
-            let label = format!("line, {suffix}");
-            series.extend(line.as_ref().map(|line| curve(&label, ends, 1, |v| line.at(v)).in_group(suffix)));
+            let word = direction.word();
+            series.push(scatter(word, points.clone()));
+            let label = format!("line, {word}");
+            series.extend(line.as_ref().map(|line| curve(&label, ends, 1, |v| line.at(v)).in_group(word)));
         }
         let title = match self.half_difference {
             Some(_) => "Friction over motor speed, gravity removed",

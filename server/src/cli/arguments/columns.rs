@@ -17,7 +17,7 @@ pub struct Columns {
     /// Multiply a column, such as motor_velocity_rad_s=-1; may be given again
     #[arg(long, value_name = "COLUMN=FACTOR")]
     pub scale: Vec<String>,
-    /// Make an angle continuous that begins anew after a turn (or after PERIOD, in the column's SI unit); may be given again
+    /// Make an angle continuous that wraps after a turn (or after PERIOD, in the column's SI unit); may be given again
     #[arg(long, value_name = "COLUMN[=PERIOD]")]
     pub unwrap: Vec<String>,
     /// Leave a column of the file out; may be given again. Columns of words stay out by themselves

@@ -1,7 +1,7 @@
 //! Breakaway torques over positions and directions: means, scatter, figures.
 
 use crate::findings::{Mean, combined, directions, quantity, scatter, solve};
-use crate::identification::{Axis, Figure, Form, Mark, Quantity, Series};
+use crate::identification::{Axis, Direction, Figure, Form, Mark, Quantity, Series};
 use jointbench_model::stats::summary::mean;
 use jointbench_model::words;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -96,8 +96,8 @@ impl Torques {
         let [mean, forward, backward] = [self.mean, self.forward, self.backward].map(|mean| (mean.value, mean.ci95));
         vec![
             of("tau_b", "τ_b", &format!("{what}, mean"), mean),
-            of("tau_b_positive", "τ_b⁺", what, forward).in_configuration("positive direction"),
-            of("tau_b_negative", "τ_b⁻", what, backward).in_configuration("negative direction"),
+            of("tau_b", "τ_b", what, forward).in_direction(Direction::Positive),
+            of("tau_b", "τ_b", what, backward).in_direction(Direction::Negative),
             of("tau_b_difference", "τ_b⁺ − τ_b⁻", &format!("{what}, difference between directions"), self.difference),
             of("deviation", "s", "Standard deviation over positions", self.deviation),
         ]

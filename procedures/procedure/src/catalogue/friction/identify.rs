@@ -6,7 +6,7 @@ use crate::findings::{
     Leg, Line, Plateau, Unusable, combined, curve, directions, legs, parameter, plateaus, quantity, scatter,
     select_legs, settled,
 };
-use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
+use crate::identification::{Axis, Direction, Figure, Form, Identification, Quantity, Series, Verdict};
 use crate::thresholds::{AMBIGUOUS_COULOMB, LINE_SPAN};
 use jointbench_instrument::RunTable;
 use jointbench_model::preprocess::Prepared;
@@ -58,10 +58,10 @@ impl Fits {
         Ok(Self { points, whole, with_drag_nm, forward, backward })
     }
 
-    fn sides(&self) -> [(&'static str, Side); 2] {
+    fn sides(&self) -> [(Direction, Side); 2] {
         [
-            ("positive", Side::of(&self.points, 1.0, &self.forward)),
-            ("negative", Side::of(&self.points, -1.0, &self.backward)),
+            (Direction::Positive, Side::of(&self.points, 1.0, &self.forward)),
+            (Direction::Negative, Side::of(&self.points, -1.0, &self.backward)),
         ]
     }
 
@@ -73,14 +73,13 @@ impl Fits {
         ]
     }
 
-    fn quantities(&self, sides: &[(&str, Side); 2], gear: f64) -> Vec<Quantity> {
-        let mut quantities = named("", "", None, &self.whole, gear);
-        quantities.extend(named("_positive", "⁺", Some("positive direction"), &self.forward, gear));
-        quantities.extend(named("_negative", "⁻", Some("negative direction"), &self.backward, gear));
-        for ((suffix, side), symbol) in sides.iter().zip(["r²⁺", "r²⁻"]) {
-            let words = [&format!("r2_{suffix}"), symbol, "Coefficient of determination", ""];
-            quantities.push(quantity(words, side.r2, None).in_configuration(&format!("{suffix} direction")));
+    fn quantities(&self, sides: &[(Direction, Side); 2], gear: f64) -> Vec<Quantity> {
+        let mut quantities = parameters(&self.whole, gear);
+        for (direction, of) in Direction::ALL.into_iter().zip([&self.forward, &self.backward]) {
+            quantities.extend(parameters(of, gear).into_iter().map(|one| one.in_direction(direction)));
         }
+        let r2 = |side: &Side| quantity(["r2", "r²", "Coefficient of determination", ""], side.r2, None);
+        quantities.extend(sides.iter().map(|(direction, side)| r2(side).in_direction(*direction)));
         quantities
     }
 }
@@ -180,15 +179,8 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
     })
 }
 
-fn named(suffix: &str, mark: &str, direction: Option<&str>, of: &FreeFriction, gear: f64) -> Vec<Quantity> {
-    let one = |name: &str, symbol: &str, title: &str, unit: &str, figure: Figured| {
-        let words = [&format!("{name}{suffix}"), &format!("{symbol}{mark}"), title, unit];
-        let found = quantity_of(words, figure);
-        match direction {
-            Some(direction) => found.in_configuration(direction),
-            None => found,
-        }
-    };
+fn parameters(of: &FreeFriction, gear: f64) -> Vec<Quantity> {
+    let one = |name, symbol, title, unit, figure| quantity_of([name, symbol, title, unit], figure);
     let mut out = vec![
         one("tau_c", "τ_c", "Coulomb friction (motor)", "Nm", of.coulomb),
         one("c_v", "c_v", "Viscous friction (motor)", "Nm·s/rad", of.viscous),

@@ -3,6 +3,7 @@
 
 use super::free_friction::{FreeFriction, friction_nm};
 use crate::findings::{Plateau, solve};
+use crate::identification::Direction;
 use crate::thresholds::{EXPLAINED, SMALL_REST, SMALL_RISE};
 use jointbench_model::words;
 
@@ -49,13 +50,14 @@ impl Side {
 }
 
 /// A dependence on something other than speed, in a separate sentence.
-pub(super) fn rest(sides: &[(&str, Side); 2], whole: &FreeFriction) -> Option<String> {
+pub(super) fn rest(sides: &[(Direction, Side); 2], whole: &FreeFriction) -> Option<String> {
     let open = |side: &Side| side.r2 < EXPLAINED && side.rest_rms_nm > SMALL_REST * whole.coulomb.0;
-    let (way, side) =
+    let (direction, side) =
         sides.iter().filter(|(_, side)| open(side)).max_by(|a, b| a.1.rest_rms_nm.total_cmp(&b.1.rest_rms_nm))?;
     Some(format!(
-        "In the {way} direction speed explains only {} of the friction variance (residual {} RMS, {} of Coulomb \
+        "In the {} direction speed explains only {} of the friction variance (residual {} RMS, {} of Coulomb \
          friction).",
+        direction.word(),
         words::percent(side.r2.max(0.0)),
         words::figure(side.rest_rms_nm, "Nm"),
         words::percent(side.rest_rms_nm / whole.coulomb.0)

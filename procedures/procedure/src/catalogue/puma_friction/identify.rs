@@ -5,7 +5,7 @@ use super::super::breakaway::ramps::{Onset, onsets, ramp_step_nm};
 use super::super::breakaway::torques::with_resolution;
 use super::settling_s;
 use crate::findings::{Hold, Line, Mean, Unusable, combined, curve, directions, holds, quantity, scatter};
-use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
+use crate::identification::{Axis, Direction, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::Values;
 use jointbench_instrument::RunTable;
 use jointbench_model::words;
@@ -138,17 +138,14 @@ impl Lines {
     /// The same in newton metres at the motor, as magnitudes.
     fn at_motor(&self, nm_per_v: f64, nm_s_per_slope: f64) -> Vec<Quantity> {
         let mut all = Vec::new();
-        for (suffix, sign, line) in [("positive", "⁺", &self.forward), ("negative", "⁻", &self.backward)] {
-            let way = format!("{suffix} direction");
+        for (direction, line) in Direction::ALL.into_iter().zip([&self.forward, &self.backward]) {
             let (offset, slope) = (
                 magnitude(line.offset, line.offset_ci95, nm_per_v),
                 magnitude(line.slope, line.slope_ci95, nm_s_per_slope),
             );
-            let (name, symbol) = (format!("tau_c_{suffix}"), format!("τ_c{sign}"));
-            let coulomb = named([&name, &symbol, "Coulomb friction (motor)", "Nm"], offset);
-            let (name, symbol) = (format!("c_v_{suffix}"), format!("c_v{sign}"));
-            let viscous = named([&name, &symbol, "Viscous friction (motor)", "Nm·s/rad"], slope);
-            all.extend([coulomb, viscous].map(|one| one.in_configuration(&way)));
+            let coulomb = named(["tau_c", "τ_c", "Coulomb friction (motor)", "Nm"], offset);
+            let viscous = named(["c_v", "c_v", "Viscous friction (motor)", "Nm·s/rad"], slope);
+            all.extend([coulomb, viscous].map(|one| one.in_direction(direction)));
         }
         let (mean, ci95) = self.b_mean();
         let viscous = ["c_v_mean", "c_v", "Viscous friction (motor), mean of both directions", "Nm·s/rad"];
@@ -206,15 +203,10 @@ impl Stiction {
     }
 
     fn sides(&self, name: &str, value: impl Fn(&Mean) -> (f64, [f64; 2]), title: &str, unit: &str) -> Vec<Quantity> {
-        let sides = [
-            ("positive", "τ_s⁺", "positive direction", &self.positive),
-            ("negative", "τ_s⁻", "negative direction", &self.negative),
-        ];
-        let of_side = |(suffix, symbol, way, mean): (&str, &str, &str, &Option<Mean>)| {
-            let words = [&format!("{name}_{suffix}"), symbol, title, unit];
-            mean.as_ref().map(|mean| named(words, value(mean)).in_configuration(way))
+        let of_side = |(direction, mean): (Direction, &Option<Mean>)| {
+            mean.as_ref().map(|mean| named([name, "τ_s", title, unit], value(mean)).in_direction(direction))
         };
-        sides.into_iter().filter_map(of_side).collect()
+        Direction::ALL.into_iter().zip([&self.positive, &self.negative]).filter_map(of_side).collect()
     }
 }
 
@@ -319,19 +311,13 @@ fn named(words: [&str; 4], (value, ci95): (f64, [f64; 2])) -> Quantity {
 /// The table of figure 3.2.
 fn sides(forward: &Line, backward: &Line) -> Vec<Quantity> {
     let mut all = Vec::new();
-    for (suffix, sign, way, line) in
-        [("positive", "⁺", "positive direction", forward), ("negative", "⁻", "negative direction", backward)]
-    {
-        let words = |name: &str, symbol: &str, title: &str| {
-            [format!("{name}_{suffix}"), format!("{symbol}{sign}"), title.to_owned()]
-        };
-        for ([name, symbol, title], unit, value, ci95) in [
-            (words("b", "B", "Viscous friction"), "V/(°/s)", line.slope, Some(line.slope_ci95)),
-            (words("f", "f", "Coulomb friction"), "V", line.offset, Some(line.offset_ci95)),
-            (words("r2", "r²", "Coefficient of determination"), "", line.r2, None),
-        ] {
-            all.push(quantity([&name, &symbol, &title, unit], value, ci95).in_configuration(way));
-        }
+    for (direction, line) in Direction::ALL.into_iter().zip([forward, backward]) {
+        let of_line = [
+            quantity(["b", "B", "Viscous friction", "V/(°/s)"], line.slope, Some(line.slope_ci95)),
+            quantity(["f", "f", "Coulomb friction", "V"], line.offset, Some(line.offset_ci95)),
+            quantity(["r2", "r²", "Coefficient of determination", ""], line.r2, None),
+        ];
+        all.extend(of_line.map(|one| one.in_direction(direction)));
     }
     all
 }
