@@ -1,4 +1,4 @@
-import { tickText, ticks } from '../plot/ticks';
+import { labelledTicks } from '../plot/ticks';
 import { type Figure, type Series, type Span, reachOf, spanOf } from './figure';
 
 export interface Tick {
@@ -41,7 +41,7 @@ export function cartesianLayout(figure: Figure, width: number, height: number, f
 	const x = (value: number) => left + ((value - xLow) / (xHigh - xLow)) * (right - left);
 	const y = (value: number) => bottom - ((value - yLow) / (yHigh - yLow)) * (bottom - top);
 	const scaled = (low: number, high: number, factor: number, count: number, at: (value: number) => number) =>
-		ticks(low * factor, high * factor, count).map((tick) => ({ at: at(tick / factor), text: tickText(tick) }));
+		labelledTicks(low * factor, high * factor, count).map(({ tick, text }) => ({ at: at(tick / factor), text }));
 	return {
 		left,
 		right,

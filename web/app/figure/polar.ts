@@ -1,4 +1,4 @@
-import { tickText, ticks } from '../plot/ticks';
+import { labelledTicks } from '../plot/ticks';
 import { type Figure, reachOf } from './figure';
 import type { Tick } from './cartesian';
 
@@ -35,9 +35,9 @@ export function polarLayout(figure: Figure, width: number, height: number, facto
 		outer,
 		radius,
 		at: (angle, value) => [centre.x + radius(value) * Math.cos(angle), centre.y - radius(value) * Math.sin(angle)],
-		rings: ticks(begin * factor, high * factor, least < 0 ? 6 : 4)
-			.filter((tick) => radius(tick / factor) > 12)
-			.map((tick) => ({ at: radius(tick / factor), text: tickText(tick) })),
+		rings: labelledTicks(begin * factor, high * factor, least < 0 ? 6 : 4)
+			.filter(({ tick }) => radius(tick / factor) > 12)
+			.map(({ tick, text }) => ({ at: radius(tick / factor), text })),
 		zero: least < 0 ? radius(0) : null,
 	};
 }

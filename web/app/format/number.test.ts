@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { formatAgainstLimit, formatChange, parseNumber, formatInterval, formatPValue, formatCount, formatEstimate, formatNumber, formatPercent, formatQuantity, scaleFor, formatAllDigits } from './number';
+import { formatAgainstLimit, formatChange, parseNumber, formatInterval, formatPValue, formatCount, formatEstimate, formatNumber, formatPercent, formatQuantity, scaleFor, formatAllDigits, withOwnDigits } from './number';
 
 describe('numbers as an instrument shows them', () => {
 	it.each([
@@ -57,6 +57,11 @@ describe('numbers as an instrument shows them', () => {
 
 	it('counts one as one', () => {
 		expect([0, 1, 1204].map((n) => formatCount(n, 'step'))).toEqual(['0 steps', '1 step', '1,204 steps']);
+	});
+
+	it('keeps the digits of a stated value and chooses its prefix', () => {
+		expect(withOwnDigits(0.0406, 'Nm/A')).toEqual({ value: '40.6', unit: 'mNm/A' });
+		expect(withOwnDigits(1.2e-5, 'kg·m²')).toEqual({ value: '1.2·10⁻⁵', unit: 'kg·m²' });
 	});
 
 	it('says chances and shares', () => {

@@ -35,6 +35,12 @@ export function formatAllDigits(value: number): string {
 	return exponent(own);
 }
 
+/** A value with its own digits and a prefix: `40.6` and `mNm/A`. */
+export function withOwnDigits(value: number, unit: string): { value: string; unit: string } {
+	const scale = scaleFor(unit, value);
+	return { value: formatAllDigits(value * scale.factor), unit: scale.unit };
+}
+
 const RAISED = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 
 function superscript(power: number): string {

@@ -5,7 +5,7 @@ import { colour } from './colour';
 import { type OnView, type View, gestures } from './gestures';
 import { dashPaths, pointPaths } from './markPaths';
 import { type Cursors, type OnCursors, cursorLines } from './cursors';
-import { powerText, tickText } from './ticks';
+import { powerText, tickTexts } from './ticks';
 import { linePaths } from './linePaths';
 
 /** `line` joins the points, `chord` only the first and the last; the others mark each point separately. */
@@ -82,7 +82,7 @@ export function makeChart(
 				x: { time: false, range: (_u, low, high) => view ?? (frame.square ? whole : padded(low, high, marked ? 0.012 : 0)) },
 				y: frame.square ? { range: () => view ?? whole } : frame.banded ? { range: (_u, low, high) => withBand(low, high, backdrop.band ?? 0) } : {},
 			},
-			axes: [axis(frame.hideXLabels ? '' : frame.xTitle, tickText, frame.hideXLabels), axis(frame.yTitle, frame.log ? powerText : tickText, false, 58)],
+			axes: [axis(frame.hideXLabels ? '' : frame.xTitle, tickTexts, frame.hideXLabels), axis(frame.yTitle, frame.log ? (powers) => powers.map(powerText) : tickTexts, false, 58)],
 			series: [{}, ...frame.curves.map((curve) => series(curve, () => backdrop))],
 			cursor: {
 				...gestureOptions.cursor,
@@ -130,7 +130,7 @@ function withBand(low: number | null, high: number | null, band: number): View {
 	return padded(from - 0.1 * (to - from), to + 0.1 * (to - from));
 }
 
-function axis(title: string, say: (tick: number) => string, bare = false, size?: number): uPlot.Axis {
+function axis(title: string, say: (ticks: readonly number[]) => string[], bare = false, size?: number): uPlot.Axis {
 	return {
 		label: title || undefined,
 		labelSize: title ? 18 : 0,
@@ -143,7 +143,7 @@ function axis(title: string, say: (tick: number) => string, bare = false, size?:
 		gap: 4,
 		size: bare ? 8 : (size ?? 28),
 		space: size ? 24 : 60,
-		values: (_u, splits) => splits.map((tick) => (bare ? '' : say(tick))),
+		values: (_u, splits) => (bare ? splits.map(() => '') : say(splits)),
 	};
 }
 

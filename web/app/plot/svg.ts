@@ -2,7 +2,7 @@
 import { type Backdrop, NAME_GAP, alternateSteps } from './backdrop';
 import type { Curve } from './chart';
 import type { View } from './gestures';
-import { powerText, tickText, ticks } from './ticks';
+import { labelledTicks, powerText } from './ticks';
 
 export interface Drawing {
 	xTitle: string;
@@ -66,10 +66,9 @@ const dashes = (dash: readonly number[] | undefined) => (dash?.length ? `stroke-
 function axes({ x, y, xTitle, yTitle, log, height }: Drawing, frame: Frame, ink: Ink): string[] {
 	const { right, foot } = frame;
 	const middle = 'text-anchor="middle"';
-	const yText = log ? powerText : tickText;
 	return [
-		...ticks(...x, 8).flatMap((tick) => [path(ink, `M${short(frame.x(tick))} ${HEAD}V${foot}`, '--hair'), text(ink, [frame.x(tick), foot + 16], tickText(tick), middle)]),
-		...ticks(...y, 5).flatMap((tick) => [path(ink, `M${LEFT} ${short(frame.y(tick))}H${right}`, '--hair'), text(ink, [LEFT - 6, frame.y(tick) + 4], yText(tick), 'text-anchor="end"')]),
+		...labelledTicks(...x, 8).flatMap(({ tick, text: label }) => [path(ink, `M${short(frame.x(tick))} ${HEAD}V${foot}`, '--hair'), text(ink, [frame.x(tick), foot + 16], label, middle)]),
+		...labelledTicks(...y, 5).flatMap(({ tick, text: label }) => [path(ink, `M${LEFT} ${short(frame.y(tick))}H${right}`, '--hair'), text(ink, [LEFT - 6, frame.y(tick) + 4], log ? powerText(tick) : label, 'text-anchor="end"')]),
 		text(ink, [(LEFT + right) / 2, height - 8], xTitle, middle),
 		text(ink, [0, 0], yTitle, `${middle} transform="translate(14 ${short((HEAD + foot) / 2)}) rotate(-90)"`),
 	];

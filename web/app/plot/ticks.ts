@@ -28,5 +28,20 @@ export function tickText(tick: number): string {
 	return String(Number(tick.toPrecision(6))).replace('-', '−');
 }
 
+/** The ticks of one axis with equal decimals: as many as one of them needs. */
+export function tickTexts(axis: readonly number[]): string[] {
+	const texts = axis.map(tickText);
+	if (texts.some((text) => text.includes('·'))) return texts;
+	const decimals = Math.max(0, ...texts.map((text) => text.split('.')[1]?.length ?? 0));
+	return axis.map((tick) => tick.toFixed(decimals).replace('-', '−'));
+}
+
+/** Round positions of an axis with their texts. */
+export function labelledTicks(low: number, high: number, count: number): { tick: number; text: string }[] {
+	const found = ticks(low, high, count);
+	const texts = tickTexts(found);
+	return found.map((tick, i) => ({ tick, text: texts[i]! }));
+}
+
 /** A tick of a logarithmic scale: ten to the given power. */
 export const powerText = (power: number): string => formatNumber(10 ** power, Number.isInteger(power) ? 1 : 2);
