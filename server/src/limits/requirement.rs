@@ -161,10 +161,14 @@ impl Requirement {
     }
 }
 
-/// Factor from the written unit to the unit of the quantity: the same unit, or with a prefix.
+/// Factor from the written unit to the unit of the quantity: the same unit, with a prefix, or a fraction in percent.
 fn factor(written: &str, own: &str) -> Option<f64> {
     if written == own || (written.is_empty() && own == "1") {
         return Some(1.0);
+    }
+    // A limit without a unit on a percentage is a fraction.
+    if written.is_empty() && own == "%" {
+        return Some(100.0);
     }
     [("k", 1e3), ("m", 1e-3), ("µ", 1e-6), ("u", 1e-6), ("n", 1e-9)]
         .into_iter()
@@ -258,6 +262,17 @@ pub(crate) mod tests {
         let mut bare = found();
         bare.result.quantities[0].ci95 = None;
         assert!(matches!(limit(32.0, 0.0).check(made(), &bare.result), Ok((LimitOutcome::Inconclusive, _))));
+    }
+
+    #[test]
+    fn a_limit_on_a_percentage_is_in_percent_or_a_fraction() {
+        let mut found = found();
+        let quantity = &mut found.result.quantities[0];
+        (quantity.unit, quantity.value, quantity.ci95) = ("%".to_owned(), 1.5, None);
+        let outcome = |text: &str| text.parse::<Requirement>().unwrap().check(made(), &found.result).unwrap().0;
+        assert_eq!(outcome("tau_c < 2 %"), LimitOutcome::Pass);
+        assert_eq!(outcome("tau_c < 0.02"), LimitOutcome::Pass);
+        assert_eq!(outcome("tau_c < 0.01"), LimitOutcome::Fail);
     }
 
     #[test]

@@ -109,7 +109,8 @@ impl Procedure for BrakeHysteresis {
     fn finds(&self) -> Vec<Findable> {
         findable(&[
             ("Nm", "torque_top width drag difference_mean difference_top"),
-            ("", "model_currents error_max error_rms error_line difference_max"),
+            ("", "model_currents"),
+            ("%", "error_max error_rms error_line difference_max"),
             ("A", "current_error"),
         ])
     }

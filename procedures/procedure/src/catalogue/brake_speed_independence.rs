@@ -4,7 +4,7 @@ use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
-use crate::findings::{Line, Unusable, curve, holds, quantity, scatter, verdict};
+use crate::findings::{Line, Unusable, curve, holds, percentage, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -88,7 +88,7 @@ impl Procedure for BrakeSpeedIndependence {
     }
 
     fn finds(&self) -> Vec<Findable> {
-        findable(&[("Nm", "torque_#"), ("Nm·s/rad", "slope_#"), ("", "change_# change_max")])
+        findable(&[("Nm", "torque_#"), ("Nm·s/rad", "slope_#"), ("%", "change_# change_max")])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
@@ -116,21 +116,22 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         let named = |name: &str, symbol: &str, title: &str, unit: &str, value: f64, ci95| {
             quantity([&format!("{name}_{level}"), symbol, &format!("{title}{at}"), unit], value, ci95)
         };
+        let title = format!("Relative change over speed{at}");
         quantities.extend([
             named("torque", "T", "Mean torque", "Nm", mean_nm, None),
             named("slope", "dT/dω", "Slope over speed", "Nm·s/rad", line.slope, Some(line.slope_ci95)),
-            named("change", "ΔT/T", "Relative change over speed", "", change, None),
+            percentage([&format!("change_{level}"), "ΔT/T", &title], change, None),
         ]);
         let top = points.iter().map(|p| p.0).fold(0.0, f64::max);
         absolute.push(scatter(&current, points.iter().copied()));
         absolute.push(curve(&format!("line{at}"), [0.0, top], 1, |v| line.at(v)).in_group(&current));
-        relative.push(scatter(&current, points.iter().map(|p| (p.0, p.1 / mean_nm))));
+        relative.push(scatter(&current, points.iter().map(|p| (p.0, 100.0 * p.1 / mean_nm))));
     }
     if absolute.is_empty() {
         return Err(Unusable::InsufficientData("No current was measured at three speeds.", "Repeat the run."));
     }
     let title = "Maximum relative change over speed, all currents";
-    quantities.push(quantity(["change_max", "ΔT/T", title, ""], worst, None));
+    quantities.push(percentage(["change_max", "ΔT/T", title], worst, None));
     let bound = values.number("bound");
     let words = if worst <= bound { "is independent of speed" } else { "depends on speed" };
     let share = 100.0 * worst;
@@ -144,8 +145,8 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
             over_speed(
                 "torque_share_over_speed",
                 "Braking torque relative to its mean",
-                "fraction of the mean",
-                "",
+                "braking torque, relative to its mean",
+                "%",
                 relative,
             ),
         ],

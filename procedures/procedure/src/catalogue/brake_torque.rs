@@ -11,7 +11,7 @@ use super::{Findable, Procedure, ProcedureInfo, findable};
 use crate::bench_facts::BenchFacts;
 use crate::brake_model::{BrakeModel, CurrentHistory};
 use crate::catalogue::brake_hysteresis::{BOUND, SETTLED};
-use crate::findings::{Unusable, holds, jackknife95, quantity, scatter, verdict};
+use crate::findings::{Unusable, holds, jackknife95, percentage, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{Plan, PlanFault};
@@ -97,7 +97,7 @@ impl Procedure for BrakeTorque {
     }
 
     fn finds(&self) -> Vec<Findable> {
-        findable(&[("", "error_max error_rms error_mean torques")])
+        findable(&[("%", "error_max error_rms error_mean"), ("", "torques")])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
@@ -169,9 +169,13 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             "Repeat brake_hysteresis with more levels or a longer dwell_s at the present brake temperature.".into()
         }),
         quantities: vec![
-            quantity(["error_max", "e_max", "Maximum error against the sensor, fraction of rated", ""], worst, None),
-            quantity(["error_rms", "e_rms", "RMS error against the sensor, fraction of rated", ""], rms, rms_ci95),
-            quantity(["error_mean", "ē", "Mean error against the sensor, fraction of rated", ""], mean, mean_ci95),
+            percentage(
+                ["error_max", "e_max", "Maximum error against the sensor, relative to rated torque"],
+                worst,
+                None,
+            ),
+            percentage(["error_rms", "e_rms", "RMS error against the sensor, relative to rated torque"], rms, rms_ci95),
+            percentage(["error_mean", "ē", "Mean error against the sensor, relative to rated torque"], mean, mean_ci95),
             quantity(["torques", "n", "Number of torques", ""], count as f64, None),
         ],
         figures: figures(&points),

@@ -102,7 +102,7 @@ impl Procedure for ConstantLoad {
         findable(&[
             ("Nm", "demanded reached_#"),
             ("A", "current_# current_constant"),
-            ("", "error_# error_max change change_constant"),
+            ("%", "error_# error_max change change_constant"),
         ])
     }
 

@@ -57,6 +57,11 @@ pub(crate) fn quantity([name, symbol, title, unit]: [&str; 4], value: f64, ci95:
     }
 }
 
+/// Named figure in percent, from a fraction: `[name, symbol, title]`. The title names the reference.
+pub(crate) fn percentage([name, symbol, title]: [&str; 3], fraction: f64, ci95: Option<[f64; 2]>) -> Quantity {
+    quantity([name, symbol, title, "%"], 100.0 * fraction, ci95.map(|ends| ends.map(|end| 100.0 * end)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

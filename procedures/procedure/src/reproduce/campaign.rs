@@ -82,9 +82,9 @@ const RANGES_AGREE_NM: f64 = 0.12;
 fn joint(bearing_nm_rad: f64, figures: [Vec<Figure>; 3]) -> Vec<Part> {
     let [friction, stiffness, compensation] = figures;
     vec![
-        ("brake_speed_independence", json!({}), vec![("3.4", "change_max", None, Some(Requirement::AtMost(0.02)))]),
+        ("brake_speed_independence", json!({}), vec![("3.4", "change_max", None, Some(Requirement::AtMost(2.0)))]),
         ("brake_hysteresis", json!({}), Vec::new()),
-        ("brake_torque", json!({}), vec![("beyond", "error_max", None, Some(Requirement::AtMost(0.01)))]),
+        ("brake_torque", json!({}), vec![("beyond", "error_max", None, Some(Requirement::AtMost(1.0)))]),
         ("demagnetise", json!({}), Vec::new()),
         (
             "torque_sensor_zero",
@@ -107,7 +107,7 @@ fn gear_and_brake_b(share: f64) -> Vec<Part> {
         json!({"top_load": share, "bearing_stiffness_nm_rad": 155.0e3, "dwell_s": 4.0}),
     );
     vec![
-        ("brake_speed_independence", slow, vec![("3.5", "change_max", None, Some(Requirement::AtLeast(0.02)))]),
+        ("brake_speed_independence", slow, vec![("3.5", "change_max", None, Some(Requirement::AtLeast(2.0)))]),
         ("stiffness", stiff, stiffness([0.1812e-3, 5722.5, 0.5871e-3])),
     ]
 }

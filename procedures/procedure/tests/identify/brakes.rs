@@ -21,7 +21,7 @@ fn the_current_is_readjusted_at_each_speed_behind_the_gear() {
     let value = |name: &str| found.quantity(name).unwrap_or_else(|| panic!("no {name}")).value;
     assert_eq!(value("demanded"), 25.0);
     // At one current the drag of the gear changes the torque.
-    assert!(value("change_constant") > 0.01 && value("change") < 0.2 * value("change_constant"), "{}", found.summary);
+    assert!(value("change_constant") > 1.0 && value("change") < 0.2 * value("change_constant"), "{}", found.summary);
     let mut currents: Vec<f64> = (1..=4).map(|number| value(&format!("current_{number}"))).collect();
     for number in 1..=4 {
         let reached = found.quantity(&format!("reached_{number}")).unwrap();
@@ -38,7 +38,7 @@ fn brake_a_needs_no_readjustment() {
     let given = json!({"levels": 6, "speeds": 3, "repeats": 2, "top_speed_rad_s": 3.0});
     let (_mock, found) = found(MockSettings::new(Joint::JointB, 3), "constant_load", given);
     assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
-    assert!(found.quantity("change_constant").unwrap().value < 0.02, "{}", found.summary);
+    assert!(found.quantity("change_constant").unwrap().value < 2.0, "{}", found.summary);
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn both_brakes_have_nearly_the_same_curve() {
     assert!(alone.quantity("difference_mean").is_none());
     let (_, both) = hysteresis(behind_the_gear(true), Some(brake_a.clone()));
     // The second brake of this bench is like the first one, but turns ten times as fast and is warmer.
-    for (name, most) in [("difference_mean", 0.06), ("difference_top", 0.06), ("difference_max", 0.006)] {
+    for (name, most) in [("difference_mean", 0.06), ("difference_top", 0.06), ("difference_max", 0.6)] {
         let quantity = both.quantity(name).unwrap();
         let [low, high] = quantity.ci95.unwrap();
         assert!(low < quantity.value && quantity.value < high, "{name}: {low} … {high}");

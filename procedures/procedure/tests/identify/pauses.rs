@@ -146,12 +146,12 @@ const WARMTH: f64 = 0.02;
 const BRAKE_WARMTH: f64 = 0.005;
 
 /// What the temperature changes: a share of the figure of `compensation` without compensation, and of the torque of
-/// `constant_load`. 0 for another quantity.
+/// `constant_load`, whose errors are in percent. 0 for another quantity.
 fn warmth(found: &Identification, name: &str) -> f64 {
     let demanded_nm = found.quantity("demanded").map(|demanded| demanded.value);
     match (name.split('_').next(), demanded_nm) {
         (Some("reached"), Some(demanded_nm)) => BRAKE_WARMTH * demanded_nm,
-        (Some("error"), Some(_)) => BRAKE_WARMTH,
+        (Some("error"), Some(_)) => 100.0 * BRAKE_WARMTH,
         _ => WARMTH * without_compensation(found, name),
     }
 }

@@ -6,7 +6,7 @@
 use super::super::brake_run::load_gear_ratio;
 use crate::bench_facts::BenchFacts;
 use crate::brake_model::{ComparedBrake, CurrentHistory};
-use crate::findings::{Mean, bounded, quantity, t95};
+use crate::findings::{Mean, bounded, percentage, quantity, t95};
 use crate::identification::{Axis, Figure, Form, Mark, Quantity, Series};
 use crate::plan::PlanFault;
 use crate::thresholds::SAME_RANGE;
@@ -145,8 +145,8 @@ impl Comparison {
                 top_nm,
                 around(top_nm, self.reach_nm),
             ),
-            quantity(
-                ["difference_max", "ΔT/T", "Maximum difference from the compared brake, fraction of rated", ""],
+            percentage(
+                ["difference_max", "ΔT/T", "Maximum difference from the compared brake, relative to rated torque"],
                 largest,
                 around(largest, share),
             ),

@@ -3,7 +3,7 @@
 use super::super::brake_run::rated_nm;
 use super::{Part, compare};
 use crate::brake_model::{BrakeModel, CurrentHistory};
-use crate::findings::{Hold, Mean, Unusable, holds, quantity, scatter};
+use crate::findings::{Hold, Mean, Unusable, holds, percentage, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
 use jointbench_model::stats::summary::mean;
@@ -66,15 +66,15 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         quantity(["torque_top", "T_max", "Torque at maximum current", "Nm"], mean(&full), spread(&full)),
         quantity(["width", "ΔT", "Loop width at half of the maximum current", "Nm"], mean(&widths), spread(&widths)),
         quantity(["drag", "T₀", "Torque without current", "Nm"], model.torque_nm(&CurrentHistory::default()), None),
-        quantity(["error_max", "e_max", "Maximum error, validation history, fraction of rated", ""], worst, None),
-        quantity(["error_rms", "e_rms", "RMS error, validation history, fraction of rated", ""], rms, None),
+        percentage(["error_max", "e_max", "Maximum error, validation history, relative to rated torque"], worst, None),
+        percentage(["error_rms", "e_rms", "RMS error, validation history, relative to rated torque"], rms, None),
         quantity(
             ["current_error", "e_I", "Maximum current error of the model inverse", "A"],
             validation.current_error_a,
             None,
         ),
-        quantity(
-            ["error_line", "e_line", "Maximum error of a linear model, fraction of rated", ""],
+        percentage(
+            ["error_line", "e_line", "Maximum error of a linear model, relative to rated torque"],
             by_line(&sweeps, rated),
             None,
         ),

@@ -3,7 +3,7 @@
 use super::CURVE;
 use super::curves::{Curves, complete, is_same};
 use crate::catalogue::brake_hysteresis::SETTLED;
-use crate::findings::{Hold, Mean, Unusable, quantity, scatter};
+use crate::findings::{Hold, Mean, Unusable, percentage, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::Values;
 use jointbench_instrument::RunTable;
@@ -43,17 +43,16 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
     let change = range(reached.iter().map(|one| one.torque_nm.value)) / demanded_nm;
     let bound = values.number("bound");
     let good = worst <= bound;
-    let title = |text: &str| format!("{text}, fraction");
     let mut quantities = vec![quantity(["demanded", "T_d", "Demanded torque", "Nm"], demanded_nm, None)];
     for (number, one) in (1..).zip(&reached) {
         quantities.extend(one.quantities(number, demanded_nm));
     }
     quantities.extend([
-        quantity(["error_max", "e_max", &title("Maximum difference from the demanded torque"), ""], worst, None),
-        quantity(["change", "ΔT/T", &title("Change over speed, readjusted current"), ""], change, None),
+        percentage(["error_max", "e_max", "Maximum relative difference from the demanded torque"], worst, None),
+        percentage(["change", "ΔT/T", "Relative change over speed, readjusted current"], change, None),
         quantity(["current_constant", "I", "Mean of the readjusted currents", "A"], constant.current_a, None),
-        quantity(
-            ["change_constant", "ΔT/T", &title("Change over speed at this constant current"), ""],
+        percentage(
+            ["change_constant", "ΔT/T", "Relative change over speed at this constant current"],
             constant.change,
             None,
         ),
@@ -107,11 +106,8 @@ impl Reached {
         let error = |nm: f64| nm / demanded_nm - 1.0;
         [
             named("reached", "T", "Reached torque", "Nm", value, Some(ends)),
-            named(
-                "error",
-                "e",
-                "Difference from the demanded torque, fraction,",
-                "",
+            percentage(
+                [&format!("error_{number}"), "e", &format!("Relative difference from the demanded torque {at}")],
                 error(value),
                 Some(ends.map(error)),
             ),
