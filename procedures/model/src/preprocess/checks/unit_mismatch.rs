@@ -97,8 +97,7 @@ fn computed_load(run: &RunTable) -> Option<String> {
     })
 }
 
-/// Without a measured load nothing drives the motor in both directions: a torque that brakes it in both has the wrong
-/// sign.
+/// Where nothing else drives the joint, a torque that brakes it in both directions has the wrong sign.
 fn driven(run: &RunTable, blocks: &[Block]) -> Option<String> {
     let is_alone = run.kind() == Kind::Friction && run.column("link_torque_nm").is_none();
     let column = |name: &str| run.column(name).filter(|_| is_alone);
@@ -112,7 +111,8 @@ fn driven(run: &RunTable, blocks: &[Block]) -> Option<String> {
     }
     let brakes = work.iter().zip(&moved).all(|(work, moved)| *work < -DRIVEN_WORK * moved);
     brakes.then(|| {
-        "motor_current_a opposes the motion in both directions, as if the joint drove the motor: it or the motion has the wrong sign"
+        "motor_current_a opposes the motion in both directions: it or the motion has the wrong sign, or something else drives the \
+         joint (then record its torque as link_torque_nm)"
             .to_owned()
     })
 }
