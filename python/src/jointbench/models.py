@@ -1227,7 +1227,7 @@ class Region(BaseModel):
     """Largest value of the axis in the region."""
 
 
-RejectionReason = TypeAliasType("RejectionReason", Literal['confounded', 'not_significant', 'few_blocks', 'form_error', 'model_full', 'no_reduction'])
+RejectionReason = TypeAliasType("RejectionReason", Literal['confounded', 'not_significant', 'few_blocks', 'form_error', 'model_full', 'no_reduction', 'unresolved', 'implausible'])
 """Why an effect was not added."""
 
 
