@@ -162,7 +162,7 @@ thresholds! {
     PERIOD_CORRELATION = 0.98, "correlation", "a signal that correlates more with itself after a time has this period", "unit tests of `segments`";
     ON_MULTIPLES = HALF, "resultant length", "readings are multiples of a count if their phase in it has a larger one: a noise below 0.19 counts", "computed";
     OFF_MULTIPLES = 0.25, "resultant length", "and the motion that the torque predicts has a smaller one", "unit tests of `held_side`";
-    SPEED_RANGE = 3.0, "ratio of speeds", "a curve over speed is determined from this ratio of the speeds on", "`evaluate --part hidden`";
+    CURVE_RANGE = 3.0, "ratio of speeds or torques", "a curve over speed or torque is determined from this ratio on", "`evaluate --part hidden`";
     SAME_TURNS = 0.01, "fraction of turns", "motor and link that turn alike have no gear between their angles", "`--test one_way`";
     OSCILLATION = NEARLY_ALL, "correlation", "speeds without a common sample correlate so much where the motion itself oscillates", "unit tests of `residual_acceleration`";
     SAME_MOTION = 0.02, "fraction of variance", "the inputs of two repeats differ by less", "`--test repeats`";

@@ -339,8 +339,8 @@ fn unexplained(found: &Findings) -> &'static str {
     let is_refused = found.decided.as_ref().is_some_and(|decided| !decided.refused.is_empty());
     let reduces = |w: &Withdrawn| w.validation_rms < LISTED_LOSS * found.end_validation_rms;
     match found.withdrawn.iter().any(reduces) || is_refused {
-        true => "No effect of the library explains it with certainty.",
-        false => "No effect of the library explains it.",
+        true => "No testable effect explains it with certainty.",
+        false => "No testable effect explains it.",
     }
 }
 

@@ -48,11 +48,16 @@ pub(crate) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
 
 /// Slow and fast ends of the motion [rad/s]: the 2nd and the 98th percentile of |ω|. `None` without motion.
 fn speed_range(view: &View) -> Option<(f64, f64)> {
-    let mut speed = view.map(Signal::Velocity, f64::abs);
-    speed.sort_by(f64::total_cmp);
-    let at = |share: f64| speed.get((share * speed.len().saturating_sub(1) as f64) as usize).copied();
-    let (slow, fast) = (at(0.02)?, at(0.98)?);
-    (fast > 0.0).then(|| (slow.max(1e-3 * fast), fast))
+    magnitudes(view, Signal::Velocity)
+}
+
+/// Range of the magnitudes of a signal without outliers, at most a factor of 1000. `None` for a signal that is zero.
+fn magnitudes(view: &View, signal: Signal) -> Option<(f64, f64)> {
+    let mut sizes = view.map(signal, f64::abs);
+    sizes.sort_by(f64::total_cmp);
+    let at = |share: f64| sizes.get((share * sizes.len().saturating_sub(1) as f64) as usize).copied();
+    let (low, high) = (at(0.02)?, at(0.98)?);
+    (high > 0.0).then(|| (low.max(1e-3 * high), high))
 }
 
 /// Range of reaches that reversals can identify: from a thousandth of the motion between two reversals, or three

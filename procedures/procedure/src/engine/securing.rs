@@ -3,7 +3,7 @@
 use super::ending::{Ending, Urgency};
 use super::safe_state::secure;
 use super::session::Session;
-use crate::brake_timing::{LAG_S, UNLOAD_S};
+use crate::brake_timing::UNLOAD_S;
 use crate::event::{EventKind, Safe};
 use crate::guard::STANDSTILL_LINK_RAD_S;
 use crate::profile::Profile;
@@ -15,6 +15,8 @@ use std::sync::Arc;
 const LONGEST_UNLOAD_S: f64 = 15.0;
 /// Fastest link speed of unloading: 60 rpm.
 const UNLOAD_LINK_RAD_S: f64 = TAU;
+/// Dead time of the supply and delay of the coil, before the shaft may stop after a falling current.
+const BRAKE_LAG_S: f64 = 0.5;
 /// Time until a reconnected plug is a port, and polling period.
 const PLUGGED_S: f64 = 1.0;
 const POLL_S: f64 = 0.2;
@@ -101,7 +103,7 @@ impl Session<'_> {
             let unload_s = (TAU / link_rad_s).clamp(UNLOAD_S, LONGEST_UNLOAD_S);
             let up = self.ramp_to(speed_rad_s);
             let up_s = up.duration_s();
-            let velocity = up.hold(unload_s + LAG_S);
+            let velocity = up.hold(unload_s + BRAKE_LAG_S);
             let brake = Profile::from(brake_a).hold(up_s).to(0.0, unload_s);
             self.drive(&velocity, &brake)?;
         }

@@ -4,7 +4,7 @@ use crate::effect::{Columns, Effect, EffectInfo, Form, Regime, Shape, ShapeSearc
 use crate::hysteresis_operators;
 use crate::signal::Signal;
 use crate::symbolic::{Column, FittedForm, Rule, Symbolic, memory};
-use crate::thresholds::SPEED_RANGE;
+use crate::thresholds::CURVE_RANGE;
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -43,7 +43,7 @@ impl Effect for Presliding {
         let mut forms = vec![one("dahl"), one("stop"), one("maxwell_slip")];
         // For a trajectory judged sample by sample, the Stribeck effect determines the decrease with speed.
         let apart = !view.chunks.is_empty();
-        let range = crate::effects::speed_range(view).filter(|(slow, fast)| apart && *fast > SPEED_RANGE * slow);
+        let range = crate::effects::speed_range(view).filter(|(slow, fast)| apart && *fast > CURVE_RANGE * slow);
         if let Some((slow, fast)) = range {
             let speed = Shape { name: "omega_s", min: slow, max: fast, search: ShapeSearch::Smooth };
             let rise = Shape { name: "rho", min: 0.05, max: 3.0, search: ShapeSearch::Smooth };

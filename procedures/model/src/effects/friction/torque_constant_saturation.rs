@@ -1,8 +1,10 @@
 //! Saturation of the torque constant.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, Traits, parameter};
+use crate::effects::magnitudes;
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
+use crate::thresholds::CURVE_RANGE;
 use crate::view::View;
 use jointbench_instrument::Kind;
 use std::iter;
@@ -35,12 +37,19 @@ impl Effect for TorqueConstantSaturation {
     }
 
     fn traits(&self) -> Traits {
-        Traits { excitation: Some("larger and smaller motor torques"), ..Traits::default() }
+        Traits {
+            excitation: Some("larger and smaller motor torques"),
+            unseen: Some("the motor torque hardly changes; measure larger and smaller motor torques"),
+            ..Traits::default()
+        }
     }
 
-    /// Not visible without a load: then the torque follows the speed, and any power of it is only another curve over
-    /// speed.
+    /// The power is not visible without a load: then the torque follows the speed, and any power of it is only another
+    /// curve over speed. Over a small range of torques, no curve differs from a straight line.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        if magnitudes(view, Signal::Drive).is_none_or(|(low, high)| high < CURVE_RANGE * low) {
+            return Vec::new();
+        }
         let shape = vec![Shape { name: "n", min: LEAST_POWER, max: LARGEST_POWER, search: ShapeSearch::Smooth }];
         let grid = vec![vec![3.0]];
         let power = Form { name: "power", linear: vec!["s_n"], shape, grid };

@@ -3,7 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::signal::Signal;
 use crate::symbolic::{FittedForm, Symbolic, formula};
-use crate::thresholds::SPEED_RANGE;
+use crate::thresholds::CURVE_RANGE;
 use crate::view::View;
 use jointbench_instrument::Kind;
 
@@ -47,14 +47,14 @@ impl Effect for ViscousSublinear {
         if let Some(fastest) = view.constants.speeds {
             return sampled(fastest);
         }
-        let Some((slow, fast)) = crate::effects::speed_range(view).filter(|(slow, fast)| *fast >= SPEED_RANGE * slow)
+        let Some((slow, fast)) = crate::effects::speed_range(view).filter(|(slow, fast)| *fast >= CURVE_RANGE * slow)
         else {
             return Vec::new();
         };
         let shape = vec![Shape { name: "alpha", min: 0.15, max: 0.85, search: ShapeSearch::Smooth }];
         let grid = [0.25, 0.4, 0.55, 0.7].iter().map(|a| vec![*a]).collect();
         let power = Form { name: "power", linear: vec!["c_alpha"], shape, grid };
-        let (low, high) = (slow, fast / SPEED_RANGE);
+        let (low, high) = (slow, fast / CURVE_RANGE);
         if high < 2.0 * low {
             return vec![power];
         }

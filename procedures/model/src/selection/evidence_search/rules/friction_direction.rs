@@ -1,5 +1,5 @@
 //! A candidate that changes the direction of all friction terms explains as much as free form-error columns in its
-//! place.
+//! place, and predicts as well.
 //!
 //! A delayed torque also bends around reversals, but friction directions do not follow it.
 
@@ -13,7 +13,10 @@ pub(super) fn passes(Refit { now, solution, after, .. }: &Refit) -> bool {
         return true;
     }
     let candidate = Solution::weighted(&after.main, form_error, solution.weight.clone(), None);
+    let validation_loss = |model| Solution::of(model).map(|s| s.validation_losses(model).iter().sum::<f64>());
+    let validation_losses = validation_loss(&after.main).zip(validation_loss(&now.main));
     explains_as_much(candidate.ridge.loss(), solution.ridge.loss())
+        && validation_losses.is_none_or(|(after, now)| explains_as_much(after, now))
 }
 
 /// Whether the squared error with the new direction is near that of the form-error columns.

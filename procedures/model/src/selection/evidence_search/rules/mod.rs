@@ -6,7 +6,7 @@ pub(crate) mod friction_direction;
 pub(crate) mod model_size;
 pub(crate) mod nonzero_size;
 pub(crate) mod possible_size;
-pub(crate) mod shortest_reach;
+pub(crate) mod resolved_reach;
 pub(crate) mod significance;
 pub(crate) mod standard_error;
 pub(crate) mod whole_error;
@@ -70,7 +70,7 @@ const RULES: [(&str, Rule); 10] = [
     ("standard error", Rule { reason: RejectionReason::FewBlocks, test: Test::Figures(standard_error::passes) }),
     ("error reduction", Rule { reason: RejectionReason::FormError, test: Test::Figures(error_reduction::passes) }),
     ("model size", Rule { reason: RejectionReason::ModelFull, test: Test::Figures(model_size::passes) }),
-    ("shortest reach", Rule { reason: RejectionReason::Unresolved, test: Test::Model(shortest_reach::passes) }),
+    ("resolved reach", Rule { reason: RejectionReason::Unresolved, test: Test::Model(resolved_reach::passes) }),
     ("friction direction", Rule { reason: RejectionReason::FormError, test: Test::Model(friction_direction::passes) }),
     ("nonzero size", Rule { reason: RejectionReason::FormError, test: Test::Model(nonzero_size::passes) }),
     ("possible size", Rule { reason: RejectionReason::Implausible, test: Test::Model(possible_size::passes) }),

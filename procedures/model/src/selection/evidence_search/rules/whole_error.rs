@@ -1,7 +1,8 @@
 //! The validation error over all samples does not clearly increase with the candidate.
 //!
 //! The decision gives samples near reversals and at rest less weight. A candidate that improves the others but worsens
-//! these by more than one standard error contradicts a part of the run.
+//! these by more than one standard error contradicts a part of the run. A candidate that changes the friction direction is
+//! judged by the rule *friction direction*: its model has other nuisance columns, and at rest no direction is right.
 
 use crate::regression::evidence::errors;
 use crate::regression::linear_model::LinearModel;
@@ -10,6 +11,9 @@ use crate::selection::evidence_search::rules::Refit;
 use crate::thresholds::ONE_ERROR;
 
 pub(super) fn passes(refit: &Refit) -> bool {
+    if !std::ptr::eq(refit.now.main.problem, refit.after.main.problem) {
+        return true;
+    }
     let losses = |model: &LinearModel| Solution::of(model).map(|solution| solution.validation_losses(model));
     match (losses(&refit.now.main), losses(&refit.after.main)) {
         (Some(now), Some(after)) => is_no_worse(&now, &after),
