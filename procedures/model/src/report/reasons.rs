@@ -40,7 +40,7 @@ pub enum RejectionReason {
     ModelFull,
     /// With it, the error is not smaller.
     NoReduction,
-    /// It acts over a shorter or longer displacement than the run resolves.
+    /// It acts within the shortest displacement that the run resolves.
     Unresolved,
     /// Its size is physically impossible.
     Implausible,

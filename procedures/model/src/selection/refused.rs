@@ -30,9 +30,7 @@ impl Refused<'_> {
             RejectionReason::NotSignificant => format!("which is not significant (p = {:.2})", self.p_value),
             RejectionReason::FewBlocks => "but only in a few blocks".into(),
             RejectionReason::NoReduction => "but the error over all samples increases".into(),
-            RejectionReason::Unresolved => {
-                "but it acts over a shorter or longer displacement than this run resolves".into()
-            }
+            RejectionReason::Unresolved => "but it acts within the shortest displacement that this run resolves".into(),
             RejectionReason::Implausible => "but its size would be physically impossible".into(),
             RejectionReason::ModelFull => "but the largest number of added effects is reached".into(),
             _ if self.gain <= self.least => {
