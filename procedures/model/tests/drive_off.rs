@@ -31,7 +31,7 @@ fn a_diagnosis_leaves_them_out() {
     assert!(diagnosis.data_problems.is_empty(), "{:?}", diagnosis.data_problems);
     let notes = &diagnosis.fit.notes;
     let is_note =
-        |note: &String| note.contains("stays at 0.00 A from 8.400 s") && note.ends_with("these rows are left out");
+        |note: &String| note.contains("stays at 0.00 A from 8.400 s") && note.ends_with("these rows are excluded");
     assert!(notes.iter().any(is_note), "{notes:?}");
 }
 

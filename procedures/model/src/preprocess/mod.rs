@@ -146,7 +146,7 @@ pub struct Prepared {
     /// Missing or wrong test conditions, in sentences.
     pub(crate) warnings: Vec<String>,
     pub(crate) about: Preparation,
-    /// Rows of the run that are left out, because their torque was not read.
+    /// Rows of the run that are excluded, because their torque was not read.
     pub(crate) left_out: Vec<Range<usize>>,
 }
 
@@ -189,7 +189,7 @@ impl Prepared {
         states
     }
 
-    /// Row of the run of a row that was not left out.
+    /// Row of the run of a row that was not excluded.
     fn row(&self, kept: usize) -> usize {
         self.left_out.iter().fold(kept, |row, out| if row >= out.start { row + out.len() } else { row })
     }
@@ -292,7 +292,7 @@ pub(crate) fn prepare_with(
         return prepare_rows(run, options, bristles);
     }
     let mut prepared = prepare_rows(&run.without(&left_out), options, bristles)?;
-    prepared.warnings.extend(unread.into_iter().map(|text| format!("{text}; these rows are left out")));
+    prepared.warnings.extend(unread.into_iter().map(|text| format!("{text}; these rows are excluded")));
     Ok(Prepared { left_out, ..prepared })
 }
 

@@ -1,4 +1,5 @@
-//! A candidate that corrects a friction effect leaves it dissipative: in both directions, the two take work from the joint.
+//! A candidate that corrects a friction effect is dissipative together with it: in both directions, the two take work from
+//! the joint.
 //!
 //! Friction never drives the joint (Canudas de Wit et al. 1995, dissipativity). An asymmetry that is larger than the friction itself is
 //! another torque of the same shape.
