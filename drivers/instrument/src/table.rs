@@ -199,12 +199,12 @@ impl RunTable {
         self.trace.column(name)
     }
 
-    /// A copy without some rows. `left_out` are ranges of rows in rising order that do not overlap; at least one row
+    /// A copy without some rows. `excluded` are ranges of rows in rising order that do not overlap; at least one row
     /// remains.
-    pub fn without(&self, left_out: &[Range<usize>]) -> Self {
+    pub fn without(&self, excluded: &[Range<usize>]) -> Self {
         let keep = |column: &Vec<f64>| {
-            let ends = left_out.iter().map(|range| range.start).chain([column.len()]);
-            let starts = [0].into_iter().chain(left_out.iter().map(|range| range.end));
+            let ends = excluded.iter().map(|range| range.start).chain([column.len()]);
+            let starts = [0].into_iter().chain(excluded.iter().map(|range| range.end));
             starts.zip(ends).flat_map(|(start, end)| &column[start..end]).copied().collect()
         };
         let columns = self.trace.columns().iter().map(keep).collect();
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_left_out() {
+    fn rows_are_excluded() {
         let rows: Vec<[f64; 3]> = (0..8).map(|i| [f64::from(i), 10.0 + f64::from(i), 0.5]).collect();
         let rows: Vec<&[f64]> = rows.iter().map(|row| &row[..]).collect();
         let rest = table(&NAMES, &rows).unwrap().without(&[0..2, 5..6]);

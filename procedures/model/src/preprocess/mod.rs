@@ -147,7 +147,7 @@ pub struct Prepared {
     pub(crate) warnings: Vec<String>,
     pub(crate) about: Preparation,
     /// Rows of the run that are excluded, because their torque was not read.
-    pub(crate) left_out: Vec<Range<usize>>,
+    pub(crate) excluded: Vec<Range<usize>>,
 }
 
 impl Prepared {
@@ -167,7 +167,7 @@ impl Prepared {
             data_errors: DataErrors::default(),
             warnings: Vec::new(),
             about,
-            left_out: Vec::new(),
+            excluded: Vec::new(),
         }
     }
 
@@ -191,7 +191,7 @@ impl Prepared {
 
     /// Row of the run of a row that was not excluded.
     fn row(&self, kept: usize) -> usize {
-        self.left_out.iter().fold(kept, |row, out| if row >= out.start { row + out.len() } else { row })
+        self.excluded.iter().fold(kept, |row, out| if row >= out.start { row + out.len() } else { row })
     }
 
     /// The problem that a model of these effects is judged on. Presliding replaces the direction by its state.
@@ -286,14 +286,14 @@ pub(crate) fn prepare_with(
             return Err(ModelError::TooLarge { column: channel.name.clone(), value: *value });
         }
     }
-    let (left_out, unread) = sensor_faults::unread(run);
-    let kept = run.len() - left_out.iter().map(Range::len).sum::<usize>();
-    if left_out.is_empty() || kept < SHORTEST {
+    let (excluded, unread) = sensor_faults::unread(run);
+    let kept = run.len() - excluded.iter().map(Range::len).sum::<usize>();
+    if excluded.is_empty() || kept < SHORTEST {
         return prepare_rows(run, options, bristles);
     }
-    let mut prepared = prepare_rows(&run.without(&left_out), options, bristles)?;
+    let mut prepared = prepare_rows(&run.without(&excluded), options, bristles)?;
     prepared.warnings.extend(unread.into_iter().map(|text| format!("{text}; these rows are excluded")));
-    Ok(Prepared { left_out, ..prepared })
+    Ok(Prepared { excluded, ..prepared })
 }
 
 /// The same for a run whose rows all have a reading of the torque.

@@ -10,6 +10,7 @@ use crate::stats::summary::mean;
 use crate::thresholds::NEGLIGIBLE_RMS;
 use jointbench_instrument::Kind;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A model on one problem.
@@ -41,6 +42,16 @@ impl<'p> LinearModel<'p> {
             terms: Vec::new(),
             relatives: Arc::default(),
         }
+    }
+
+    /// A term with the places of its coefficients among those of the effects.
+    pub fn term(&self, id: &str) -> Option<(&Term<'p>, Range<usize>)> {
+        let mut first = 0;
+        self.terms.iter().find_map(|term| {
+            let places = first..first + term.columns.len();
+            first = places.end;
+            (term.id() == id).then_some((term, places))
+        })
     }
 
     pub fn contains(&self, id: &str) -> bool {

@@ -259,14 +259,8 @@ fn left(columns: &[BaseColumn], coefficients: &[f64], response: &[f64]) -> Vec<f
 
 /// The first coefficient of an effect.
 pub fn effect_coefficient(model: &LinearModel, solution: &Solution, id: &str) -> Option<f64> {
-    let mut at = 0;
-    for term in &model.terms {
-        if term.id() == id {
-            return solution.coefficients.get(at).copied();
-        }
-        at += term.columns.len();
-    }
-    None
+    let (_, places) = model.term(id)?;
+    solution.coefficients.get(places.start).copied()
 }
 
 /// The ridge regression without one kind of form error.

@@ -88,7 +88,7 @@ fn prepared(kind: Kind, main: Problem) -> Prepared {
         data_errors: DataErrors::default(),
         warnings: Vec::new(),
         about,
-        left_out: Vec::new(),
+        excluded: Vec::new(),
     }
 }
 

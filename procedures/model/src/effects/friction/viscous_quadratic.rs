@@ -13,7 +13,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Quadratic drag",
     sentence: "Drag has a part proportional to the square of speed, as in churning oil or windage. With a negative \
-               c_2, drag grows less than in proportion to speed; c_2a has the same sign in both directions.",
+               c_2, drag grows less than in proportion to speed; the torque of c_2a has one sign in both.",
     formula: "c_2·ω·|ω|, or c_2a·ω² if it differs between the directions",
     source: "Armstrong-Hélouvry, Dupont, Canudas de Wit 1994",
     looks: "a curve over speed, sign changes with the direction, steepest at top speed",

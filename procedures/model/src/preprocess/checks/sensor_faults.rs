@@ -24,13 +24,13 @@ fn columns(kind: Kind) -> (&'static [&'static str], &'static str) {
 /// Columns with a stuck or saturated sensor, each in a sentence.
 pub fn failed(run: &RunTable) -> Vec<String> {
     let fault = |column: Column| clipped(run, &column).or_else(|| stuck_text(run, &column, &column.stuck(run)));
-    suspicious(run).filter_map(fault).collect()
+    fine_columns(run).filter_map(fault).collect()
 }
 
 /// Rows without a reading of the torque, in order, and a sentence for each column with such rows: its sensor is stuck.
 pub fn unread(run: &RunTable) -> (Vec<Range<usize>>, Vec<String>) {
     let (mut rows, mut texts) = (Vec::new(), Vec::new());
-    for column in suspicious(run) {
+    for column in fine_columns(run) {
         let stuck = column.stuck(run);
         texts.extend(stuck_text(run, &column, &stuck));
         rows.extend(stuck);
@@ -51,7 +51,8 @@ struct Column<'r> {
     same: Vec<Range<usize>>,
 }
 
-fn suspicious(run: &RunTable) -> impl Iterator<Item = Column<'_>> {
+/// The columns of torque and current whose readings are fine enough for these checks.
+fn fine_columns(run: &RunTable) -> impl Iterator<Item = Column<'_>> {
     columns(run.kind()).0.iter().filter_map(|name| {
         let values = run.column(name)?;
         let same = stretches_of_one_value(values);

@@ -1,8 +1,8 @@
 //! A candidate that corrects a friction effect is dissipative together with it: in both directions, the two take work from
 //! the joint.
 //!
-//! Friction never drives the joint (Canudas de Wit et al. 1995, dissipativity). An asymmetry that is larger than the friction itself is
-//! another torque of the same shape.
+//! Friction never drives the joint (Canudas de Wit et al. 1995, dissipativity). An asymmetry that is larger than the
+//! friction itself is another torque of the same shape.
 
 use crate::linear::basis::dot;
 use crate::regression::linear_model::LinearModel;
@@ -12,8 +12,7 @@ use crate::signal::Signal;
 
 pub(super) fn passes(refit: &Refit) -> bool {
     let model = &refit.after.main;
-    let corrected =
-        model.terms.iter().find(|term| term.id() == refit.id).and_then(|term| term.effect.traits().corrects);
+    let corrected = model.term(refit.id).and_then(|(term, _)| term.effect.traits().corrects);
     let Some((corrected, solution)) = corrected.zip(Solution::of(model)) else { return true };
     let velocity = model.problem.reduce.apply(model.problem.view.get(Signal::Velocity).to_vec());
     takes_work(&contribution(model, &solution, &[refit.id, corrected]), &velocity)
@@ -22,9 +21,10 @@ pub(super) fn passes(refit: &Refit) -> bool {
 /// Torque of some effects at the rows.
 fn contribution(model: &LinearModel, solution: &Solution, ids: &[&str]) -> Vec<f64> {
     let mut torque = vec![0.0; model.problem.rows()];
-    let columns = model.terms.iter().flat_map(|term| term.columns.iter().map(|column| (term.id(), column)));
-    for ((_, column), coefficient) in columns.zip(&solution.coefficients).filter(|((id, _), _)| ids.contains(id)) {
-        torque.iter_mut().zip(column).for_each(|(sum, value)| *sum += coefficient * value);
+    for (term, places) in ids.iter().filter_map(|id| model.term(id)) {
+        for (column, coefficient) in term.columns.iter().zip(&solution.coefficients[places]) {
+            torque.iter_mut().zip(column).for_each(|(sum, value)| *sum += coefficient * value);
+        }
     }
     torque
 }

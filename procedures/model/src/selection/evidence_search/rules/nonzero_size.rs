@@ -18,15 +18,7 @@ pub(super) fn passes(refit: &Refit) -> bool {
 pub(in crate::selection::evidence_search) fn has_size(id: &str, model: &LinearModel) -> bool {
     let Some(solution) = Solution::of(model) else { return true };
     let id = if changes_direction(id) { coulomb::ID } else { id };
-    let mut first = 0;
-    for term in &model.terms {
-        let range = first..first + term.columns.len();
-        first = range.end;
-        if term.id() == id {
-            return !is_held(range, &solution.bound);
-        }
-    }
-    true
+    model.term(id).is_none_or(|(_, places)| !is_held(places, &solution.bound))
 }
 
 /// Whether all coefficients at these places are held at zero.

@@ -11,11 +11,8 @@ use crate::stats::summary::peak;
 
 pub(super) fn passes(refit: &Refit) -> bool {
     let model = &refit.after.main;
-    let Some(solution) = Solution::of(model) else { return true };
-    let Some(at) = model.terms.iter().position(|term| term.id() == refit.id) else { return true };
-    let first: usize = model.terms[..at].iter().map(|term| term.columns.len()).sum();
-    let term = &model.terms[at];
-    let (traits, sizes) = (term.effect.traits(), &solution.coefficients[first..first + term.columns.len()]);
+    let Some(((term, places), solution)) = model.term(refit.id).zip(Solution::of(model)) else { return true };
+    let (traits, sizes) = (term.effect.traits(), &solution.coefficients[places]);
     traits.is_exact
         || traits.is_user_defined
         || are_possible(term.effect, &term.form.linear, sizes, peak(&model.problem.target))
