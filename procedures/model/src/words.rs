@@ -23,6 +23,11 @@ pub fn prefix_of(size: f64, unit: &str) -> (f64, &'static str) {
     if is_prefixed(unit) { prefix(size, unit) } else { (1.0, "") }
 }
 
+/// The text of a number with the typographic minus sign.
+pub fn with_minus(number: &str) -> String {
+    number.replace('-', "−")
+}
+
 /// A value with its unit, three digits, and a prefix: `6.1 mNm`. The unit `1` is omitted.
 pub fn figure(value: f64, unit: &str) -> String {
     let unit = if unit == "1" { "" } else { unit };
@@ -37,12 +42,13 @@ pub fn figure(value: f64, unit: &str) -> String {
         s if s >= 10.0 => 1,
         _ => 2,
     };
-    format!("{scaled:.digits$} {prefix}{unit}").trim_end().to_owned()
+    let number = with_minus(&format!("{scaled:.digits$}"));
+    format!("{number} {prefix}{unit}").trim_end().to_owned()
 }
 
 /// Three digits of a number below 0.01: `0.00206`, and `4.10·10⁻⁵` below 0.001.
 fn small(value: f64) -> String {
-    if value.abs() < 9.995e-4 { scientific(value, 2) } else { format!("{value:.5}") }
+    if value.abs() < 9.995e-4 { scientific(value, 2) } else { with_minus(&format!("{value:.5}")) }
 }
 
 /// A number with a power of ten and this many decimals: `4.10·10⁻⁵`.
@@ -51,7 +57,7 @@ pub fn scientific(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$e}");
     let Some((number, exponent)) = text.split_once('e') else { return text };
     let raised = exponent.chars().map(|c| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]));
-    format!("{number}·10{}", raised.collect::<String>())
+    format!("{}·10{}", with_minus(number), raised.collect::<String>())
 }
 
 /// The prefixed unit of one figure, for others in the same sentence.
@@ -91,7 +97,7 @@ impl Scale {
             s if s >= 0.01 => 4,
             _ => return small(scaled),
         };
-        format!("{scaled:.digits$}")
+        with_minus(&format!("{scaled:.digits$}"))
     }
 }
 
@@ -102,13 +108,14 @@ pub fn is_prefixed(unit: &str) -> bool {
 
 /// A share in percent, with one digit below 10 %: `6.1 %`, `18 %`.
 pub fn percent(share: f64) -> String {
-    match share {
+    let text = match share {
         // Rounded, nearly nothing and nearly all would look like nothing and all.
         _ if share > 0.0 && share < 0.0005 => "less than 0.1 %".to_owned(),
         _ if (0.9995..1.0).contains(&share) => "over 99.9 %".to_owned(),
         _ if share.abs() < 0.0995 || (0.995..1.0).contains(&share) => format!("{:.1} %", 100.0 * share),
         _ => format!("{:.0} %", 100.0 * share),
-    }
+    };
+    with_minus(&text)
 }
 
 /// `a`, `a and b`, `a, b and c`.
@@ -154,11 +161,11 @@ mod tests {
 
     #[test]
     fn figures_read_well() {
-        assert_eq!(figure(-0.00612, "Nm"), "-6.12 mNm");
+        assert_eq!(figure(-0.00612, "Nm"), "−6.12 mNm");
         assert_eq!(figure(95.106, "kg"), "95.1 kg");
         assert_eq!(figure(1.17e-4, "rad²"), "117 mrad²");
         assert_eq!(figure(0.226, "1"), "0.23");
-        assert_eq!(figure(-0.00123, "kg·m²"), "-0.00123 kg·m²");
+        assert_eq!(figure(-0.00123, "kg·m²"), "−0.00123 kg·m²");
         assert_eq!(percent(0.184), "18 %");
         assert_eq!(list(&["a", "b", "c"]), "a, b and c");
     }
@@ -172,7 +179,7 @@ mod tests {
         assert_eq!(Scale::of_all(&[3.24e-3, 6.31e-4], "Nm").figure(6.31e-4), "0.631 mNm");
         assert_eq!(Scale::of_all(&[1.3, 4.68e-3], "Nm").figure(1.3), "1300 mNm");
         assert_eq!(Scale::of(1.0, "Nm").figure(4e-4), "4.00·10⁻⁴ Nm");
-        assert_eq!([small(9.994e-4), small(9.996e-4), small(-1.2e-12)], ["9.99·10⁻⁴", "0.00100", "-1.20·10⁻¹²"]);
+        assert_eq!([small(9.994e-4), small(9.996e-4), small(-1.2e-12)], ["9.99·10⁻⁴", "0.00100", "−1.20·10⁻¹²"]);
         assert_eq!(scientific(2.5e9, 3), "2.500·10⁹");
     }
 

@@ -150,7 +150,7 @@ fn a_model_says_where_it_is_an_extrapolation() {
     assert_eq!(evaluate(&model, &light).unwrap().notes, Vec::<String>::new());
     let notes = evaluate(&model, &bench(4).run_at(&[0.0, 4.0, 12.0], dry)).unwrap().notes;
     assert!(
-        notes.len() == 1 && notes[0].contains("outside the load that the model was fitted to (-4.00 Nm"),
+        notes.len() == 1 && notes[0].contains("outside the load that the model was fitted to (−4.00 Nm"),
         "{notes:?}"
     );
 }

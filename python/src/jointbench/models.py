@@ -2375,7 +2375,10 @@ class Suggestion(BaseModel):
     """One missing effect with its evidence."""
 
     bic_change: float | None = None
-    """Change of the Bayesian information criterion over independent blocks; a negative value supports the effect."""
+    """
+    Change of the Bayesian information criterion by this effect in the complete model, counted over independent
+    blocks; a negative value supports the effect.
+    """
 
     confounded_with: list[str]
     """Effects that explain this data as well."""

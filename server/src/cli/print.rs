@@ -184,7 +184,7 @@ pub fn parameters(parameters: &[Parameter]) {
     let unit = rows.iter().map(|row| row.unit.chars().count()).max().unwrap_or(0);
     println!("{:effect$}  {:name$}  {:>11}  {:unit$}  95 % interval", "effect", "parameter", "value", "unit");
     for (parameter, Cells { value, unit: prefixed, interval }) in parameters.iter().zip(rows) {
-        let interval = if parameter.state == ParameterState::Fixed { "fixed".to_owned() } else { interval };
+        let interval = fixed_or(parameter, interval);
         println!(
             "{:effect$}  {:name$}  {value:>11}  {prefixed:unit$}  {interval}{}",
             parameter.effect,
@@ -192,6 +192,11 @@ pub fn parameters(parameters: &[Parameter]) {
             state(parameter)
         );
     }
+}
+
+/// A fixed value has no interval.
+fn fixed_or(parameter: &Parameter, interval: String) -> String {
+    if parameter.state == ParameterState::Fixed { "fixed".to_owned() } else { interval }
 }
 
 /// The state of a parameter in words.
@@ -225,8 +230,8 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     }
     println!();
     let several = suggestions.len() > 1;
-    let with_all = if several { " (parameters with all of these in the model)" } else { "" };
-    println!("missing effects{with_all}; ΔBIC of each effect alone, below 0 favours it:");
+    let with_all = if several { " (parameters and ΔBIC with all of these in the model)" } else { "" };
+    println!("missing effects{with_all}; ΔBIC over independent blocks, below 0 favours an effect:");
     for (i, suggestion) in suggestions.iter().enumerate() {
         let (share, rms) = (suggestion.error_reduction, suggestion.validation_rms);
         // Effects of reversals and ramps are evaluated there, and do not change the error in steady state.
@@ -259,7 +264,7 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         println!("     {}", suggestion.why);
         for parameter in &suggestion.parameters {
             let Cells { value, unit, interval } = cells(parameter.value, parameter.ci95, &parameter.unit);
-            let state = state(parameter);
+            let (state, interval) = (state(parameter), fixed_or(parameter, interval));
             println!("     {} = {value} {unit}  [{interval}]{state}", parameter.name);
         }
     }
@@ -268,7 +273,7 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
 /// A number with its sign; zero has none.
 fn signed(value: f64, decimals: usize) -> String {
     let text = format!("{value:+.decimals$}");
-    if text.parse() == Ok(0.0) { text[1..].to_owned() } else { text }
+    if text.parse() == Ok(0.0) { text[1..].to_owned() } else { words::with_minus(&text) }
 }
 
 fn chance(suggestion: &Suggestion) -> String {
@@ -367,7 +372,7 @@ pub fn figure(value: f64) -> String {
     }
     let exponent = value.abs().log10().floor() as i32;
     match exponent {
-        -4..=5 => format!("{value:.*}", (DIGITS - exponent).max(0) as usize),
+        -4..=5 => words::with_minus(&format!("{value:.*}", (DIGITS - exponent).max(0) as usize)),
         _ => words::scientific(value, DIGITS as usize),
     }
 }
@@ -381,7 +386,7 @@ mod tests {
         for (value, text) in [
             (0.0, "0"),
             (0.030612, "0.03061"),
-            (-203.5034, "-203.5"),
+            (-203.5034, "−203.5"),
             (95108.9, "95109"),
             (1.512e-4, "0.0001512"),
             (8.2e-6, "8.200·10⁻⁶"),

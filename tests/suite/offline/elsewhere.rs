@@ -122,7 +122,7 @@ fn nothing_is_advised_before_contradicting_columns_are_mended() {
             code == Some(3) && broken.contains("Data problem: motor_current_a with the torque constant"),
             "{broken}"
         );
-        for advice in ["recommended next run", "define your own effect", "ΔBIC below 0"] {
+        for advice in ["recommended next run", "define your own effect", "ΔBIC over independent blocks"] {
             assert!(!broken.contains(advice), "{broken}");
         }
         let json = stdout(&run_in(folder.path(), &[verb, "run.csv", "--scale", "motor_current_a=1000", "--json"]));
@@ -171,5 +171,5 @@ fn advice_names_the_axis_of_the_summary_as_a_formula_does() {
     assert!(text.contains("it is largest over motor velocity and link torque, and a function"), "{text}");
     assert!(text.contains("as a formula of velocity and load with --own"), "{text}");
     let text = stdout(&run_in(folder.path(), &["diagnose", "run.csv"]));
-    assert!(text.contains("ΔBIC of each effect alone") && !text.contains("as a formula of"), "{text}");
+    assert!(text.contains("ΔBIC over independent blocks") && !text.contains("as a formula of"), "{text}");
 }

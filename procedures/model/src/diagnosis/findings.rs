@@ -1,5 +1,6 @@
 //! Findings of a selection: the evidence for each effect, the effects that were not found, and the verdict.
 
+use crate::diagnosis::evidence;
 use crate::diagnosis::excluded_effects::ExcludedEffects;
 use crate::effects::brake::hysteresis;
 use crate::preprocess::Prepared;
@@ -185,19 +186,34 @@ impl Findings<'_> {
         (1.0 - ratio.powi(2), words)
     }
 
-    /// Relative reduction of the validation error by an effect of the last model.
+    /// What an effect of the last model does in it.
     ///
     /// # Errors
     /// As [`crate::fit()`].
-    pub fn lost_without(&self, id: &str, options: &Options) -> Result<f64, ModelError> {
+    pub fn in_last_model(&self, id: &str, options: &Options) -> Result<InLastModel, ModelError> {
         let end = self.end();
         if let Some((part, without)) = parts_without(end, id).first() {
-            return Ok(1.0 - validation_rms(part) / validation_rms(without));
+            return Ok(InLastModel::of(without, part));
         }
         // Presliding is the friction direction of its model, not a term of it.
         let others = ModelSpec { effects: end.effects.clone(), ..end.spec.clone() }.without(id);
         let without = TwoStageModel::new(end.prepared, &others, options)?;
-        Ok(1.0 - self.end_validation_rms / validation_rms(&without.main))
+        Ok(InLastModel::of(&without.main, &end.main))
+    }
+}
+
+/// The last model compared with the same model without one effect.
+pub struct InLastModel {
+    /// Relative reduction of the validation error.
+    pub error_reduction: f64,
+    /// Change of the Bayesian information criterion.
+    pub bic_change: f64,
+}
+
+impl InLastModel {
+    fn of(without: &LinearModel, with: &LinearModel) -> Self {
+        let error_reduction = 1.0 - validation_rms(with) / validation_rms(without);
+        Self { error_reduction, bic_change: evidence::bic_change(without, with) }
     }
 }
 

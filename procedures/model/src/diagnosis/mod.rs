@@ -8,7 +8,7 @@ pub(crate) mod rejected;
 pub(crate) mod remaining;
 pub(crate) mod reversals;
 
-use crate::diagnosis::findings::Findings;
+use crate::diagnosis::findings::{Findings, InLastModel};
 use crate::fit::{report, written};
 use crate::inference::confounding;
 use crate::preprocess::{Prepared, prepare};
@@ -24,7 +24,7 @@ use crate::selection;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::path::SelectionStep;
 use crate::thresholds::MOST_EFFECTS;
-use crate::words::{Scale, figure, list, percent};
+use crate::words::{Scale, figure, list, percent, with_minus};
 use crate::{Fit, ModelError, ModelSpec, Options};
 use jointbench_instrument::RunTable;
 
@@ -204,7 +204,7 @@ fn suggestions(
         let instead = confounding::instead(scored.term.effect, found.start.prepared);
         let also: String = written.into_iter().chain(instead).map(|text| format!(" {text}.")).collect();
         let reduction_ci95 = (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten();
-        let together = found.lost_without(id, options)?;
+        let InLastModel { error_reduction: together, bic_change } = found.in_last_model(id, options)?;
         let figures = match (scored.is_without_form_error, fit.effects_rms, with.effects_rms) {
             // The nuisance terms hide what the effect does.
             (true, Some(before), Some(after)) => (1.0 - after / before, None),
@@ -220,7 +220,7 @@ fn suggestions(
             effects_rms: with.effects_rms,
             error_reduction: reduction,
             error_reduction_ci95: reduction_ci95,
-            bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),
+            bic_change: (!apart).then_some(bic_change),
             p_value: scored.p_value,
             evidence,
             p_at_most: found.decided.is_none() && scored.p_value * (options.flips + 1) as f64 <= 1.001,
@@ -299,13 +299,14 @@ fn tie(
         let other = TwoStageModel::new(prepared, &other, options)?;
         let correlation = evidence::correlation(&without.main, &with_effect.main, &other.main);
         Ok(format!(
-            "{} with {rival} (correlation of the contributions {correlation:.2})",
-            scale.figure(validation_rms(&other.main))
+            "{} with {rival} (correlation of the contributions {})",
+            scale.figure(validation_rms(&other.main)),
+            with_minus(&format!("{correlation:.2}"))
         ))
     };
     let instead = confounded_with.iter().map(instead).collect::<Result<Vec<String>, ModelError>>()?;
     Ok(format!(
-        " Confounded: in its place, the validation error is {} instead of {}.",
+        " This run cannot distinguish it from others: in its place, the validation error is {} instead of {}.",
         list(&instead),
         scale.figure(validation_rms(&with_effect.main))
     ))

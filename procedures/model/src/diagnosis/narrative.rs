@@ -91,14 +91,13 @@ fn gain(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion])
         _ => format!("; with all of them it is {with_all}"),
     };
     let alone = match (fit.effects_rms, first.effects_rms) {
-        (Some(before), Some(after)) if after > before => {
-            let [before, after] = [before, after].map(|rms| unit.figure(rms));
-            let how = if after == before { "no better".into() } else { format!("worse: {after} instead of {before}") };
-            format!(" (the effects alone, without the nuisance terms, predict {how})")
-        }
-        (Some(before), Some(after)) => {
-            format!(" (the effects alone, on the fitted data, from {} to {})", unit.figure(before), unit.figure(after))
-        }
+        (Some(before), Some(after)) => match [before, after].map(|rms| unit.figure(rms)) {
+            [was, is] if was == is => " (the effects alone, without the nuisance terms, predict no better)".into(),
+            [was, is] if after > before => {
+                format!(" (the effects alone, without the nuisance terms, predict worse: {is} instead of {was})")
+            }
+            [was, is] => format!(" (the effects alone, on the fitted data, from {was} to {is})"),
+        },
         _ => String::new(),
     };
     format!("Adding {effect} reduces the validation error from {error} to {with}{alone}{all}; {floor}.")
@@ -281,13 +280,19 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
         Verdict::Adequate if smallest > options.alpha => {
             (UndecidedReason::TooFewBlocks, format!("{blocks} independent blocks are too few for a significance test"))
         }
-        Verdict::Adequate if found.floor.rms.is_none() => (UndecidedReason::NoNoiseFloor, found.floor.source.clone()),
+        Verdict::Adequate if found.floor.rms.is_none() => (UndecidedReason::NoNoiseFloor, without_floor(found, fits)),
         Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => above_floor(found),
         Verdict::Adequate if worse.is_some() => (UndecidedReason::NuisanceTerms, worse?),
         Verdict::Adequate | Verdict::MissingEffect => (UndecidedReason::ImpossibleParameter, impossible(fits)?),
         Verdict::UnexplainedStructure => return None,
     };
     Some(Undecided { reason, text })
+}
+
+/// Without a noise floor, a reader can only compare the error with the signal.
+fn without_floor(found: &Findings, fits: &[&Fit]) -> String {
+    let share = fits.last().map_or_else(String::new, |fit| percent(fit.relative_error));
+    format!("{}; the residual is {share} of the measured RMS", found.floor.source)
 }
 
 /// An error above the noise floor that no test of structure explains.

@@ -111,13 +111,14 @@ fn found(terms: &LinearModel, residual: &[f64], motion: Motion) -> Vec<Parameter
         for (k, shape) in term.form.shape.iter().enumerate().filter(|(_, s)| !s.is_smooth()) {
             let value = term.shape[k];
             let jump = shape.search == ShapeSearch::Jump;
+            let is_known = shape.min == shape.max;
             out.push(Parameter {
                 effect: term.id().into(),
                 name: shape.name.into(),
                 value,
                 unit: motion.label(term.effect.info().unit(shape.name)),
                 ci95: if jump { changepoint::interval(terms, residual, i, k) } else { [value, value] },
-                state: ParameterState::Ok,
+                state: if is_known { ParameterState::Fixed } else { ParameterState::Ok },
                 note: None,
             });
         }

@@ -180,7 +180,8 @@ pub struct Suggestion {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
     pub error_reduction_ci95: Option<[f64; 2]>,
-    /// Change of the Bayesian information criterion over independent blocks; a negative value supports the effect.
+    /// Change of the Bayesian information criterion by this effect in the complete model, counted over independent
+    /// blocks; a negative value supports the effect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bic_change: Option<f64>,
     /// Relative reduction of the validation error by this effect in the complete model, compared with the complete

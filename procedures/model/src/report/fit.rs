@@ -101,7 +101,7 @@ pub enum ParameterState {
     Ok,
     /// The estimate is at a bound of the physically plausible range, or at a bound that a user has set.
     AtBound,
-    /// A user has fixed the value. It is no estimate, and its interval has no width.
+    /// A user or an earlier step has fixed the value. It is no estimate, and its interval has no width.
     Fixed,
     /// The whole interval of a coefficient is outside its physical range, or outside the range of the user.
     Impossible,

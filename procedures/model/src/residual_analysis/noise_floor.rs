@@ -1,11 +1,12 @@
 //! Noise floor (pure error) from pairs of rows of the same condition in different repeats.
 
+use crate::preprocess::friction::operating_points::OPERATING_POINTS;
 use crate::preprocess::independent_blocks::independent_blocks;
 use crate::preprocess::{Prepared, Problem};
 use crate::report::diagnosis::NoiseFloor;
 use crate::residual_analysis::events::Event;
 use crate::stats::jackknife::half_width_95;
-use crate::thresholds::FLOOR_INTERVAL_RATIO;
+use crate::thresholds::{FLOOR_INTERVAL_RATIO, PERIOD_CORRELATION};
 use crate::words::{figure, spoken};
 use jointbench_instrument::Kind;
 
@@ -40,6 +41,7 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool, event
             "residuals of the complete model in {} pairs of the same condition and phase in different repeats ({}{})",
             replicate_pairs.len(),
             match (prepared.about.repeats_from.as_str(), prepared.main.settled || prepared.kind == Kind::Friction) {
+                _ if prepared.about.segments_from == OPERATING_POINTS => "operating points of equal conditions",
                 ("column", _) => "repeats as numbered",
                 (_, true) => "repeats by the period of the motion",
                 (_, false) => "sections with the same profile",
@@ -127,7 +129,10 @@ fn unknown(prepared: &Prepared) -> String {
         }
         // A period is sought in the motion of friction runs only.
         false if prepared.kind == Kind::Friction => {
-            "no noise floor, because no repeats were found: no column numbers them, and the motion has no clear period"
+            return format!(
+                "no noise floor, because no repeats were found: no column numbers them, and no shift in time repeats the \
+                 velocity with a correlation above {PERIOD_CORRELATION}"
+            );
         }
         false => "no noise floor, because no column numbers repeats",
     };

@@ -26,6 +26,9 @@ fn alike(hidden: &[Invisible]) -> Vec<(&str, Vec<&str>)> {
     alike
 }
 
+const HEADING: &str =
+    "tested, not significant (95 % upper limits of the RMS contribution, part of which others may compensate)";
+
 /// Upper limits, the smallest first.
 fn silences(silent: &[Silent], unit: &str) -> Option<String> {
     let upper = |s: &Silent| s.upper_rms.unwrap_or(f64::INFINITY);
@@ -34,7 +37,7 @@ fn silences(silent: &[Silent], unit: &str) -> Option<String> {
     let within = |s: &Silent| s.sought.as_ref().map_or_else(String::new, |sought| format!(" ({sought})"));
     let sized = |s: &&Silent| format!("{} < {}{}", s.effect, words::figure(upper(s), unit), within(s));
     let sized: Vec<String> = silent.iter().map(sized).collect();
-    (!sized.is_empty()).then(|| format!("tested, not significant (upper limits, RMS, 95 %): {}", sized.join(", ")))
+    (!sized.is_empty()).then(|| format!("{HEADING}: {}", sized.join(", ")))
 }
 
 #[cfg(test)]
@@ -54,7 +57,8 @@ mod tests {
         let text = silences(&all, "Nm").unwrap();
         assert!(
             text.starts_with(
-                "tested, not significant (upper limits, RMS, 95 %): cogging < 120 µNm (1 to 60 waves a turn), gravity < 2.00 mNm, "
+                "tested, not significant (95 % upper limits of the RMS contribution, part of which others may compensate): \
+                 cogging < 120 µNm (1 to 60 waves a turn), gravity < 2.00 mNm, "
             ),
             "{text}"
         );

@@ -105,7 +105,7 @@ mod tests {
         let bin = |mean, half_width| MapBin { from: 2.0, to: 4.0, centre: 3.0, mean, half_width, rows: 9 };
         let drawn = |mean, half_width| line(&bin(mean, half_width), "Nm", 4e-3);
         let below = drawn(-2e-3, Some(5e-4));
-        assert!(below.contains('●') && below.contains("-2.00 mNm") && below.contains("±500 µNm"), "{below}");
+        assert!(below.contains('●') && below.contains("−2.00 mNm") && below.contains("±500 µNm"), "{below}");
         assert!(below.ends_with("          ██████████│"), "{below}");
         assert!(drawn(1e-3, Some(2e-3)).contains('○') && drawn(1e-3, None).contains('?'));
         assert!(drawn(4e-3, None).ends_with(&format!("│{}", "█".repeat(20))));

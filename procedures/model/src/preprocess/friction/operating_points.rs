@@ -11,6 +11,9 @@ use crate::view::Constants;
 use crate::{ModelError, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
 
+/// Source of the segments of such a table.
+pub const OPERATING_POINTS: &str = "operating points";
+
 /// Fewer points cannot separate two effects.
 const FEWEST: usize = 12;
 
@@ -54,7 +57,7 @@ pub fn prepare(run: &RunTable) -> Result<Prepared, ModelError> {
         samples: run.len(),
         rows: main.rows(),
         blocks: main.blocks,
-        segments_from: "operating points".into(),
+        segments_from: OPERATING_POINTS.into(),
         repeats_from: if repeats { "found" } else { "none" }.into(),
     };
     Ok(Prepared { warnings: doubt.into_iter().collect(), ..Prepared::of(run, main, about) })
