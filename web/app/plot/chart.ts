@@ -1,5 +1,6 @@
 import uPlot from 'uplot';
 import { spanOf } from '../figure/figure';
+import type { HoverPlace } from '../ui/hoverPlace';
 import { EMPTY_BACKDROP, type Backdrop, paintBackdrop, paintLimitNames } from './backdrop';
 import { colour } from './colour';
 import { type OnView, type View, gestures } from './gestures';
@@ -45,6 +46,12 @@ export interface ChartLayout {
 	log?: boolean;
 }
 
+/** The sample under the pointer. */
+export interface Pointed {
+	index: number;
+	place: HoverPlace;
+}
+
 export interface Chart {
 	draw: (data: uPlot.AlignedData, view: View | null, backdrop: Backdrop) => void;
 	/** Ranges of the axes. */
@@ -62,7 +69,7 @@ export function makeChart(
 	host: HTMLElement,
 	frame: ChartLayout,
 	onview: OnView,
-	pointed: (index: number | null) => void,
+	pointed: (point: Pointed | null) => void,
 	moved: OnCursors = () => {},
 ): Chart {
 	let view: View | null = null;
@@ -94,7 +101,7 @@ export function makeChart(
 				...gestureOptions.hooks,
 				draw: [(u) => paintLimitNames(u, backdrop), () => lines?.place()],
 				drawAxes: [(u) => paintBackdrop(u, backdrop)],
-				setCursor: [(u) => pointed(u.cursor.idx ?? null)],
+				setCursor: [(u) => pointed(pointedSample(u))],
 			},
 		},
 		[[], ...frame.curves.map(() => [])] as unknown as uPlot.AlignedData,
@@ -115,6 +122,11 @@ export function makeChart(
 		resize: (width, height) => plot.setSize({ width, height }),
 		destroy: () => plot.destroy(),
 	};
+}
+
+function pointedSample({ cursor: { idx, left, top }, over, width, height }: uPlot): Pointed | null {
+	if (idx == null) return null;
+	return { index: idx, place: { at: [over.offsetLeft + left!, over.offsetTop + top!], size: [width, height] } };
 }
 
 const shown = (scale: uPlot.Scale | undefined): View => [scale?.min ?? 0, scale?.max ?? 1];
