@@ -27,6 +27,7 @@ it.each([
 	['dT/dω', 'dT/dω'],
 	['β₀·sign ω', 'β_{0}·\\sign ω'],
 	['k_m·|−x|', 'k_{m}·|−x|'],
+	['n_±', 'n_{±}'],
 ])('%s', (text, said) => expect(say(parseFormula(text))).toBe(said));
 
 it('ends on whatever is written', () => {

@@ -10,7 +10,7 @@ export type Node =
 const FUNCTIONS = new Set(['sign', 'exp', 'tanh', 'cos', 'sin', 'sqrt', 'abs']);
 const RAISED = new Map([...'⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻'].map((letter, i) => [letter, '0123456789+−'[i]!]));
 const LOWERED = '₀₁₂₃₄₅₆₇₈₉';
-const TOKEN = /\s+|\d+(?:\.\d+)?|°?[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω\u0307]*|_[A-Za-z0-9α-ωΑ-Ω]+|[⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻]+|[₀₁₂₃₄₅₆₇₈₉]+|./gu;
+const TOKEN = /\s+|\d+(?:\.\d+)?|°?[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω\u0307]*|_[A-Za-z0-9α-ωΑ-Ω±]+|[⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻]+|[₀₁₂₃₄₅₆₇₈₉]+|./gu;
 const OPENS = new Map([
 	['(', ')'],
 	['[', ']'],
