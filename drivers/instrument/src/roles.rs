@@ -4,7 +4,7 @@
 //! or garbled reply a driver returns the fault. The caller may call [`Instrument::recover`] and try again.
 
 use crate::units::{Amperes, Celsius, NewtonMetres, RadPerSec, Radians, Seconds, Volts};
-use crate::{Clock, Fault};
+use crate::{Clock, Fault, LatencyCounter};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
@@ -38,6 +38,10 @@ pub trait Instrument: Send {
     /// nothing.
     fn record(&mut self, _file: Option<&Path>) -> Result<(), Fault> {
         Ok(())
+    }
+    /// Counts the exchanges on its link. `None`: an instrument without a wire.
+    fn latency_counter(&self) -> Option<Arc<LatencyCounter>> {
+        None
     }
 }
 

@@ -11,10 +11,12 @@ use super::wire::{MemoryRead, Order};
 use crate::config::BenchDescription;
 use crate::live::Hub;
 use crate::store::{SafetyRecord, Store};
+use jointbench_instrument::LinkLatency;
 use jointbench_model::export::OnlinePrediction;
 use jointbench_procedure::{BenchFacts, Demand, Plan, RunId, Safe};
 use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::histogram::Histogram;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
@@ -144,6 +146,11 @@ impl BenchHandle {
     /// Late set-points of all finished steps since the start of the daemon.
     pub fn late_ticks(&self) -> Counter {
         self.shared.late_ticks.clone()
+    }
+
+    /// Exchanges with each instrument since the start of the daemon, by its name.
+    pub fn link_latency(&self) -> BTreeMap<String, LinkLatency> {
+        lock(&self.shared.link_latency).clone()
     }
 
     /// `false` if the run was not active.

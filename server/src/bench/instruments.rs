@@ -5,7 +5,7 @@ use crate::view::{Instrument, InstrumentIdentity};
 use jiff::Timestamp;
 use jointbench_devices::{Asked, InstrumentSettings, Instruments, MockBench};
 use jointbench_instrument::roles::Identity;
-use jointbench_instrument::{Bench, Clock, SystemClock};
+use jointbench_instrument::{Bench, Clock, LatencyCounter, SystemClock};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -14,6 +14,8 @@ use std::sync::Arc;
 pub struct Opened {
     pub instruments: Vec<Instrument>,
     pub bench: Option<Bench>,
+    /// Counts the exchanges with each instrument of the bench, by its name.
+    pub links: Vec<(String, Arc<LatencyCounter>)>,
     /// The simulation runs until this is dropped.
     pub mock: Option<MockBench>,
 }
@@ -27,10 +29,17 @@ pub fn open(description: &BenchDescription) -> Opened {
             let bench = slots.into_bench(&description.name, description.is_simulated(), clock, limits, constants);
             let torsion = description.torsion;
             let power = mock.as_ref().map(MockBench::power_switch);
-            Opened { instruments, bench: bench.map(|bench| Bench { power, torsion, ..bench }), mock }
+            let mut bench = bench.map(|bench| Bench { power, torsion, ..bench });
+            let links = bench.as_mut().map(links).unwrap_or_default();
+            Opened { instruments, bench, links, mock }
         }
-        Err(fault) => Opened { instruments: vec![unreached(description, fault)], bench: None, mock: None },
+        Err(fault) => Opened { instruments: vec![unreached(description, fault)], ..Opened::default() },
     }
+}
+
+fn links(bench: &mut Bench) -> Vec<(String, Arc<LatencyCounter>)> {
+    let instruments = bench.instruments().into_iter();
+    instruments.filter_map(|one| Some((one.name().to_owned(), one.latency_counter()?))).collect()
 }
 
 /// The instruments that answer, independent of the others.

@@ -9,10 +9,11 @@ use crate::live::Hub;
 use crate::store::{SafetyRecord, Store};
 use crate::view::{BenchState, Blocked, LiveMessage};
 use jiff::Timestamp;
+use jointbench_instrument::LinkLatency;
 use jointbench_procedure::RunId;
 use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::histogram::{Histogram, exponential_buckets};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 use std::process::ChildStdin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -48,6 +49,8 @@ pub(super) struct Shared {
     pub commit_times: Histogram,
     /// Late set-points of all finished steps since the start of the daemon.
     pub late_ticks: Counter,
+    /// Exchanges with each instrument since the start of the daemon, by its name.
+    pub link_latency: Mutex<BTreeMap<String, LinkLatency>>,
     orders: Mutex<Option<ChildStdin>>,
     tickets: Mutex<HashMap<u64, oneshot::Sender<Option<MemoryRead>>>>,
     last_ticket: AtomicU64,
@@ -81,6 +84,7 @@ impl Shared {
             disk_changed: Notify::new(),
             commit_times: Histogram::new(exponential_buckets(0.001, 4.0, 8)),
             late_ticks: Counter::default(),
+            link_latency: Mutex::default(),
             orders: Mutex::default(),
             tickets: Mutex::default(),
             last_ticket: AtomicU64::new(0),

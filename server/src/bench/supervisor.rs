@@ -143,6 +143,10 @@ impl Supervisor {
                 shared.disk_is_full.store(full, Ordering::Release);
                 shared.disk_changed.notify_one();
             }
+            Report::LinkLatency(latencies) => {
+                let mut totals = lock(&shared.link_latency);
+                latencies.into_iter().for_each(|(name, more)| *totals.entry(name).or_default() += more);
+            }
             Report::Finished => {}
         }
     }

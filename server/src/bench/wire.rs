@@ -5,7 +5,7 @@ use super::health::ChannelInput;
 use crate::config::BenchDescription;
 use crate::store::{RunCommit, SafetyRecord};
 use crate::view::Instrument;
-use jointbench_instrument::Trace;
+use jointbench_instrument::{LinkLatency, Trace};
 use jointbench_procedure::{Demand, Plan, Progress, RunEnd, RunId, RunState, Safe};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -110,6 +110,8 @@ pub enum Report {
     },
     /// Whether the mock bench simulates a full disk.
     DiskFull(bool),
+    /// Exchanges with instruments since the last such report, by their names.
+    LinkLatency(Vec<(String, LinkLatency)>),
     /// The last message: the bench is secured.
     Finished,
 }

@@ -3,8 +3,10 @@
 use super::{Answer, Lab, LabError};
 use crate::bench::{BenchHandle, bench_view};
 use crate::view::{Bench, BenchState, NotificationTarget, word};
+use jointbench_instrument::LinkLatency;
 use prometheus_client::collector::Collector;
-use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric, text};
+use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric, MetricEncoder, NoLabelSet, text};
+use prometheus_client::metrics::MetricType;
 use prometheus_client::metrics::counter::ConstCounter;
 use prometheus_client::metrics::gauge::ConstGauge;
 use prometheus_client::registry::{Registry, Unit};
@@ -34,6 +36,7 @@ struct Metric {
 enum Values {
     Gauge(Vec<Sample<f64>>),
     Counter(Vec<Sample<u64>>),
+    Latency(Vec<Sample<LinkLatency>>),
 }
 
 #[derive(Default)]
@@ -63,9 +66,26 @@ impl Collector for Metrics {
                     let values = values.iter().map(|(labels, value)| (labels, ConstCounter::new(*value)));
                     encode(&mut encoder, name, help, unit.as_ref(), values)?;
                 }
+                Values::Latency(values) => {
+                    let values = values.iter().map(|(labels, value)| (labels, LatencyHistogram(value)));
+                    encode(&mut encoder, name, help, unit.as_ref(), values)?;
+                }
             }
         }
         Ok(())
+    }
+}
+
+struct LatencyHistogram<'a>(&'a LinkLatency);
+
+impl EncodeMetric for LatencyHistogram<'_> {
+    fn encode(&self, mut encoder: MetricEncoder) -> fmt::Result {
+        let LatencyHistogram(latency) = self;
+        encoder.encode_histogram::<NoLabelSet>(latency.sum_s(), latency.count(), &latency.buckets(), None)
+    }
+
+    fn metric_type(&self) -> MetricType {
+        MetricType::Histogram
     }
 }
 
@@ -92,6 +112,7 @@ impl Lab {
         let benches = &self.inner.benches;
         let views: Vec<Bench> = benches.iter().map(|bench| bench_view(bench.description(), &bench.status())).collect();
         bench_metrics(&mut metrics, &views);
+        link_metrics(&mut metrics, benches);
         self.queue_metrics(&mut metrics).await?;
         self.notification_metrics(&mut metrics).await?;
         self.archive_metrics(&mut metrics).await?;
@@ -150,6 +171,17 @@ impl Lab {
         }
         Ok(())
     }
+}
+
+/// An instrument without an exchange since the start of the daemon has none.
+fn link_metrics(metrics: &mut Metrics, benches: &[BenchHandle]) {
+    let links = benches.iter().flat_map(|bench| {
+        let labels = |instrument| vec![("bench", bench.name().to_owned()), ("instrument", instrument)];
+        bench.link_latency().into_iter().map(move |(instrument, latency)| (labels(instrument), latency))
+    });
+    let (name, unit) = ("link", Some(Unit::Seconds));
+    let help = "Link latency: duration of an exchange with an instrument, until its reply or its deadline";
+    metrics.0.push(Metric { name, help, unit, values: Values::Latency(links.collect()) });
 }
 
 /// What a bench counts since the start of the daemon.

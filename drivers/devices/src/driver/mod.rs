@@ -42,6 +42,10 @@ macro_rules! common_answers {
         fn record(&mut self, file: Option<&std::path::Path>) -> Result<(), Fault> {
             self.link.record(file)
         }
+
+        fn latency_counter(&self) -> Option<std::sync::Arc<jointbench_instrument::LatencyCounter>> {
+            Some(self.link.latency_counter())
+        }
     };
 }
 

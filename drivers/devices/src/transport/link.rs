@@ -3,9 +3,10 @@
 use super::codec::shown;
 use super::wire::Wire;
 use super::{Command, PortSettings, Recorder, Request, Scan};
-use jointbench_instrument::{Fault, FaultKind};
+use jointbench_instrument::{Fault, FaultKind, LatencyCounter};
 use std::io;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Silence after which a line counts as drained.
@@ -38,6 +39,8 @@ pub struct Link {
     /// The last exchange failed. The next replies get less than a deadline, so that a fault is known within two
     /// deadlines.
     missed: bool,
+    /// Durations of the exchanges.
+    latency: Arc<LatencyCounter>,
     outgoing: Vec<u8>,
     received: Vec<u8>,
 }
@@ -56,6 +59,7 @@ impl Link {
             recorder: None,
             trust: Trust::Stale,
             missed: false,
+            latency: Arc::default(),
             outgoing: Vec::with_capacity(256),
             received: Vec::with_capacity(256),
         };
@@ -92,6 +96,11 @@ impl Link {
     /// Longest time for a reply.
     pub fn deadline(&self) -> Duration {
         self.deadline
+    }
+
+    /// Counts every request that was sent, until its reply or its deadline.
+    pub fn latency_counter(&self) -> Arc<LatencyCounter> {
+        Arc::clone(&self.latency)
     }
 
     /// Replies belong to requests; otherwise the link must be drained and the instrument identified.
@@ -172,13 +181,20 @@ impl Link {
     }
 
     fn exchange<R: Request>(&mut self, request: &R, deadline: Instant) -> Result<R::Reply, FaultKind> {
-        self.next_chunk(Instant::now())?;
+        let start = Instant::now();
+        self.next_chunk(start)?;
         if !self.received.is_empty() {
             return Err(FaultKind::Garbled { what: format!("{} without a request", shown(&self.received)) });
         }
         self.outgoing.clear();
         request.encode(&mut self.outgoing);
         self.write(deadline)?;
+        let reply = self.reply(request, deadline);
+        self.latency.add(start.elapsed());
+        reply
+    }
+
+    fn reply<R: Request>(&mut self, request: &R, deadline: Instant) -> Result<R::Reply, FaultKind> {
         loop {
             match request.scan(&self.received) {
                 Scan::Packet { length } => {

@@ -39,6 +39,20 @@ fn a_silent_instrument_is_seen_and_comes_back() {
 }
 
 #[test]
+fn a_missed_deadline_counts_in_the_link_latency() {
+    let (mock, mut bench) = start(Transport::Inside);
+    let counter = bench.joint.latency_counter().unwrap();
+    counter.take();
+    ask(&mut bench, MockInstrument::Joint).unwrap();
+    let answered = counter.take();
+    mock.trouble(MockInstrument::Joint, Trouble::Silent);
+    ask(&mut bench, MockInstrument::Joint).unwrap_err();
+    let silent = counter.take();
+    assert!(answered.count() > 0 && answered.sum_s() < DEADLINE.as_secs_f64(), "{answered:?}");
+    assert!(silent.count() == 1 && silent.sum_s() >= DEADLINE.as_secs_f64(), "{silent:?}");
+}
+
+#[test]
 fn a_garbled_reply_is_no_reading() {
     check_passing(Trouble::Garbled, |kind| matches!(kind, FaultKind::Garbled { .. }));
 }

@@ -35,6 +35,7 @@ impl Owner {
         // An earlier worker may have been killed: the state of the bench is unknown until it is secured.
         self.secure();
         loop {
+            self.worker.report_latency(&self.opened.links);
             match commands.recv_timeout(IDLE_EVERY) {
                 Ok(Command::Run { run, plan, controls }) => self.run(run, &plan, &controls),
                 Ok(Command::Secure) => self.secure(),
@@ -116,7 +117,7 @@ impl Owner {
     }
 
     fn run(&mut self, run: RunId, plan: &Plan, controls: &Receiver<Demand>) {
-        let Opened { bench: Some(bench), mock, .. } = &mut self.opened else {
+        let Opened { bench: Some(bench), links, mock, .. } = &mut self.opened else {
             // The lab opens a bench before a run. A bench that has disconnected since has no instruments to command.
             tracing::error!(run.id = run, "run started on a bench that is not open");
             return not_begun(&self.worker, run);
@@ -125,7 +126,7 @@ impl Owner {
             return not_begun(&self.worker, run);
         }
         let stepped = self.description.pace().is_none();
-        let mut recorder = OutboxRecorder::new(&self.worker, mock.as_ref(), stepped, run);
+        let mut recorder = OutboxRecorder::new(&self.worker, links, mock.as_ref(), stepped, run);
         let end = jointbench_procedure::run(bench, plan, run, controls, &mut recorder);
         self.worker.run_is_over();
         self.worker.outbox.send(Report::Ended { run, end });

@@ -5,10 +5,13 @@ use super::worker_state::WorkerState;
 use crate::bench::wire::Report;
 use crate::store::RunCommit;
 use jointbench_devices::MockBench;
+use jointbench_instrument::LatencyCounter;
 use jointbench_procedure::{Commit, Live, Recorder, RecorderFault, RunId};
+use std::sync::Arc;
 
 pub(super) struct OutboxRecorder<'a> {
     worker: &'a WorkerState,
+    links: &'a [(String, Arc<LatencyCounter>)],
     /// Its simulated full disk applies to the store.
     mock: Option<&'a MockBench>,
     /// The bench clock is stepped: its time does not advance during a wait.
@@ -20,8 +23,14 @@ pub(super) struct OutboxRecorder<'a> {
 }
 
 impl<'a> OutboxRecorder<'a> {
-    pub fn new(worker: &'a WorkerState, mock: Option<&'a MockBench>, stepped: bool, run: RunId) -> Self {
-        Self { worker, mock, stepped, run, commits: 0, dropped: 0 }
+    pub fn new(
+        worker: &'a WorkerState,
+        links: &'a [(String, Arc<LatencyCounter>)],
+        mock: Option<&'a MockBench>,
+        stepped: bool,
+        run: RunId,
+    ) -> Self {
+        Self { worker, links, mock, stepped, run, commits: 0, dropped: 0 }
     }
 }
 
@@ -34,6 +43,7 @@ impl Recorder for OutboxRecorder<'_> {
         let Commit { state, events, mut rows, .. } = commit;
         let outbox = &self.worker.outbox;
         self.worker.report_disk(self.mock);
+        self.worker.report_latency(self.links);
         let backlog = outbox.backlog();
         let is_full = backlog.bytes >= MOST_BYTES;
         if is_full {

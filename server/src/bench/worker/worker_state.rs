@@ -4,6 +4,7 @@ use super::outbox::Outbox;
 use crate::bench::wire::Report;
 use crate::store::SafetyRecord;
 use jointbench_devices::MockBench;
+use jointbench_instrument::LatencyCounter;
 use jointbench_procedure::{Control, Demand, RunId};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -97,6 +98,16 @@ impl WorkerState {
         let full = mock.is_some_and(MockBench::disk_is_full);
         if self.disk_is_full.swap(full, Ordering::AcqRel) != full {
             self.outbox.send(Report::DiskFull(full));
+        }
+    }
+
+    /// Reports the exchanges since the last call.
+    pub fn report_latency(&self, links: &[(String, Arc<LatencyCounter>)]) {
+        let taken = links.iter().map(|(instrument, counter)| (instrument, counter.take()));
+        let used = taken.filter(|(_, latency)| latency.count() > 0);
+        let used: Vec<_> = used.map(|(instrument, latency)| (instrument.clone(), latency)).collect();
+        if !used.is_empty() {
+            self.outbox.send(Report::LinkLatency(used));
         }
     }
 
