@@ -5,9 +5,13 @@ import { type AxisScale, binMiddle, axisScale } from '../residual/axisScale';
 export const MARGIN = { left: 58, right: 6, top: 6, bottom: 38 };
 export const PALETTE = ['--map-lowest', '--map-low', '--map-mid', '--map-high', '--map-highest'];
 
+/** Room for a number below the map. */
+const TICK_PX = 44;
+
 export function mapAxes(map: ResidualMap, width: number, height: number): { x: AxisScale; y: AxisScale } {
+	const room = Math.max(2, Math.floor((width - MARGIN.left - MARGIN.right) / TICK_PX));
 	return {
-		x: axisScale(map.x, MARGIN.left, width - MARGIN.right, map.x.setPoints ? 14 : 8),
+		x: axisScale(map.x, MARGIN.left, width - MARGIN.right, Math.min(room, map.x.setPoints ? 14 : 8)),
 		y: axisScale(map.y, height - MARGIN.bottom, MARGIN.top, map.y.setPoints ? 9 : 5),
 	};
 }
