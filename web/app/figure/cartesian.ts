@@ -56,6 +56,9 @@ export function cartesianLayout(figure: Figure, width: number, height: number, f
 	};
 }
 
+/** Middle of a title along y: beside its axis, or lower if the title is longer than the axis. */
+export const titleMiddle = (title: string, { top, bottom }: Pick<PlotLayout, 'top' | 'bottom'>): number => Math.max((top + bottom) / 2, (title.length * LETTER) / 2);
+
 /** The smallest distance between two bars of one series. */
 function narrowest(bars: readonly Series[]): number {
 	let step = Infinity;

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { cartesianLayout } from './cartesian';
+import { cartesianLayout, titleMiddle } from './cartesian';
 import { type Figure, type Series, inDisplayUnits, magnification, magnified, reachOf, styles, tableOf } from './figure';
 import { glyphs, line, ribbon } from './paths';
 import { legendLayout } from './legendLayout';
@@ -109,6 +109,13 @@ it('puts entries of a legend below each other where they do not fit', () => {
 	const { entries, height } = legendLayout(['positive', 'negative', 'model'], 170);
 	expect(entries.map((one) => one.y > 0)).toEqual([false, false, true]);
 	expect(height).toBe(34);
+});
+
+it('a title longer than its axis begins at the top edge and is not cut', () => {
+	const frame = { top: 8, bottom: 180 };
+	expect(titleMiddle('torque [Nm]', frame)).toBe(94);
+	const long = 'Fraction of the manufacturing tolerance';
+	expect(titleMiddle(long, frame) - (long.length * 6.1) / 2).toBeCloseTo(0);
 });
 
 it('draws a small remainder larger, in all figures alike, and says how much', () => {
