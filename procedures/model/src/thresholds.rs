@@ -76,9 +76,8 @@ thresholds! {
     FLIPS = 499.0, "sign flips", "permutations of the max-T test (`Options::flips`)", "smallest p-value 0.002";
     DECISION_SHARE = 0.03, "fraction of squared validation error", "smallest fraction that an effect must take where samples are judged", "`evaluate FOLDER`: flat from 2 to 5 %";
     ONE_ERROR = 1.0, "standard errors", "the gain of an effect exceeds its own standard error over blocks so many times", "one-standard-error rule (Breiman and others 1984)";
-    MOST_NAMED = 4.0, "effects", "largest number of effects that are added where samples are judged", "presentation";
-    MOST_EFFECTS = 6.0, "effects", "largest number of effects that are added elsewhere", "presentation";
-    LEFT_SHARE = TENTH, "fraction of squared validation error", "a function of an axis, a line in time or neighbouring moments that take more are structure; a rejected effect that takes more is listed", "nulls of `evaluate FOLDER`";
+    MOST_EFFECTS = 4.0, "effects", "largest number of effects that a diagnosis adds", "presentation";
+    LEFT_SHARE = TENTH, "fraction of squared validation error", "a residual map, a function of an axis, a line in time or neighbouring moments that take more are structure; a rejected effect that takes more is listed", "nulls of `evaluate FOLDER`; well-explained runs in steps: at most 11 %";
     CLEAR_ERRORS = 3.0, "standard errors", "structure of samples, and what an alias misses, exceed their own error so many times", "nulls of `evaluate --part styles --first 300000 --family friction`";
     FORMULA_ERROR = 0.002, "fraction of squared error", "the formula of an effect may leave this fraction of its contribution (4.5 % in RMS; encoders none)", "`evaluate --part hidden,null`";
     UNMISTAKABLE_SHARE = HALF, "fraction of squared error", "an effect that removes this fraction of the residual is no remainder of another formula", "`evaluate --part hidden,null`";
@@ -89,18 +88,15 @@ thresholds! {
     STEP_OVER_READINGS = 2.0, "standard deviations", "a smaller step in time is scatter of the readings", "`--test legs`";
     TIE_ERRORS = 2.0, "standard errors", "two models, or two orders of a wave, tie where their validation errors differ by less", "normal distribution, 5 %";
     SIMPLER_GAIN = 0.8, "fraction of gain", "a simpler effect is preferred where it has this fraction of the gain of the best", "`evaluate --part hidden,null`";
-    MOST_EXCHANGES = 2.0, "exchanges", "added effects that may be swapped for others", "`evaluate --part hidden,null`";
     BIASED_COEFFICIENT = 0.25, "fraction of coefficient", "a coefficient that moves by this fraction with an effect is biased without it", "mock joint A, seeds 17001 to 17012";
     BIAS_TOLERANCE = TENTH, "fraction of squared column", "an effect with a smaller part outside of the model looks like the model, or is a function of the axis", "mock joint A, seeds 17001 to 17012";
     HYSTERESIS_SHARE = MOST, "fraction of squared error", "a hysteresis effect explains this fraction around reversals", "simulated joints: 83 to 98 %, nothing else above 63 %";
     DELAY_HALF_WIDTHS = 2.0, "half widths of the 95 % interval", "a delay is named where it is so far from zero", "519 joints without a delay: none; 13 with 9 to 14 ms: at least 2.6";
     DELAY_ROWS = 1.5, "rows", "a shorter delay is not named: the moment of a reading within its row is unknown", "seven mock runs, 0.9 to 1.1 rows late";
-    DELAY_POWER = 0.43, "half widths of the 95 % interval", "added to the delay threshold for 80 % power", "z₀.₈ / z₀.₉₇₅";
     DETECTION_POWER = 1.3, "standard errors", "added to the critical size for 80 % power (z₀.₈ = 0.84, the rest for the scatter of the standard error)", "`evaluate --part detectable`";
     NEEDED_WHERE_OPEN = TENTH, "increase of squared validation error", "an effect at a bound, or with unexplained structure, stays where removing it costs this much", "`evaluate --part hidden,null`";
     NEEDED_WITHOUT_SIZE = HALF, "increase of squared validation error", "the same for an effect whose coefficients could all be zero", "`evaluate --part hidden,null`";
     NEEDED_WITHOUT_SIZE_AND_SHAPE = 1.0, "increase of squared validation error", "the same for an effect whose size and shape are not determined", "`evaluate --part hidden,null`";
-    STRUCTURE_SHARE = 0.15, "fraction of squared validation error", "a residual map that removes more is structure", "null runs: at most 2 %; well-explained runs: 11 %";
     WHOLE_EXPLANATION = MOST, "fraction of what any function of the axis explains", "an effect that explains less is only a part of the missing effect", "`--test humps`";
     PERIODS_SEEN = 2.0, "periods", "a wave that was seen less often is a curve over the angle", "`--test waves`";
     WHOLE_CURVE = 0.98, "fraction of what any function of the axis explains", "the bound for such a wave", "`--test waves`";
@@ -110,7 +106,6 @@ thresholds! {
     EVENT_ERRORS = 7.0, "standard deviations", "a section whose mean exceeds the scatter of sections of its length by this, and half a count of the encoders, is an event", "`evaluate --part null`: none in 800 runs; readings that jump: 7.4 to 51";
     NEGLIGIBLE_RMS = 0.002, "fraction of RMS of the response", "a residual below this is negligible (encoders excepted)", "`evaluate --part hidden,null`";
     FLOOR_INTERVAL_RATIO = 3.0, "ratio", "a noise floor with a wider interval is only about", "`--test repeats`";
-    SCATTER_BAND = 0.3, "fraction of alpha", "error probability of a band that calls scatter structure", "220 null runs with coloured noise";
     AXIS_FUNCTION = NEARLY_ALL, "fraction of squared contribution", "a contribution that its map reproduces to this fraction is a function of the axis", "`--test humps`";
     OWN_SCATTER_SHARE = TENTH, "fraction of variance", "least fraction of the scatter of a score that counts as noise", "`evaluate --part detectable`";
     FOLD_COVERAGE = 0.05, "fraction of squared column", "folds without a fold that hold less do not decide its coefficient", "`--test loops`";

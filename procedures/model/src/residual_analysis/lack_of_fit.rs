@@ -9,11 +9,11 @@ use crate::report::diagnosis::NoiseFloor;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::random_walk_offset::Ar1Offset;
 use crate::stats::grouped::within;
-use crate::thresholds::STRUCTURE_SHARE;
+use crate::thresholds::LEFT_SHARE;
 
 /// The axis over which structure remains.
 pub fn structured(maps: &Maps) -> Option<&str> {
-    maps.explained_share().filter(|(_, share)| *share > STRUCTURE_SHARE).map(|(axis, _)| axis)
+    maps.explained_share().filter(|(_, share)| *share > LEFT_SHARE).map(|(axis, _)| axis)
 }
 
 /// Whether the structure over an axis is only scatter between stretches of motion, such as an offset that drifts or
@@ -27,7 +27,7 @@ pub fn is_scatter(
     options: &Options,
 ) -> bool {
     let surely = floor.repeatable_ci95.is_none_or(|[least, _]| least > 0.0);
-    let recurs = floor.repeatable_share.is_none_or(|share| share > STRUCTURE_SHARE) && surely;
+    let recurs = floor.repeatable_share.is_none_or(|share| share > LEFT_SHARE) && surely;
     if structured(maps).is_none() || recurs {
         return false;
     }

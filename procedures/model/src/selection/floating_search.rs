@@ -14,12 +14,15 @@ use crate::residual_analysis::undersampled_harmonics;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use crate::selection::equivalence::{encompasses, is_tie};
 use crate::selection::forward_step::{ScoredCandidate, step};
-use crate::thresholds::{MOST_EXCHANGES, SIMPLER_GAIN};
+use crate::thresholds::SIMPLER_GAIN;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Effects of a model with their forms and nonlinear parameters.
 type CachedTerms<'p> = Vec<(&'p dyn Effect, Arc<Form<'p>>, Vec<f64>)>;
+
+/// Tries to exchange effects. The search ends with any number; two are as good as ten.
+const MOST_EXCHANGES: usize = 2;
 
 pub enum Move<'p> {
     Added { scored: Box<ScoredCandidate<'p>>, ties: Vec<&'p str> },
@@ -92,7 +95,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
             rejected_losses: Vec::new(),
             last: None,
             left: most,
-            exchanges: MOST_EXCHANGES as usize,
+            exchanges: MOST_EXCHANGES,
             pending_swap: None,
             cache: Mutex::default(),
             unmodelled_structure: false,

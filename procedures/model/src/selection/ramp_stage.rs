@@ -14,7 +14,10 @@ use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::reasons::AdditionReason;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::forward_step::ScoredCandidate;
-use crate::thresholds::{DELAY_HALF_WIDTHS, DELAY_POWER, DELAY_ROWS};
+use crate::thresholds::{DELAY_HALF_WIDTHS, DELAY_ROWS};
+
+/// Half widths of a 95 % interval that are added to a critical size for 80 % power: z₀.₈ / z₀.₉₇₅.
+const POWER_80: f64 = 0.43;
 
 /// The delay that this run supports, with the model that includes it. Its coefficient divided by the inertia is the
 /// delay time.
@@ -42,7 +45,7 @@ pub fn detection_limit<'p>(now: &TwoStageModel<'p>) -> Option<DetectionLimit<'p>
     let Delayed { effect, after, half, .. } = with_delay(now)?;
     let column = after.moving.as_ref()?.terms.iter().find(|term| term.id() == effect)?.columns.first()?.clone();
     let rms = (dot(&column, &column) / column.len() as f64).sqrt();
-    Some(DetectionLimit { effect, detectable_rms: (DELAY_HALF_WIDTHS + DELAY_POWER) * half * rms })
+    Some(DetectionLimit { effect, detectable_rms: (DELAY_HALF_WIDTHS + POWER_80) * half * rms })
 }
 
 /// A model with a delay on its ramps: the delay, its coefficient with half the 95 % interval, and its time.

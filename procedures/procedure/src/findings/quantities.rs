@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn a_narrow_interval_is_given_by_its_half_width() {
-        assert_eq!(bounded((1.2e-4, [-2e-4, 4.4e-4]), "Nm"), "120 µNm [-200 … 440]");
+        assert_eq!(bounded((1.2e-4, [-2e-4, 4.4e-4]), "Nm"), "120 µNm [−200 … 440]");
         assert_eq!(bounded((0.779_41, [0.779_39, 0.779_43]), "Nm"), "779 mNm ± 20.0 µNm");
     }
 }

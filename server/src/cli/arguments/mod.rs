@@ -330,7 +330,7 @@ pub struct Discover {
     #[command(flatten)]
     pub run: Measured,
     /// Maximum number of effects to add
-    #[arg(long, value_name = "N", default_value_t = 6)]
+    #[arg(long, value_name = "N", default_value_t = 4)]
     pub max_effects: usize,
 }
 

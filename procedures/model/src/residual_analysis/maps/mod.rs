@@ -6,7 +6,7 @@ pub(crate) mod public;
 pub(crate) mod regions;
 
 use crate::residual_analysis::maps::regions::ReferenceMagnitude;
-use crate::thresholds::{AXIS_FUNCTION, SCATTER_BAND};
+use crate::thresholds::AXIS_FUNCTION;
 
 use crate::Options;
 use crate::preprocess::independent_blocks::independent_blocks;
@@ -109,8 +109,7 @@ impl Maps {
     }
 
     fn map_is_significant(&self, map: &Map) -> bool {
-        let half_width = |cell: &Cell| cell.half_width(SCATTER_BAND * self.alpha, self.cells);
-        map.cells.iter().any(|cell| half_width(cell).is_some_and(|half_width| cell.mean.abs() > half_width))
+        map.cells.iter().any(|cell| self.half_width(cell).is_some_and(|half_width| cell.mean.abs() > half_width))
     }
 
     /// RMS of the block means, weighted by their rows.

@@ -30,7 +30,7 @@ use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::path::{Path, SelectionStep};
 use crate::selection::refused::{EvidenceResult, Refused};
-use crate::thresholds::{LEFT_SHARE, MOST_NAMED, SIMPLER_GAIN};
+use crate::thresholds::{LEFT_SHARE, SIMPLER_GAIN};
 use crate::{ModelError, ModelSpec, Options};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -60,7 +60,7 @@ pub fn search<'p>(
         {
             search.path.push(step);
         }
-        refused = search.grow(most.min(MOST_NAMED as usize))?;
+        refused = search.grow(most)?;
         search.replace()?;
     }
     while let Some(id) = insignificant(search.path.end(), spec) {
