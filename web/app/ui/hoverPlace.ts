@@ -9,7 +9,8 @@ export interface HoverPlace {
 /** Style of a label beside the pointer, on the side with more room: it wraps there and is never cut. */
 export function hoverStyle({ at: [x, y], size: [width, height] }: HoverPlace): string {
 	const [isLeft, isAbove] = [x > width / 2, y > height / 2];
-	const across = isLeft ? `right:${width - x + GAP_PX}px` : `left:${x + GAP_PX}px`;
-	const down = isAbove ? `bottom:${height - y + GAP_PX}px` : `top:${y + GAP_PX}px`;
-	return `${across};${down};max-width:${Math.max(x, width - x) - GAP_PX}px`;
+	const [across, right] = isLeft ? ['right', x - width - GAP_PX] : ['left', x + GAP_PX];
+	const [down, below] = isAbove ? ['bottom', y - height - GAP_PX] : ['top', y + GAP_PX];
+	// A translation follows the pointer without a new layout.
+	return `${across}:0;${down}:0;translate:${right}px ${below}px;max-width:${Math.max(x, width - x) - GAP_PX}px`;
 }
