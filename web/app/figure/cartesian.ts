@@ -56,7 +56,7 @@ export function cartesianLayout(figure: Figure, width: number, height: number, f
 	};
 }
 
-/** Middle of a title along y: beside its axis, or lower if the title is longer than the axis. */
+/** Middle of a title along y: that of its axis, or lower, so that a longer title begins at the top edge. */
 export const titleMiddle = (title: string, { top, bottom }: Pick<PlotLayout, 'top' | 'bottom'>): number => Math.max((top + bottom) / 2, (title.length * LETTER) / 2);
 
 /** The smallest distance between two bars of one series. */

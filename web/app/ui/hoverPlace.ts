@@ -6,7 +6,7 @@ export interface HoverPlace {
 	size: readonly [width: number, height: number];
 }
 
-/** Style of a label beside the pointer, on the side with more room: it wraps there and is never cut. */
+/** Style of a label at the pointer, on the side with more room: it wraps there and is never cut. */
 export function hoverStyle({ at: [x, y], size: [width, height] }: HoverPlace): string {
 	const [isLeft, isAbove] = [x > width / 2, y > height / 2];
 	const [across, right] = isLeft ? ['right', x - width - GAP_PX] : ['left', x + GAP_PX];

@@ -280,7 +280,9 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
         Verdict::Adequate if smallest > options.alpha => {
             (UndecidedReason::TooFewBlocks, format!("{blocks} independent blocks are too few for a significance test"))
         }
-        Verdict::Adequate if found.floor.rms.is_none() => (UndecidedReason::NoNoiseFloor, without_floor(found, fits)),
+        Verdict::Adequate if found.floor.rms.is_none() => {
+            (UndecidedReason::NoNoiseFloor, without_floor(found, fits.last()?))
+        }
         Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => above_floor(found),
         Verdict::Adequate if worse.is_some() => (UndecidedReason::NuisanceTerms, worse?),
         Verdict::Adequate | Verdict::MissingEffect => (UndecidedReason::ImpossibleParameter, impossible(fits)?),
@@ -290,9 +292,8 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
 }
 
 /// Without a noise floor, a reader can only compare the error with the signal.
-fn without_floor(found: &Findings, fits: &[&Fit]) -> String {
-    let share = fits.last().map_or_else(String::new, |fit| percent(fit.relative_error));
-    format!("{}; the residual is {share} of the measured RMS", found.floor.source)
+fn without_floor(found: &Findings, end: &Fit) -> String {
+    format!("{}; the residual is {} of the measured RMS", found.floor.source, percent(end.relative_error))
 }
 
 /// An error above the noise floor that no test of structure explains.

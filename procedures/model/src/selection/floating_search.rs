@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Effects of a model with their forms and nonlinear parameters.
 type CachedTerms<'p> = Vec<(&'p dyn Effect, Arc<Form<'p>>, Vec<f64>)>;
 
-/// Tries to exchange effects. The search ends with any number; two are as good as ten.
+/// Largest number of exchanges of effects, so that the search ends. With ten, simulated runs have the same results.
 const MOST_EXCHANGES: usize = 2;
 
 pub enum Move<'p> {

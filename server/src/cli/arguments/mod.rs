@@ -23,6 +23,7 @@ use super::ports::Ports;
 use super::user_effects::OwnEffects;
 use clap::{Args, Parser, Subcommand};
 use jointbench_instrument::Kind;
+use jointbench_model::thresholds::MOST_EFFECTS;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -330,7 +331,7 @@ pub struct Discover {
     #[command(flatten)]
     pub run: Measured,
     /// Maximum number of effects to add
-    #[arg(long, value_name = "N", default_value_t = 4)]
+    #[arg(long, value_name = "N", default_value_t = MOST_EFFECTS as usize)]
     pub max_effects: usize,
 }
 
