@@ -19,13 +19,26 @@ pub fn prefix(size: f64, unit: &str) -> (f64, &'static str) {
 }
 
 /// Factor and prefix of a value of this size; none for a unit without prefixes.
-pub fn prefix_of(size: f64, unit: &str) -> (f64, &'static str) {
+fn prefix_of(size: f64, unit: &str) -> (f64, &'static str) {
     if is_prefixed(unit) { prefix(size, unit) } else { (1.0, "") }
 }
 
 /// The text of a number with the typographic minus sign.
 pub fn with_minus(number: &str) -> String {
     number.replace('-', "−")
+}
+
+/// Replaces the hyphen before each separate number of a sentence by a minus sign; commands contain no such numbers.
+pub fn signed(text: &str) -> String {
+    let mut text_with_minus = String::with_capacity(text.len());
+    let mut before = ' ';
+    let mut letters = text.chars().peekable();
+    while let Some(letter) = letters.next() {
+        let is_sign = letter == '-' && " ([".contains(before) && letters.peek().is_some_and(char::is_ascii_digit);
+        text_with_minus.push(if is_sign { '−' } else { letter });
+        before = letter;
+    }
+    text_with_minus
 }
 
 /// A value with its unit, three digits, and a prefix: `6.1 mNm`. The unit `1` is omitted.

@@ -7,6 +7,7 @@ pub use quantity::{Direction, Quantity};
 
 use crate::recorder::RunId;
 use crate::state::RunState;
+use jointbench_model::words;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -98,7 +99,7 @@ impl Identification {
             }
         }
         // Commands are left unchanged, because users copy them.
-        let numbered = |text: String| signed(&text.replace("RUN", &run.to_string()));
+        let numbered = |text: String| words::signed(&text.replace("RUN", &run.to_string()));
         self.parts.iter_mut().for_each(|part| part.summary = numbered(std::mem::take(&mut part.summary)));
         let lead = self.lead.map(numbered);
         Self { summary: numbered(self.summary), lead, advice: self.advice.map(numbered), ..self }
@@ -129,19 +130,6 @@ fn introduction(verdict: Verdict, state: RunState, step: Option<&str>) -> String
         (_, false) => format!("The run is still in progress ({state}{at}). Result so far:"),
         (_, true) => format!("The run did not complete ({state}{at}). From the recorded part:"),
     }
-}
-
-/// Replaces the hyphen before each separate number by a minus sign; commands contain no such numbers.
-fn signed(text: &str) -> String {
-    let mut text_with_minus = String::with_capacity(text.len());
-    let mut before = ' ';
-    let mut letters = text.chars().peekable();
-    while let Some(letter) = letters.next() {
-        let is_sign = letter == '-' && " ([".contains(before) && letters.peek().is_some_and(char::is_ascii_digit);
-        text_with_minus.push(if is_sign { '−' } else { letter });
-        before = letter;
-    }
-    text_with_minus
 }
 
 /// A run whose parameters were determined by this one.

@@ -331,6 +331,9 @@ class EffectParameter(BaseModel):
     max: float | None = None
     min: float | None = None
     name: str
+    symbol: str
+    """Symbol as printed, with `_` before the index: `τ_c`. A parameter of a user definition has its name."""
+
     unit: str
 
 

@@ -7,8 +7,8 @@ use super::{Answer, Lab, LabError, Offer, next_run};
 use crate::job::Job;
 use crate::store::{ModelRecord, NewModel, Subject, packed, unpacked};
 use crate::view::{
-    self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ParameterSetting, ResidualSet, diagnosis_view, finite,
-    model_view, reread, residual_set, word,
+    self, Diagnosis, Effect, EffectDefinition, Exclusion, LiveMessage, Model, ParameterSetting, ResidualSet,
+    diagnosis_view, finite, model_view, reread, residual_set, word,
 };
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, UserEffect};
@@ -330,7 +330,8 @@ pub(super) fn find_kind(name: &str) -> Answer<Kind> {
         .ok_or_else(|| LabError::Invalid(format!("kind {name:?}: write friction, encoder, stiffness or brake")))
 }
 
-pub(super) fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
+pub(super) fn effect_view(info: &jointbench_model::EffectInfo, definition: Option<EffectDefinition>) -> Effect {
+    let symbol = |name: &str| if definition.is_some() { name.to_owned() } else { view::parameter_symbol(name) };
     Effect {
         id: info.id.to_owned(),
         kind: info.kind.to_string(),
@@ -344,6 +345,7 @@ pub(super) fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
             .iter()
             .map(|parameter| view::EffectParameter {
                 name: parameter.name.to_string(),
+                symbol: symbol(&parameter.name),
                 unit: parameter.unit.to_string(),
                 // An infinite bound is omitted.
                 min: finite(parameter.min),
@@ -351,7 +353,7 @@ pub(super) fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
             })
             .collect(),
         needs: info.needs.iter().map(|need| (*need).to_owned()).collect(),
-        definition: None,
+        definition,
         version: None,
         runs: Vec::new(),
     }

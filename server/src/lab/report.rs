@@ -32,8 +32,9 @@ impl Lab {
             None => None,
         };
         let residual_map = self.residual_map(&versions).await?;
-        let titles = self.effects(Some(&run.summary.kind)).await?.into_iter().map(|one| (one.id, one.title)).collect();
-        let report = Report { run, notes, identification, versions, diagnosis, residual_map, titles, short };
+        let effects = self.effects(Some(&run.summary.kind)).await?;
+        let effects = effects.into_iter().map(|effect| (effect.id.clone(), effect)).collect();
+        let report = Report { run, notes, identification, versions, diagnosis, residual_map, effects, short };
         tokio::task::spawn_blocking(move || report.html())
             .await
             .map_err(|fault| LabError::Internal(format!("the report of run {id} failed: {fault}")))
@@ -90,8 +91,6 @@ fn drawn_map(drawn: &[(i64, ResidualMaps)], region: Option<&Region>) -> Option<F
     let direction = region.filter(|_| named.is_some()).and_then(|region| region.direction.as_deref());
     let curves: Vec<(i64, Vec<[f64; 3]>)> =
         drawn.iter().map(|(id, maps)| (*id, curve(maps, &axis.axis, direction))).collect();
-    let extremes = curves.iter().flat_map(|(_, points)| points).map(|[_, mean, half]| mean.abs() + half);
-    let (factor, prefix) = words::prefix_of(extremes.fold(0.0, f64::max), &first.unit);
     let series: Vec<FigureSeries> = curves
         .iter()
         .enumerate()
@@ -102,8 +101,8 @@ fn drawn_map(drawn: &[(i64, ResidualMaps)], region: Option<&Region>) -> Option<F
             role: None,
             mark: Mark::Points,
             x: points.iter().map(|[x, ..]| *x).collect(),
-            y: points.iter().map(|[_, mean, _]| mean * factor).collect(),
-            band: points.iter().map(|[_, mean, half]| [(mean - half) * factor, (mean + half) * factor]).collect(),
+            y: points.iter().map(|[_, mean, _]| *mean).collect(),
+            band: points.iter().map(|[_, mean, half]| [mean - half, mean + half]).collect(),
         })
         .collect();
     let over = words::spoken(&axis.axis);
@@ -118,7 +117,7 @@ fn drawn_map(drawn: &[(i64, ResidualMaps)], region: Option<&Region>) -> Option<F
         title: format!("Residual map over {over}{way}"),
         form: FigureForm::Cartesian,
         x: figure_axis(&over, &axis.unit),
-        y: figure_axis("mean residual", &format!("{prefix}{}", first.unit)),
+        y: figure_axis("mean residual", &first.unit),
         series,
     })
 }
@@ -205,12 +204,12 @@ mod tests {
     fn the_map_shows_both_versions_over_the_axis_of_the_region() {
         let drawn = [(1, residual(8e-3)), (2, residual(1e-3))];
         let figure = drawn_map(&drawn, Some(&region("motor_velocity_rad_s", None))).unwrap();
-        assert_eq!((figure.title.as_str(), figure.y.unit.as_str()), ("Residual map over motor velocity", "mNm"));
+        assert_eq!((figure.title.as_str(), figure.y.unit.as_str()), ("Residual map over motor velocity", "Nm"));
         let labels: Vec<&str> = figure.series.iter().map(|one| one.label.as_str()).collect();
         assert_eq!(labels, ["before (model 1)", "after (model 2)"]);
         assert_eq!(figure.series[0].x, [1.0, 2.0], "a bin without a band is omitted");
         let [low, high] = figure.series[0].band[0];
-        assert!((low - 7.9).abs() < 1e-9 && (high - 8.1).abs() < 1e-9, "{low} {high}");
+        assert!((low - 7.9e-3).abs() < 1e-12 && (high - 8.1e-3).abs() < 1e-12, "{low} {high}");
     }
 
     #[test]
@@ -221,7 +220,7 @@ mod tests {
             assert!(figure.title.ends_with(&format!("{way} direction")), "{}", figure.title);
             figure.series[0].y.clone()
         };
-        assert_eq!((means("negative"), means("positive")), (vec![-8.0], vec![24.0]));
+        assert_eq!((means("negative"), means("positive")), (vec![-8e-3], vec![24e-3]));
     }
 
     #[test]

@@ -25,7 +25,7 @@ impl Lab {
         let uses = self.inner.store.effect_uses().await?;
         let mut all: Vec<Effect> = Vec::new();
         for kind in kinds {
-            all.extend(jointbench_model::effects(kind).iter().map(|effect| effect_view(&effect.info())));
+            all.extend(jointbench_model::effects(kind).iter().map(|effect| effect_view(&effect.info(), None)));
             for record in records.iter().filter(|record| record.kind == kind.name()) {
                 all.push(view(record, &uses)?);
             }
@@ -82,10 +82,7 @@ impl Lab {
         let warnings: Vec<String> = user_effect.unit_warnings(motion).iter().map(ToString::to_string).collect();
         let name = |p: &usize| user_effect.definition().parameters[*p].name.clone();
         let mut check = EffectCheck {
-            effect: Some(Effect {
-                definition: Some(user_effect.definition().clone()),
-                ..effect_view(&user_effect.info())
-            }),
+            effect: Some(effect_view(&user_effect.info(), Some(user_effect.definition().clone()))),
             mistake: None,
             doubt: (!warnings.is_empty()).then(|| warnings.join("; ")),
             linear: user_effect.formula().columns.iter().map(|(p, _)| name(p)).collect(),
@@ -280,10 +277,9 @@ fn read(record: &UserEffectRecord) -> Answer<UserEffect> {
 fn view(record: &UserEffectRecord, uses: &[EffectUse]) -> Answer<Effect> {
     let of_effect = uses.iter().filter(|one| one.kind == record.kind && one.effect == record.effect);
     Ok(Effect {
-        definition: Some(reread(&record.definition)?),
         version: Some(record.version),
         runs: of_effect.map(|one| one.run).collect(),
-        ..effect_view(&read(record)?.info())
+        ..effect_view(&read(record)?.info(), Some(reread(&record.definition)?))
     })
 }
 

@@ -1,6 +1,8 @@
 //! A figure of a result as SVG.
 
+use super::number::scale;
 use crate::view::{Figure, FigureForm, FigureSeries, Mark};
+use jointbench_model::words;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
@@ -42,6 +44,7 @@ pub fn small_svg(figure: &Figure) -> Option<String> {
 
 fn drawn(figure: &Figure, (width, height): (u32, u32)) -> Option<String> {
     let mut text = String::new();
+    let figure = &prefixed(figure);
     let polar = figure.form == FigureForm::Polar;
     let turned: Vec<FigureSeries>;
     let series = if polar {
@@ -67,6 +70,28 @@ fn drawn(figure: &Figure, (width, height): (u32, u32)) -> Option<String> {
     Some(text)
 }
 
+/// The figure in the prefixed units of its largest values. The angle of a polar figure keeps its unit.
+fn prefixed(figure: &Figure) -> Figure {
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
+    let width = largest(&mut figure.series.iter().flat_map(|s| s.x.iter().copied()));
+    let height = largest(&mut figure.series.iter().flat_map(reach));
+    let is_scaled = figure.form == FigureForm::Cartesian && figure.x.names.is_empty();
+    let x = if is_scaled { scale(width, &figure.x.unit) } else { (1.0, figure.x.unit.clone()) };
+    let y = scale(height, &figure.y.unit);
+    let mut figure = figure.clone();
+    for series in &mut figure.series {
+        series.x.iter_mut().for_each(|value| *value *= x.0);
+        series.y.iter_mut().chain(series.band.iter_mut().flatten()).for_each(|value| *value *= y.0);
+    }
+    (figure.x.unit, figure.y.unit) = (x.1, y.1);
+    figure
+}
+
+/// Values of a series along y, with their bands.
+fn reach(series: &FigureSeries) -> impl Iterator<Item = f64> {
+    series.y.iter().copied().chain(series.band.iter().flatten().copied())
+}
+
 /// Converts angle and radius to Cartesian coordinates. The centre is at twice the lowest radius, so that negative
 /// values remain visible.
 fn around(series: &FigureSeries, lowest: f64) -> FigureSeries {
@@ -82,7 +107,7 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 
 fn y_range(series: &[FigureSeries]) -> Option<(f64, f64)> {
     let bars = series.iter().any(|s| s.mark == Mark::Bars).then_some(0.0);
-    let values = series.iter().flat_map(|s| s.y.iter().copied().chain(s.band.iter().flatten().copied())).chain(bars);
+    let values = series.iter().flat_map(reach).chain(bars);
     let (low, high) = range(values)?;
     let air = match high - low {
         0.0 => 0.5 * high.abs().max(1.0),
@@ -178,9 +203,9 @@ fn number(value: f64, span: f64) -> String {
         "0".to_owned()
     } else if (1e-3..1e5).contains(&size) {
         let text = format!("{value:.4}");
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        words::with_minus(text.trim_end_matches('0').trim_end_matches('.'))
     } else {
-        format!("{value:.1e}")
+        words::scientific(value, 1)
     }
 }
 
@@ -281,6 +306,17 @@ mod tests {
             assert!(text.contains("there &amp; back") && !text.contains("NaN"));
             assert!(names.iter().all(|name| text.contains(name)), "{text}");
         }
+    }
+
+    #[test]
+    fn axes_have_prefixes_and_minus_signs() {
+        let mut small = figure(FigureForm::Cartesian, Mark::Points, &[]);
+        for series in &mut small.series {
+            series.y.iter_mut().chain(series.band.iter_mut().flatten()).for_each(|y| *y *= -0.01);
+        }
+        let text = svg(&small).unwrap();
+        assert!(text.contains("torque [mNm]") && text.contains("velocity [rad/s]"), "{text}");
+        assert!(text.contains("\n−20\n") && !text.contains("\n-"), "{text}");
     }
 
     #[test]

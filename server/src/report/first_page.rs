@@ -3,9 +3,11 @@
 
 use super::figure::small_svg;
 use super::number::with_interval;
+use super::pairs::moment;
+use super::symbol::printed;
 use super::{Report, limits, sign_off};
 use crate::view::{Figure, Identified, LimitCheck, Quantity, Shown, spoken};
-use jointbench_model::words::Scale;
+use jointbench_model::words::{self, Scale};
 use maud::{Markup, PreEscaped, html};
 
 /// Quantities that have room on the page. The appendix has all of them.
@@ -54,7 +56,7 @@ impl Report {
             ("Unit under test", line),
             ("Operator", signed.operator.map(str::to_owned)),
             ("Procedure", Some(summary.procedure_title().to_owned())),
-            ("Measured", Some(summary.created_at.clone())),
+            ("Measured", Some(moment(&summary.created_at))),
             ("End state", Some(format!("{}{safe}", summary.state))),
             ("Data of the file", file),
         ];
@@ -103,7 +105,7 @@ impl Report {
 fn verdict(result: &Shown) -> Markup {
     html! {
         p.verdict { strong { (word_of(result)) ". " } (shortened(&result.summary)) }
-        @for warning in &result.warnings { p { strong { "Warning. " } (warning) } }
+        @for warning in &result.warnings { p { strong { "Warning. " } (words::signed(warning)) } }
     }
 }
 
@@ -144,7 +146,7 @@ fn quantities(result: &Shown, most: usize) -> Markup {
                 @for quantity in shown {
                     @let (value, interval) = with_interval(quantity.value, quantity.ci95, &quantity.unit);
                     tr {
-                        td { (quantity.title) } td { (quantity.symbol) }
+                        td { (quantity.title) } td { (printed(&quantity.symbol)) }
                         td.figure { (value) } td.figure { (interval.unwrap_or_else(|| "–".to_owned())) }
                     }
                 }

@@ -5,6 +5,7 @@
 
 mod figure;
 mod first_page;
+mod heat_map;
 mod limits;
 mod model;
 mod number;
@@ -13,12 +14,13 @@ mod provenance;
 mod result;
 mod sign_off;
 mod style;
+mod symbol;
 
-use crate::view::{Diagnosis, Figure, Identification, Model, Run, spoken};
+use crate::view::{Diagnosis, Effect, Figure, Identification, Model, Run, spoken};
 pub use figure::svg;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub use number::{in_one_unit, with_interval};
-use pairs::plain;
+use pairs::{file_name, moment, plain};
 use serde::{Deserialize, Serialize};
 use sign_off::SignOff;
 use std::collections::HashMap;
@@ -36,8 +38,8 @@ pub struct Report {
     pub diagnosis: Option<Diagnosis>,
     /// Residual of the first and of the selected version.
     pub residual_map: Option<ResidualMap>,
-    /// Titles of the effects by id.
-    pub titles: HashMap<String, String>,
+    /// The effects of the run's kind by id.
+    pub effects: HashMap<String, Effect>,
     /// Whether the appendix is omitted.
     pub short: bool,
 }
@@ -53,7 +55,7 @@ pub struct ResidualMap {
 impl Report {
     pub fn html(&self) -> String {
         let summary = &self.run.summary;
-        let title = format!("Run {}: {} on {}", summary.id, summary.procedure_title(), summary.bench);
+        let title = format!("Run {}: {} on {}", summary.id, summary.procedure_title(), self.bench());
         html! {
             (DOCTYPE)
             html lang="en" {
@@ -91,7 +93,13 @@ impl Report {
 
     /// Name of the imported file.
     fn file(&self) -> Option<&str> {
-        self.run.provenance.get("imported")?.get("file")?.as_str()
+        self.run.provenance.get("imported")?.get("file")?.as_str().map(file_name)
+    }
+
+    /// Name of the bench; an imported run has its file there, possibly with the path.
+    fn bench(&self) -> &str {
+        let bench = &self.run.summary.bench;
+        if self.file().is_some() { file_name(bench) } else { bench }
     }
 
     fn course(&self) -> Markup {
@@ -100,20 +108,20 @@ impl Report {
             @if let Some(file) = self.file() {
                 p {
                     "Data of the file " b { (file) }
-                    @if let Some(source) = self.run.meta.get("source") { ", source: " (plain(source)) }
+                    @if let Some(source) = self.run.meta.get("source") { ", source: " (plain(source, "")) }
                     @if summary.simulated { "; according to its metadata from a simulated bench." }
                     @else { ", measured elsewhere; the bench is known from its metadata only." }
                 }
             }
             p.quiet {
-                (summary.created_at) " · " (summary.state) " · " (summary.rows) " samples"
+                (moment(&summary.created_at)) " · " (summary.state) " · " (summary.rows) " samples"
                 @if let Some(duration_s) = summary.duration_s { (format!(" in {duration_s:.1} s of bench time")) }
                 @if let Some(safe) = summary.safe { " · bench " (spoken(safe)) }
             }
             @if let Some(unit) = &summary.unit { p { "Unit under test " b { (unit.line()) } } }
             @if let Some(operator) = &summary.operator { p.quiet { "Operator " (operator) } }
             @if let Some(reason) = &summary.reason { p { (reason) } }
-            @if !self.notes.is_empty() { ul.quiet { @for note in &self.notes { li { (note) } } } }
+            @if !self.notes.is_empty() { ul.quiet { @for note in &self.notes { li { (self.sentence(note)) } } } }
         }
     }
 

@@ -2,7 +2,9 @@
 
 use super::Report;
 use super::figure::svg;
+use super::heat_map::heat_map;
 use super::number::with_interval;
+use super::symbol::printed;
 use crate::view::{Diagnosis, Model, ParameterState, Suggestion, Verdict};
 use jointbench_model::words::{self, Scale};
 use maud::{Markup, PreEscaped, html};
@@ -89,7 +91,7 @@ impl Report {
                     p.quiet { "Mean of measured − model in each bin. The 95 % bands are simultaneous over all bins of all axes." }
                 }
             }
-            @if let Some(why) = &map.why_not { p.quiet { "No residual map: " (why) } }
+            @if let Some(why) = &map.why_not { p.quiet { "No residual map: " (self.sentence(why)) } }
         }
     }
 
@@ -103,16 +105,20 @@ impl Report {
                     @let is_fixed = parameter.state == ParameterState::Fixed;
                     @let (value, interval) = with_interval(parameter.value, ends.filter(|_| !is_fixed), &parameter.unit);
                     tr {
-                        td { (self.titled(&parameter.effect)) } td { (parameter.name) }
+                        td { (self.titled(&parameter.effect)) } td { (printed(&self.symbol(&parameter.effect, &parameter.name))) }
                         td.figure { (value) } td.figure { @if is_fixed { "fixed" } @else { (interval.unwrap_or_default()) } }
                         td { @if parameter.state != ParameterState::Ok { (parameter.note.clone().unwrap_or_default()) } }
                     }
                 }
             }
             @for pair in &model.fit.trade_offs {
-                p.quiet { (format!("Parameter trade-off: {} and {} (correlation {:.2}).", pair.first, pair.second, pair.correlation)) }
+                @let correlation = words::with_minus(&format!("{:.2}", pair.correlation));
+                p.quiet {
+                    "Parameter trade-off: " (self.parameter(&pair.first)) " and " (self.parameter(&pair.second))
+                    " (correlation " (correlation) ")."
+                }
             }
-            @for note in &model.fit.notes { p.quiet { (note) } }
+            @for note in &model.fit.notes { p.quiet { (self.sentence(note)) } }
         }
     }
 
@@ -121,8 +127,22 @@ impl Report {
         effects.iter().map(|id| self.titled(id)).collect::<Vec<_>>().join(" + ")
     }
 
-    fn titled<'s>(&'s self, effect: &'s str) -> &'s str {
-        self.titles.get(effect).map_or(effect, String::as_str)
+    pub(super) fn titled<'s>(&'s self, effect: &'s str) -> &'s str {
+        self.effects.get(effect).map_or(effect, |known| known.title.as_str())
+    }
+
+    /// A parameter of a trade-off: `coulomb.tau_c` becomes Coulomb friction τ_c.
+    fn parameter(&self, id: &str) -> Markup {
+        let (effect, name) = id.split_once('.').unwrap_or(("", id));
+        html! { (self.titled(effect)) " " (printed(&self.symbol(effect, name))) }
+    }
+
+    fn symbol(&self, effect: &str, name: &str) -> String {
+        self.effects.get(effect).map_or_else(|| name.to_owned(), |effect| effect.symbol(name))
+    }
+
+    pub(super) fn sentence(&self, text: &str) -> String {
+        sentence(text, |id| self.effects.get(id).map(|effect| effect.title.as_str()))
     }
 
     fn change(&self, version: &Model) -> String {
@@ -157,18 +177,42 @@ impl Report {
         let is_advice = found.undecided.is_none() || found.verdict == Verdict::Adequate;
         html! {
             h2 { "Diagnosis" }
-            p.verdict { strong { (verdict) ". " } (found.summary) }
+            p.verdict { strong { (verdict) ". " } (self.sentence(&found.summary)) }
             @if !found.regions.is_empty() {
                 p { "Regions with significant residual:" }
-                ul { @for region in found.regions.iter().take(MOST_LISTED) { li { (region.sentence) } } }
+                ul { @for region in found.regions.iter().take(MOST_LISTED) { li { (self.sentence(&region.sentence)) } } }
             }
+            @if let Some((map, shown)) = found.structure.as_ref().zip(self.versions.last()) { (heat_map(map, &shown.fit.unit)) }
             @if self.suggestions().next().is_some() {
                 p { "Missing effects:" }
-                ul { @for suggestion in self.suggestions() { li { strong { (self.titled(&suggestion.effect)) } ": " (suggestion.why) } } }
+                ul { @for suggestion in self.suggestions() { li { strong { (self.titled(&suggestion.effect)) } ": " (self.sentence(&suggestion.why)) } } }
             }
-            @if let Some(experiment) = found.experiment.as_ref().filter(|_| is_advice) { p { "Recommended next run: " (experiment.why) } }
+            @if let Some(experiment) = found.experiment.as_ref().filter(|_| is_advice) { p { "Recommended next run: " (self.sentence(&experiment.why)) } }
         }
     }
+}
+
+/// A sentence with the titles of effects in place of their ids, and with minus signs. An id without an underscore is
+/// a common word. The keys of a file or command stay as they are written: `viscous_asymmetry=`.
+fn sentence<'t>(text: &str, title_of: impl Fn(&str) -> Option<&'t str>) -> String {
+    let is_word = |letter: char| letter.is_ascii_alphanumeric() || "_.".contains(letter);
+    let shown = |word: &str, after: &str| match word.trim_end_matches('.') {
+        id if id.contains('_') && !after.starts_with(['=', '(']) => {
+            title_of(id).map(|title| word.replacen(id, title, 1))
+        }
+        _ => None,
+    };
+    let mut with_titles = String::with_capacity(text.len());
+    let mut rest = text;
+    while !rest.is_empty() {
+        let end = rest.find(|letter| !is_word(letter)).unwrap_or(rest.len());
+        let (word, after) = rest.split_at(end);
+        with_titles += &shown(word, after).unwrap_or_else(|| word.to_owned());
+        let next = after.find(is_word).unwrap_or(after.len());
+        with_titles += &after[..next];
+        rest = &after[next..];
+    }
+    words::signed(&with_titles)
 }
 
 /// Relative change, such as `−92 %`.
@@ -184,7 +228,21 @@ fn bar(share: f64) -> Markup {
 
 #[cfg(test)]
 mod tests {
-    use super::change_of;
+    use super::{change_of, sentence};
+
+    #[test]
+    fn a_sentence_has_titles_and_minus_signs() {
+        let title_of = |id: &str| match id {
+            "load_linear" => Some("Load-dependent friction"),
+            "coulomb" => Some("Coulomb friction"),
+            _ => None,
+        };
+        let text =
+            "Missing effect: load_linear (with coulomb and load_linear) at -2.5 Nm: load_linear. Set load_linear=1.";
+        let shown = "Missing effect: Load-dependent friction (with coulomb and Load-dependent friction) at −2.5 Nm: \
+                     Load-dependent friction. Set load_linear=1.";
+        assert_eq!(sentence(text, title_of), shown);
+    }
 
     #[test]
     fn a_change_has_a_sign() {

@@ -1,10 +1,29 @@
-//! Numbers for print: as many digits as the interval justifies.
+//! Numbers for print: as many digits as the interval justifies, or the own digits of a setting.
 
 use jointbench_model::words;
 
-/// Whether this unit can have a prefix. In a table, currents, times and voltages have one too.
-fn takes_prefix(unit: &str) -> bool {
-    words::is_prefixed(unit) || ["A", "s", "V"].contains(&unit)
+/// Factor and prefixed unit for values of this size. In tables and figures, currents, times, voltages and powers have a
+/// prefix too. The unit `1` is omitted.
+pub(super) fn scale(size: f64, unit: &str) -> (f64, String) {
+    let unit = if unit == "1" { "" } else { unit };
+    let is_prefixed = words::is_prefixed(unit) || ["A", "s", "V", "W"].contains(&unit);
+    let (factor, prefix) = if is_prefixed { words::prefix(size, unit) } else { (1.0, "") };
+    (factor, format!("{prefix}{unit}"))
+}
+
+/// A setting with its own digits, at most seven: `40.6 mNm/A`. Whole numbers without a prefix are exact.
+pub(super) fn with_own_digits(value: f64, unit: &str) -> String {
+    let (factor, unit) = scale(value.abs(), unit);
+    let scaled = value * factor;
+    let rounded = if scaled.fract() == 0.0 { scaled } else { format!("{scaled:.6e}").parse().unwrap_or(scaled) };
+    let number = if (1e-4..1e15).contains(&rounded.abs()) || rounded == 0.0 {
+        words::with_minus(&rounded.to_string())
+    } else {
+        let text = format!("{rounded:e}");
+        let fraction = text.split_once('e').and_then(|(mantissa, _)| mantissa.split_once('.'));
+        words::scientific(rounded, fraction.map_or(0, |(_, digits)| digits.len()))
+    };
+    format!("{number} {unit}").trim_end().to_owned()
 }
 
 /// `32.14 mNm` and `31.90 … 32.38`: one unit, and two digits of the half-width.
@@ -15,32 +34,45 @@ pub fn with_interval(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String,
 
 /// The same with the unit apart, for a table.
 pub fn in_one_unit(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String, String, Option<String>) {
-    let unit = if unit == "1" { "" } else { unit };
-    let (factor, prefix) = if takes_prefix(unit) { words::prefix(value.abs(), unit) } else { (1.0, "") };
+    let (factor, unit) = scale(value.abs(), unit);
     let spread = ci95.map_or(value.abs() / 50.0, |[low, high]| (high - low) / 2.0) * factor;
-    let text = |value: f64| {
-        let (sign, size) = if value < 0.0 { ("−", -value) } else { ("", value) };
-        format!("{sign}{}", digits(size * factor, spread))
-    };
+    let largest = ci95.iter().flatten().fold(value.abs(), |largest, end| largest.max(end.abs())) * factor;
+    let text = |value: f64| words::with_minus(&digits(value * factor, spread, largest));
     let ends = ci95.map(|[low, high]| format!("{} … {}", text(low), text(high)));
-    (text(value), format!("{prefix}{unit}"), ends)
+    (text(value), unit, ends)
 }
 
-/// Rounds to two digits of `spread`.
-fn digits(value: f64, spread: f64) -> String {
+/// Rounds to two digits of `spread`, in the notation of the largest number of the row.
+fn digits(value: f64, spread: f64, largest: f64) -> String {
     if spread <= 0.0 || !spread.is_finite() {
         return if value == value.round() && value.abs() < 1e9 { format!("{value:.0}") } else { format!("{value:.4}") };
     }
     let places = (1.0 - spread.log10().floor()).clamp(0.0, 12.0) as usize;
-    match value.abs() {
-        size if size >= 1e9 || (size > 0.0 && size < 1e-4) => words::scientific(value, 3),
-        _ => format!("{value:.places$}"),
+    match value {
+        _ if (1e-4..1e9).contains(&largest) => format!("{value:.places$}"),
+        0.0 => "0".to_owned(),
+        _ => words::scientific(value, 3),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::with_interval;
+    use super::{with_interval, with_own_digits};
+
+    #[test]
+    fn a_setting_has_its_own_digits_and_a_prefix() {
+        for (value, unit, shown) in [
+            (0.0406, "Nm/A", "40.6 mNm/A"),
+            (1.2e-5, "kg·m²", "1.2·10⁻⁵ kg·m²"),
+            (10.0 * std::f64::consts::PI, "rad", "31.41593 rad"),
+            (-0.25, "A", "−250 mA"),
+            (250.0, "Hz", "250 Hz"),
+            (123_456_789_012.0, "", "123456789012"),
+            (0.0, "1", "0"),
+        ] {
+            assert_eq!(with_own_digits(value, unit), shown);
+        }
+    }
 
     #[test]
     fn an_interval_decides_the_digits() {
@@ -51,6 +83,8 @@ mod tests {
             (0.27, None, "", "0.2700", None),
             (11.0, None, "", "11.00", None),
             (1.2e-5, Some([1.1e-5, 1.3e-5]), "kg·m²", "1.200·10⁻⁵ kg·m²", Some("1.100·10⁻⁵ … 1.300·10⁻⁵")),
+            (1.2e-5, Some([0.0, 2.4e-5]), "kg·m²", "1.200·10⁻⁵ kg·m²", Some("0 … 2.400·10⁻⁵")),
+            (1.2e-4, Some([8e-5, 1.6e-4]), "kg·m²", "0.000120 kg·m²", Some("0.000080 … 0.000160")),
             (0.0, Some([0.0, 0.0]), "Nm", "0 Nm", Some("0 … 0")),
             (-2.0, Some([-2.5, 0.5]), "V", "−2.0 V", Some("−2.5 … 0.5")),
         ] {

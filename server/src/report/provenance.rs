@@ -1,7 +1,7 @@
 //! Origin of the figures: run, program, instruments and settings as tables.
 
 use super::Report;
-use super::pairs::{pairs, plain, title};
+use super::pairs::{fact, moment, plain, table};
 use jointbench_procedure::procedure;
 use maud::{Markup, html};
 use serde_json::{Map, Value};
@@ -24,7 +24,7 @@ const PLACED: [&str; 11] = [
 impl Report {
     pub(super) fn provenance(&self) -> Markup {
         let of = |name: &str| self.run.provenance.get(name);
-        let table = |name: &str| of(name).and_then(Value::as_object).filter(|values| !values.is_empty());
+        let group = |name: &str| of(name).and_then(Value::as_object).filter(|values| !values.is_empty());
         let text = of("bench_description").and_then(Value::as_str).filter(|text| !text.trim().is_empty());
         let others = self.run.provenance.iter().filter(|(name, _)| !PLACED.contains(&name.as_str()));
         let others: Map<String, Value> = others.map(|(name, value)| (name.clone(), value.clone())).collect();
@@ -33,16 +33,16 @@ impl Report {
             table.facts { @for (name, value) in self.origins() { tr { th { (name) } td { (value) } } } }
             (self.instruments())
             (section("Settings", &self.settings()))
-            (section("Test conditions", &self.run.meta))
-            @if let Some(constants) = table("constants") { (section("Constants of the bench", constants)) }
-            @if let Some(limits) = table("limits") { (section("Limits of the bench", limits)) }
-            @if let Some(source) = table("imported") { (section("Imported data", source)) }
-            (section("Further facts", &others))
+            (section("Test conditions", &self.facts(&self.run.meta)))
+            @if let Some(constants) = group("constants") { (section("Constants of the bench", &self.facts(constants))) }
+            @if let Some(limits) = group("limits") { (section("Limits of the bench", &self.facts(limits))) }
+            @if let Some(source) = group("imported") { (section("Imported data", &self.facts(source))) }
+            (section("Further facts", &self.facts(&others)))
             @if let Some(text) = text { h3 { "Bench description" } pre { (text) } }
             @if let Some(file) = of("acceptance_limits") {
                 h3 { "Limits file" }
-                p.quiet { "SHA-256 " (plain(&file["sha256"])) }
-                pre { (plain(&file["text"])) }
+                p.quiet { "SHA-256 " (plain(&file["sha256"], "")) }
+                pre { (plain(&file["text"], "")) }
             }
         }
     }
@@ -50,15 +50,16 @@ impl Report {
     /// Run, times, people and programs.
     fn origins(&self) -> Vec<(&'static str, String)> {
         let summary = &self.run.summary;
-        let of = |name: &str| self.run.provenance.get(name).map(plain).filter(|text| !text.is_empty());
+        let of =
+            |name: &str| self.run.provenance.get(name).map(|value| plain(value, "")).filter(|text| !text.is_empty());
         let mut facts = vec![
             ("Run", summary.id.to_string()),
-            ("Bench", format!("{} ({})", summary.bench, self.origin().to_lowercase())),
+            ("Bench", format!("{} ({})", self.bench(), self.origin().to_lowercase())),
             ("Procedure", format!("{} ({})", summary.procedure_title(), summary.procedure)),
-            ("Started", summary.created_at.clone()),
+            ("Started", moment(&summary.created_at)),
         ];
         let more = [
-            ("Finished", summary.finished_at.clone()),
+            ("Finished", summary.finished_at.as_deref().map(moment)),
             ("End state", Some(summary.state.to_string())),
             ("Samples", Some(format!("{} rows, {} channels", summary.rows, self.run.channels.len()))),
             ("Data integrity", Some("stored records have checksums, verified at each read".to_owned())),
@@ -74,7 +75,7 @@ impl Report {
 
     fn version(&self, id: i64, created_at: &str) -> String {
         let by = self.versions.last().and_then(|model| model.by.as_deref()).unwrap_or("an unknown user");
-        format!("{id}, fitted {created_at} by {by}")
+        format!("{id}, fitted {} by {by}", moment(created_at))
     }
 
     /// Identity and calibration of each instrument at the start of the run.
@@ -110,19 +111,18 @@ impl Report {
     }
 
     /// Parameters with their titles and units from the procedure.
-    fn settings(&self) -> Map<String, Value> {
+    fn settings(&self) -> Vec<(String, String)> {
         let schema = procedure(&self.run.summary.procedure).map_or(&[][..], |procedure| procedure.schema());
-        let label = |name: &String| match schema.iter().find(|parameter| parameter.name == name) {
-            Some(parameter) if parameter.unit.is_empty() => parameter.title.to_owned(),
-            Some(parameter) => format!("{} [{}]", parameter.title, parameter.unit),
-            None => title(name),
+        let setting = |(name, value): (&String, &Value)| {
+            let known = schema.iter().find(|parameter| parameter.name == name);
+            known.map_or_else(|| fact(name, value), |known| (known.title.to_owned(), plain(value, known.unit)))
         };
-        self.run.parameters.iter().map(|(name, value)| (label(name), value.clone())).collect()
+        self.run.parameters.iter().map(setting).collect()
     }
 }
 
-fn section(heading: &str, values: &Map<String, Value>) -> Markup {
-    html! { @if !values.is_empty() { h3 { (heading) } (pairs(values)) } }
+fn section(heading: &str, facts: &[(String, String)]) -> Markup {
+    html! { @if !facts.is_empty() { h3 { (heading) } (table(facts)) } }
 }
 
 /// The running program, with its revision if the build stated one.

@@ -4,7 +4,9 @@ use super::figure::svg;
 use super::first_page::word_of;
 use super::limits::limits;
 use super::number::with_interval;
+use super::symbol::printed;
 use crate::view::{Identification, command};
+use jointbench_model::words;
 use maud::{Markup, PreEscaped, html};
 
 /// Verdict, quantities and figures of the procedure.
@@ -14,7 +16,7 @@ pub fn result(found: &Identification) -> Markup {
     html! {
         h2 { "Result" }
         p.verdict { strong { (verdict) ". " } (result.summary) }
-        @for warning in &result.warnings { p.verdict { strong { "Warning. " } (warning) } }
+        @for warning in &result.warnings { p.verdict { strong { "Warning. " } (words::signed(warning)) } }
         @if let Some(advice) = &result.advice { p.verdict { "Next: " (advice) } }
         @if !result.quantities.is_empty() {
             table {
@@ -22,7 +24,7 @@ pub fn result(found: &Identification) -> Markup {
                 @for quantity in &result.quantities {
                     @let (value, interval) = with_interval(quantity.value, quantity.ci95, &quantity.unit);
                     tr {
-                        td { (quantity.title) } td { (quantity.symbol) }
+                        td { (quantity.title) } td { (printed(&quantity.symbol)) }
                         td.figure { (value) } td.figure { (interval.unwrap_or_else(|| "–".to_owned())) }
                         td.quiet { code { (quantity.name) } }
                     }

@@ -57,7 +57,7 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     assert!(policy.contains("style-src 'unsafe-inline'") && !policy.contains("script"), "{policy}");
     let page = answer.body_mut().read_to_string().unwrap();
     assert!(page.contains("SIMULATED") && page.contains("Friction on joint-a-mock"), "{page}");
-    assert!(page.contains("Dwell time at each speed [s]") && page.contains("torque constant [Nm/A]"), "{page}");
+    assert!(page.contains("<th>torque constant</th><td>40.6 mNm/A</td>"), "{page}");
 
     let body = json!({ "run": id, "effects": ["inertia", "load_transmission", "coulomb", "viscous"] });
     let (status, model) = daemon.post("/api/v1/models", &body.to_string());

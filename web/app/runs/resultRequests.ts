@@ -1,5 +1,4 @@
 import type { IdentifiedQuantity, RunSummary, Trends } from '../api/types';
-import { parameterSymbol } from '../format/symbol';
 
 export type Results = ReadonlyMap<number, readonly IdentifiedQuantity[]>;
 
@@ -44,7 +43,7 @@ export function ofModel({ procedure, model }: RunSummary): IdentifiedQuantity[] 
 	if (procedure !== 'import' || !model?.coulomb) return [];
 	const { name, unit, value, ci95 } = model.coulomb;
 	const ends = ci95.flatMap((end) => end ?? []);
-	return [{ name, symbol: parameterSymbol(name), title: 'Coulomb friction of the model', unit, value, ci95: ends.length === ci95.length ? ends : null }];
+	return [{ name, symbol: 'τ_c', title: 'Coulomb friction of the model', unit, value, ci95: ends.length === ci95.length ? ends : null }];
 }
 
 /** The quantities of a run in the list and in its file. */

@@ -2,7 +2,6 @@ import { api } from '../api/client';
 import { ApiError } from '../api/apiError';
 import type { RunSummary } from '../api/types';
 import { formatCount } from '../format/number';
-import { parameterSymbol } from '../format/symbol';
 import { lab } from '../state/lab.svelte';
 import { RELOAD_MS, reloadWhile, resource } from '../state/resource.svelte';
 import { router } from '../state/router.svelte';
@@ -59,7 +58,7 @@ export function quantityColumns(visible: () => readonly RunSummary[]) {
 	/** Of all runs that were visible, so that a column keeps its title. */
 	const available = $derived(trendQuantities([...known.values(), ...visible().map(ofModel)]));
 	const names = $derived(readQuantities(router.query.get('columns'), localStorage));
-	const shown = $derived(names.map((name) => available.find((one) => one.name === name) ?? { name, title: name, base_title: name, symbol: parameterSymbol(name) }));
+	const shown = $derived(names.map((name) => available.find((one) => one.name === name) ?? { name, title: name, base_title: name, symbol: name }));
 	return {
 		requested,
 		get shown() {

@@ -43,12 +43,7 @@ export class RunData {
 	readonly runResult = $derived(this.result.data?.quantities ?? []);
 
 	readonly titleOf = (effect: string): string => effectTitle(this.effects.data, effect);
-	/** The symbol of a parameter; a user's effect has the names of its formula. */
-	readonly symbolOf = ({ effect, name }: { effect: string; name: string }): string => (this.isOwn(effect) ? name : parameterSymbol(name));
-
-	private isOwn(effect: string): boolean {
-		return this.effects.data?.some((one) => one.id === effect && one.definition) ?? false;
-	}
+	readonly symbolOf = ({ effect, name }: { effect: string; name: string }): string => parameterSymbol(this.effects.data?.find((one) => one.id === effect), name);
 }
 
 function baselineOf(run: Run | undefined): string[] {
