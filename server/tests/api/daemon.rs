@@ -1,5 +1,6 @@
 //! A daemon for one test, with a free port and a temporary folder, and a client for it.
 
+use crate::specified;
 use jointbench::config::{BenchDescription, Notify};
 use jointbench::daemon::{Daemon, DaemonSettings, Network};
 use jointbench::job::Limits;
@@ -84,7 +85,7 @@ impl TestDaemon {
     }
 
     pub fn get_with(&self, path: &str, headers: &[(&str, &str)]) -> (u16, Value) {
-        read(self.get_raw_with(path, headers))
+        read("get", path, self.get_raw_with(path, headers))
     }
 
     pub fn get_raw(&self, path: &str) -> ureq::http::Response<ureq::Body> {
@@ -108,7 +109,7 @@ impl TestDaemon {
         for (name, value) in headers {
             request = request.header(*name, *value);
         }
-        read(request.call().unwrap())
+        read("delete", path, request.call().unwrap())
     }
 
     pub fn post(&self, path: &str, body: &str) -> (u16, Value) {
@@ -116,7 +117,7 @@ impl TestDaemon {
     }
 
     pub fn post_with(&self, path: &str, body: &[u8], headers: &[(&str, &str)]) -> (u16, Value) {
-        read(self.post_raw(path, body, headers))
+        read("post", path, self.post_raw(path, body, headers))
     }
 
     pub fn put_with(&self, path: &str, body: &[u8], headers: &[(&str, &str)]) -> (u16, Value) {
@@ -124,7 +125,7 @@ impl TestDaemon {
         for (name, value) in headers {
             request = request.header(*name, *value);
         }
-        read(request.send(body).unwrap())
+        read("put", path, request.send(body).unwrap())
     }
 
     pub fn post_raw(&self, path: &str, body: &[u8], headers: &[(&str, &str)]) -> ureq::http::Response<ureq::Body> {
@@ -164,10 +165,12 @@ impl Drop for TestDaemon {
     }
 }
 
-fn read(mut response: ureq::http::Response<ureq::Body>) -> (u16, Value) {
+fn read(method: &str, path: &str, mut response: ureq::http::Response<ureq::Body>) -> (u16, Value) {
     let status = response.status().as_u16();
     let text = response.body_mut().read_to_string().unwrap();
-    (status, serde_json::from_str(&text).unwrap_or(Value::String(text)))
+    let body = serde_json::from_str(&text).unwrap_or(Value::String(text));
+    specified::check(method, path, status, &body);
+    (status, body)
 }
 
 pub fn refused(settings: DaemonSettings) -> LabError {

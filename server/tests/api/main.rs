@@ -27,6 +27,7 @@ mod run_comparison;
 mod runs;
 mod safety;
 mod servo_memory;
+mod specified;
 mod spreadsheets;
 mod tables;
 mod tls;
