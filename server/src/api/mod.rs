@@ -9,6 +9,7 @@ mod calibrations;
 mod cancellation;
 mod dashboard;
 mod derived;
+mod examples;
 mod extract;
 mod headers;
 mod health;
@@ -247,7 +248,7 @@ fn sized(routes: OpenApiRouter<Lab>, limit: usize) -> OpenApiRouter<Lab> {
 
 /// The OpenAPI 3.1 description of all operations.
 pub fn specification() -> utoipa::openapi::OpenApi {
-    refusals::named(operations().to_openapi())
+    examples::added(refusals::named(operations().to_openapi()))
 }
 
 /// Everything that the daemon serves. `/api` never falls back to the dashboard.

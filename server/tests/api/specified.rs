@@ -1,6 +1,7 @@
 //! Responses and the specification: each response to the client of the tests is valid for the schema of its operation.
 
 use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
 static DOCUMENT: LazyLock<Value> =
@@ -113,4 +114,27 @@ fn a_response_outside_its_schema_is_found() {
     assert_eq!(fault(&|effect| effect["more"] = json!(1)), "/0/more is not specified");
     let without_symbol = |effect: &mut Value| drop(effect["parameters"][0].as_object_mut().unwrap().remove("symbol"));
     assert_eq!(fault(&without_symbol), "/0/parameters/0: symbol is missing");
+}
+
+/// `server/examples.json` has no example that is not used.
+#[test]
+fn every_json_operation_has_a_valid_example() {
+    let examples = DOCUMENT["components"]["examples"].as_object().expect("examples");
+    let mut unused: BTreeSet<&str> = examples.keys().map(String::as_str).collect();
+    for (path, item) in DOCUMENT["paths"].as_object().expect("paths") {
+        let operations = item.as_object().into_iter().flatten();
+        for (method, operation) in operations {
+            let responses = operation["responses"].as_object().into_iter().flatten();
+            for (status, response) in responses.filter(|(status, _)| status.starts_with('2')) {
+                let Some(json) = response["content"].get("application/json") else { continue };
+                let place = format!("{method} {path} {status}");
+                let reference = json["examples"]["response"]["$ref"].as_str().unwrap_or_default();
+                let name = reference.rsplit('/').next().unwrap_or_default();
+                let example = examples.get(name).unwrap_or_else(|| panic!("{place} has no example"));
+                valid(&json["schema"], &example["value"], true, "").unwrap_or_else(|fault| panic!("{place}: {fault}"));
+                unused.remove(name);
+            }
+        }
+    }
+    assert!(unused.is_empty(), "no operation uses the examples {unused:?}");
 }
