@@ -64,3 +64,23 @@ fn recordings_in_opposite_directions_are_not_one_direction() {
         assert!((coulomb.value - 0.03).abs() < 1e-3, "{pieces} pieces: {coulomb:?}");
     }
 }
+
+/// In one direction the two forms of quadratic drag differ only in their sign.
+#[test]
+fn drag_in_one_direction_has_its_usual_form() {
+    const STEP_S: f64 = 0.01;
+    let mut trace = Trace::new(["time_s", "motor_position_rad", "motor_current_a"].map(Channel::new).to_vec());
+    let mut position = 0.0;
+    for i in 0..12_000 {
+        let velocity: f64 = -30.0 - 20.0 * (0.004 * f64::from(i)).sin() - 5.0 * (0.013 * f64::from(i)).sin();
+        position += velocity * STEP_S;
+        let torque = -0.03 + 0.002 * velocity - 2e-5 * velocity * velocity + 2e-4 * scatter(i as usize, 3);
+        trace.push_row(&[STEP_S * f64::from(i), position, torque / 0.08]);
+    }
+    let baseline = ["coulomb", "viscous"].map(String::from).to_vec();
+    let run = RunTable::new(Meta { gear_ratio: Some(1.0), baseline, ..meta(Kind::Friction) }, trace).unwrap();
+    let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4).unwrap();
+    let drag = found.fit.parameters.iter().find(|p| p.effect == "viscous_quadratic").expect(&found.summary);
+    assert_eq!(drag.name, "c_2");
+    assert!((drag.value - 2e-5).abs() < 2e-6, "{drag:?}");
+}

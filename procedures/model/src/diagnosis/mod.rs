@@ -9,13 +9,14 @@ pub(crate) mod remaining;
 pub(crate) mod reversals;
 
 use crate::diagnosis::findings::{Findings, InLastModel};
+use crate::effect::{Shape, ShapeSearch};
 use crate::fit::{report, written};
 use crate::inference::confounding;
 use crate::preprocess::{Prepared, prepare};
 use crate::regression::cross_validation::validation_rms;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Diagnosis, Discovery, Evidence, Experiment, Step, Suggestion, Verdict};
-use crate::report::fit::Parameter;
+use crate::report::fit::{Parameter, ParameterState};
 use crate::report::maps::{PairMap, Region};
 use crate::report::text::{parts, plain};
 use crate::residual_analysis::maps::Maps;
@@ -213,7 +214,8 @@ fn suggestions(
         let has_size = has_size(complete, found, id);
         let (evidence, weak) = Evidence::of(scored.p_value, figures.0, figures.1, together, has_size);
         let weak = weak.map(|why| format!(" Weak evidence: {why}.")).unwrap_or_default();
-        let reasons = format!("{sentence}{weak}{tie}{also}");
+        let order = open_order(complete, found, id).map(|why| format!(" The number of waves is {why}."));
+        let reasons = format!("{sentence}{weak}{tie}{}{also}", order.unwrap_or_default());
         out.push(Suggestion {
             effect: id.into(),
             validation_rms: with.validation_rms,
@@ -240,6 +242,16 @@ fn has_size(complete: &Fit, found: &Findings, id: &str) -> bool {
     let is_coefficient = |p: &&Parameter| p.effect == id && term.form.linear.contains(&p.name.as_str());
     let mut coefficients = complete.parameters.iter().filter(is_coefficient).peekable();
     coefficients.peek().is_none() || coefficients.any(|p| p.ci95[0] > 0.0 || p.ci95[1] < 0.0)
+}
+
+/// Why the order of an added wave is not identified.
+fn open_order<'f>(complete: &'f Fit, found: &Findings, id: &str) -> Option<&'f str> {
+    let term = found.end().main.terms.iter().find(|term| term.id() == id)?;
+    let is_order = |p: &&Parameter| {
+        let is_whole = |shape: &Shape| shape.name == p.name && shape.search == ShapeSearch::Whole;
+        p.effect == id && p.state == ParameterState::Unidentified && term.form.shape.iter().any(is_whole)
+    };
+    complete.parameters.iter().find(is_order)?.note.as_deref()
 }
 
 /// What speaks for an added effect, in a sentence.

@@ -1,11 +1,13 @@
 //! Parameters of a model that is judged sample by sample, with 95 % intervals from a delete-block jackknife and from
 //! other filter corners.
 
+use crate::inference::harmonic_order::{self, Explained};
 use crate::inference::parameter_state::{self, Intervals, Slot};
+use crate::linear::added_columns::Added;
 use crate::linear::cholesky::projections;
 use crate::preprocess::Problem;
 use crate::regression::linear_model::{LinearModel, Term, columns};
-use crate::regression::solution::Solution;
+use crate::regression::solution::{Solution, weighted_like};
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use crate::stats::summary::deviation;
 use crate::stats::{jackknife, student};
@@ -73,7 +75,29 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
         parameters.extend(shapes(term, motion));
     }
     parameter_state::know_the_small(&mut parameters);
+    harmonic_order::open(model, &mut parameters, |term, k| of_order(model, &solution, term, k));
     Some(Intervals { parameters, trade_offs: trade_offs(&replicates, &names) })
+}
+
+/// The validation errors and coefficients of a wave as functions of its order, in the place of the wave in a model. The
+/// neighbouring orders among the nuisance terms are omitted: with them, no other order could explain the same.
+fn of_order(model: &LinearModel, solution: &Solution, term: usize, k: usize) -> impl Fn(f64) -> Explained {
+    let Term { effect, form, shape, columns: all, .. } = &model.terms[term];
+    let each = all.len() / shape.len();
+    let places = k * each..(k + 1) * each;
+    let mut rest = model.clone();
+    rest.terms[term].columns.drain(places.clone());
+    let others = model.relatives.iter().filter(|relative| relative.id() != effect.info().id);
+    rest.relatives = Arc::new(others.cloned().collect());
+    let ridge = weighted_like(&rest, solution);
+    move |order| {
+        let wave = columns(*effect, form.name, &[order], model.problem);
+        let wave: Vec<Vec<f32>> = wave.iter().map(|c| c.iter().map(|v| *v as f32).collect()).collect();
+        let added = Added::new(&ridge, &wave);
+        let gains = added.gains(0.0, |_| true);
+        let losses = ridge.losses.iter().zip(gains).map(|(loss, gain)| loss - gain.validation_losses).collect();
+        Explained { losses, coefficients: places.clone().zip(added.coefficients()).collect() }
+    }
 }
 
 /// Coefficients of the effects by two attributions that explain the run equally well, and their standard errors.

@@ -2,6 +2,7 @@
 //! independent blocks.
 
 use crate::inference::block_intervals;
+use crate::inference::harmonic_order::Explained;
 use crate::inference::parameter_state::{Intervals, Slot};
 use crate::inference::{changepoint, drag_remanence, harmonic_order, parameter_state};
 use crate::stats::{jackknife, student};
@@ -11,7 +12,7 @@ use crate::effect::ShapeSearch;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::gram::BlockGrams;
 use crate::preprocess::independent_blocks::independent_blocks;
-use crate::regression::linear_model::LinearModel;
+use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use jointbench_instrument::Motion;
 
@@ -64,7 +65,10 @@ pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
     }
     parameter_state::know_the_small(&mut parameters);
     parameters.extend(found(terms, &linear.residual, motion));
-    harmonic_order::open(terms, &linear.residual, &mut parameters);
+    harmonic_order::open(terms, &mut parameters, |term, k| {
+        let (block, place) = (&block, [term, k]);
+        move |order| explained(terms, place, order, block, count)
+    });
     drag_remanence::open(terms, &mut parameters);
     let mut trade_offs = Vec::new();
     for a in 0..p {
@@ -102,6 +106,21 @@ fn slots<'a>(
         slots.push(slot(*i, shape.name, terms.terms[*i].shape[*k], Some(shape)));
     }
     slots
+}
+
+/// The fit with another order at this place: term, and nonlinear parameter of it.
+fn explained(terms: &LinearModel, [term, k]: [usize; 2], order: f64, block: &[usize], count: usize) -> Explained {
+    let Term { effect, form, shape, .. } = &terms.terms[term];
+    let mut orders = shape.clone();
+    orders[k] = order;
+    let mut trial = terms.clone();
+    trial.terms[term] = Term::new(*effect, form.clone(), orders, terms.problem);
+    let mut linear = trial.linear();
+    let mut losses = vec![0.0; count];
+    for (block, error) in block.iter().zip(&linear.residual) {
+        losses[*block] += error * error;
+    }
+    Explained { losses, coefficients: linear.coefficients.swap_remove(term).into_iter().enumerate().collect() }
 }
 
 /// Integer parameters as found, and changepoints with their intervals.

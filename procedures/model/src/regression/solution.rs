@@ -273,3 +273,12 @@ pub fn without(model: &LinearModel, solution: &Solution, kind: FormErrorKind) ->
     let even = vec![1.0; model.problem.rows()];
     BlockedRidge::new(&columns, &model.response(), &even, &model.problem.block, Some(solution.ridge.strength))
 }
+
+/// The ridge regression of a model with the weights and the ridge strength of another solution.
+pub fn weighted_like(model: &LinearModel, solution: &Solution) -> BlockedRidge {
+    let nuisance = model.problem.form_error.as_deref().map(|form_error| nuisance(model, form_error, |_| false));
+    let mut columns = effect_columns(model);
+    columns.extend(nuisance.iter().flat_map(Nuisance::columns));
+    let strength = Some(solution.ridge.strength);
+    BlockedRidge::new(&columns, &model.response(), &solution.weight, &model.problem.block, strength)
+}

@@ -29,9 +29,10 @@ impl Effect for ViscousQuadratic {
         INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form<'_>> {
+    /// In one direction both forms are equal up to the sign.
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let even = Form { name: "one_sided", ..Form::linear(&["c_2a"]) };
-        vec![Form::linear(&["c_2"]), even]
+        if view.is_one_directional() { vec![Form::linear(&["c_2"])] } else { vec![Form::linear(&["c_2"]), even] }
     }
 
     fn columns(&self, form: &str, _: &[f64], view: &View) -> Columns {
