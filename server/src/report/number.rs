@@ -26,7 +26,7 @@ pub(super) fn with_own_digits(value: f64, unit: &str) -> String {
     format!("{number} {unit}").trim_end().to_owned()
 }
 
-/// `32.14 mNm` and `31.90 … 32.38`: one unit, and two digits of the half-width.
+/// `32.14 mNm` and `31.90 … 32.38`: one unit, chosen by the largest of these numbers, and two digits of the half-width.
 pub fn with_interval(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String, Option<String>) {
     let (shown, unit, ends) = in_one_unit(value, ci95, unit);
     (format!("{shown} {unit}").trim_end().to_owned(), ends)
@@ -34,10 +34,11 @@ pub fn with_interval(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String,
 
 /// The same with the unit apart, for a table.
 pub fn in_one_unit(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String, String, Option<String>) {
-    let (factor, unit) = scale(value.abs(), unit);
+    let ends = ci95.iter().flatten().filter(|end| end.is_finite());
+    let largest = ends.fold(value.abs(), |largest, end| largest.max(end.abs()));
+    let (factor, unit) = scale(largest, unit);
     let spread = ci95.map_or(value.abs() / 50.0, |[low, high]| (high - low) / 2.0) * factor;
-    let largest = ci95.iter().flatten().fold(value.abs(), |largest, end| largest.max(end.abs())) * factor;
-    let text = |value: f64| words::with_minus(&digits(value * factor, spread, largest));
+    let text = |value: f64| words::with_minus(&digits(value * factor, spread, largest * factor));
     let ends = ci95.map(|[low, high]| format!("{} … {}", text(low), text(high)));
     (text(value), unit, ends)
 }
@@ -86,6 +87,7 @@ mod tests {
             (1.2e-5, Some([0.0, 2.4e-5]), "kg·m²", "1.200·10⁻⁵ kg·m²", Some("0 … 2.400·10⁻⁵")),
             (1.2e-4, Some([8e-5, 1.6e-4]), "kg·m²", "0.000120 kg·m²", Some("0.000080 … 0.000160")),
             (0.0, Some([0.0, 0.0]), "Nm", "0 Nm", Some("0 … 0")),
+            (-4.1e-4, Some([-0.0045, 0.0037]), "Nm", "−0.4 mNm", Some("−4.5 … 3.7")),
             (-2.0, Some([-2.5, 0.5]), "V", "−2.0 V", Some("−2.5 … 0.5")),
         ] {
             let (text, ends) = with_interval(value, ci95, unit);

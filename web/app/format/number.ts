@@ -82,8 +82,8 @@ export function withPrefix(shown: Scale, values: readonly (number | null | undef
 	return { factor: shown.factor * prefix.factor, unit: prefix.unit };
 }
 
-/** The size that chooses the prefix of a value and its interval, as in the daemon: the value, or an end if the value is 0. */
-export const prefixSize = (value: number, interval: Interval): number => Math.max(...(value === 0 ? interval.map((end) => Math.abs(end ?? 0)) : []), Math.abs(value));
+/** The size that chooses the prefix of a value and its interval, as in the daemon: the largest of these numbers. */
+export const prefixSize = (value: number, interval: Interval): number => Math.max(Math.abs(value), ...interval.map((end) => Math.abs(end ?? 0)).filter(Number.isFinite));
 
 export function formatQuantity(value: number | null | undefined, unit: string, digits = 3): string {
 	if (value == null || !Number.isFinite(value)) return '–';

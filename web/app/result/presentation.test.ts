@@ -4,7 +4,7 @@ import { resultVerdict, campaignParts, formatResult, configurationTable } from '
 it('says a quantity with one prefix for value and interval', () => {
 	expect(formatResult({ value: 3.2e-5, unit: 'Nm·s/rad', ci95: [3.16e-5, 3.24e-5] })).toEqual({ value: '32.00', interval: '± 0.40', unit: 'µNm·s/rad' });
 	expect(formatResult({ value: 0.007919, unit: 'V/(°/s)', ci95: [0.007866, 0.007972] }).interval).toBe('± 0.000053');
-	expect(formatResult({ value: 0.000_95, unit: 'Nm', ci95: [0.0008, 0.0011] })).toEqual({ value: '950', interval: '± 150', unit: 'µNm' });
+	expect(formatResult({ value: 0.000_95, unit: 'Nm', ci95: [0.0008, 0.0011] })).toEqual({ value: '0.95', interval: '± 0.15', unit: 'mNm' });
 	expect(formatResult({ value: 0, unit: 'Nm', ci95: [-0.002, 0.001] })).toMatchObject({ value: '0', unit: 'mNm' });
 	expect(formatResult({ value: 41_230, unit: 'Nm/rad', ci95: [40_920, 41_540] })).toEqual({ value: '41.23', interval: '± 0.31', unit: 'kNm/rad' });
 });
