@@ -1,9 +1,9 @@
 //! The order of a wave over a partial turn: neighbouring orders may explain the data equally well.
 
 use crate::effect::ShapeSearch;
+use crate::regression::cross_validation::is_tie;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState};
-use crate::selection::equivalence::is_tie;
 
 /// How well a model explains a run with a wave of some order.
 pub struct Explained {

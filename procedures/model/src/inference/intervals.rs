@@ -65,10 +65,7 @@ pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
     }
     parameter_state::know_the_small(&mut parameters);
     parameters.extend(found(terms, &linear.residual, motion));
-    harmonic_order::open(terms, &mut parameters, |term, k| {
-        let (block, place) = (&block, [term, k]);
-        move |order| explained(terms, place, order, block, count)
-    });
+    harmonic_order::open(terms, &mut parameters, |term, k| of_order(terms, term, k, &block, count));
     drag_remanence::open(terms, &mut parameters);
     let mut trade_offs = Vec::new();
     for a in 0..p {
@@ -108,19 +105,21 @@ fn slots<'a>(
     slots
 }
 
-/// The fit with another order at this place: term, and nonlinear parameter of it.
-fn explained(terms: &LinearModel, [term, k]: [usize; 2], order: f64, block: &[usize], count: usize) -> Explained {
+/// The errors of the independent blocks and the coefficients of a term as functions of an order of its waves.
+fn of_order(terms: &LinearModel, term: usize, k: usize, block: &[usize], count: usize) -> impl Fn(f64) -> Explained {
     let Term { effect, form, shape, .. } = &terms.terms[term];
-    let mut orders = shape.clone();
-    orders[k] = order;
-    let mut trial = terms.clone();
-    trial.terms[term] = Term::new(*effect, form.clone(), orders, terms.problem);
-    let mut linear = trial.linear();
-    let mut losses = vec![0.0; count];
-    for (block, error) in block.iter().zip(&linear.residual) {
-        losses[*block] += error * error;
+    move |order| {
+        let mut orders = shape.clone();
+        orders[k] = order;
+        let mut trial = terms.clone();
+        trial.terms[term] = Term::new(*effect, form.clone(), orders, terms.problem);
+        let mut linear = trial.linear();
+        let mut losses = vec![0.0; count];
+        for (block, error) in block.iter().zip(&linear.residual) {
+            losses[*block] += error * error;
+        }
+        Explained { losses, coefficients: linear.coefficients.swap_remove(term).into_iter().enumerate().collect() }
     }
-    Explained { losses, coefficients: linear.coefficients.swap_remove(term).into_iter().enumerate().collect() }
 }
 
 /// Integer parameters as found, and changepoints with their intervals.

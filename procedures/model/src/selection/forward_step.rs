@@ -10,7 +10,8 @@ use crate::report::reasons::AdditionReason;
 use crate::selection::acceptance::Candidate;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 
-use crate::selection::equivalence::{encompasses, is_tie};
+use crate::regression::cross_validation::is_tie;
+use crate::selection::equivalence::encompasses;
 use crate::thresholds::SIMPLER_GAIN;
 use rayon::prelude::*;
 

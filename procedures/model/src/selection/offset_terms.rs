@@ -2,13 +2,12 @@
 
 use crate::Options;
 use crate::regression::candidates::CandidateSet;
-use crate::regression::cross_validation::validation_losses;
+use crate::regression::cross_validation::{is_tie, validation_losses};
 use crate::regression::linear_model::Term;
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::reasons::AdditionReason;
-use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::path::SelectionStep;
 

@@ -3,12 +3,11 @@
 
 use crate::linear::basis::dot;
 use crate::regression::candidates::Regressor;
-use crate::regression::cross_validation::validation_losses;
+use crate::regression::cross_validation::{is_tie, validation_losses};
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
 use crate::report::reasons::AdditionReason;
-use crate::selection::equivalence::is_tie;
 use crate::selection::floating_search::FloatingSearch;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::{BIAS_TOLERANCE, BIASED_COEFFICIENT};

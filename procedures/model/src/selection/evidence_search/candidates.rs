@@ -3,10 +3,10 @@
 use crate::effect::{Regime, Traits};
 use crate::preprocess::form_error::FormErrorKind;
 use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::cross_validation::is_tie;
 use crate::regression::evidence::{Evidence, evidence};
 use crate::regression::solution::{Solution, effect_coefficient, without};
 use crate::regression::two_stage_model::TwoStageModel;
-use crate::selection::equivalence::is_tie;
 use crate::thresholds::{DELAY_ROWS, SIMPLER_GAIN};
 
 /// Evidence for every effect that is not in the model, sorted by decreasing error reduction.

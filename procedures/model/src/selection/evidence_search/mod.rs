@@ -12,7 +12,7 @@ pub(crate) mod rules;
 
 use crate::preprocess::Prepared;
 use crate::regression::candidates::CandidateSets;
-use crate::regression::cross_validation::validation_rms;
+use crate::regression::cross_validation::{is_tie, validation_rms};
 use crate::regression::evidence::Evidence;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::solution::Solution;
@@ -20,7 +20,6 @@ use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::reasons::{AdditionReason, RejectionReason, RemovalReason};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::{self, Unexplained};
-use crate::selection::equivalence::is_tie;
 use crate::selection::evidence_search::candidates::{candidates, in_turn, is_tied};
 use crate::selection::evidence_search::insignificant::insignificant;
 use crate::selection::evidence_search::power_balance::power_balance;

@@ -1,8 +1,7 @@
 //! Replaces an added effect by another one with which the model is clearly better.
 
-use crate::regression::cross_validation::validation_losses;
+use crate::regression::cross_validation::{is_tie, validation_losses};
 use crate::regression::linear_model::Term;
-use crate::selection::equivalence::is_tie;
 use crate::selection::floating_search::FloatingSearch;
 use crate::selection::pruning::Rejected;
 use rayon::prelude::*;
