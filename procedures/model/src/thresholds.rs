@@ -69,49 +69,36 @@ levels! {
 }
 
 thresholds! {
-    /// Thresholds of the decision, in the order of the documents: which effects are named, and the verdict.
-    DECISION:
+    /// Values of the decision that are convention, published or computed, in the order of the documents.
+    CONVENTIONS:
     ALPHA = 0.05, "probability", "family-wise error of everything that is named or shown (`Options::alpha`)", "convention; `evaluate --part null` measures 0.4 %";
-    PRACTICAL_SHARE = 0.02, "fraction of squared error", "smallest fraction of the remaining error that is worth a name (`Options::practical_share`), or shows in a map", "`evaluate --part power`";
     FLIPS = 499.0, "sign flips", "permutations of the max-T test (`Options::flips`)", "smallest p-value 0.002";
-    DECISION_SHARE = 0.03, "fraction of squared validation error", "smallest fraction that an effect must take where samples are judged", "`evaluate FOLDER`: flat from 2 to 5 %";
     ONE_ERROR = 1.0, "standard errors", "the gain of an effect exceeds its own standard error over blocks so many times", "one-standard-error rule (Breiman and others 1984)";
-    MOST_EFFECTS = 4.0, "effects", "largest number of effects that a diagnosis adds", "presentation";
-    LEFT_SHARE = TENTH, "fraction of squared validation error", "a residual map, a function of an axis, a line in time or neighbouring moments that take more are structure; a rejected effect that takes more is listed", "nulls of `evaluate FOLDER`; well-explained runs in steps: at most 11 %";
-    CLEAR_ERRORS = 3.0, "standard errors", "structure of samples, and what an alias misses, exceed their own error so many times", "nulls of `evaluate --part styles --first 300000 --family friction`";
-    FORMULA_ERROR = 0.002, "fraction of squared error", "the formula of an effect may leave this fraction of its contribution (4.5 % in RMS; encoders none)", "`evaluate --part hidden,null`";
-    UNMISTAKABLE_SHARE = HALF, "fraction of squared error", "an effect that removes this fraction of the residual is no remainder of another formula", "`evaluate --part hidden,null`";
-    ALIAS_SHARE = HALF, "fraction of amplitude", "a wave that shows less of its amplitude at other speeds is an alias", "`--test beats`";
-    SAME_SPEED = TENTH, "fraction of speed", "speeds that differ by less are one", "`--test beats`";
-    COMPARABLE_SPEED = 2.0, "ratio of speeds", "a wave is expected only at speeds up to this ratio: beyond it, the drive controller dominates", "`--test beats`";
-    BETWEEN_LEGS = NEARLY_ALL, "fraction of squared column", "from this fraction on a column differs from leg to leg and hardly within one", "`--test legs`";
-    STEP_OVER_READINGS = 2.0, "standard deviations", "a smaller step in time is scatter of the readings", "`--test legs`";
     TIE_ERRORS = 2.0, "standard errors", "two models, or two orders of a wave, tie where their validation errors differ by less", "normal distribution, 5 %";
+    DELAY_ROWS = 1.5, "rows", "a shorter delay is not named: two readings of a row lie up to a row apart, and a held value lags by half a row", "computed; seven mock runs, 0.9 to 1.1 rows late";
+    MOST_EFFECTS = 4.0, "effects", "largest number of effects that a diagnosis adds", "presentation";
+    RANGE_MARGIN = 0.02, "fraction of range", "so far beyond the fitted range is not beyond", "presentation";
+}
+
+thresholds! {
+    /// Tuned thresholds of the decision, in the order of the documents: which effects are named, and the verdict.
+    DECISION:
+    PRACTICAL_SHARE = 0.02, "fraction of squared error", "smallest fraction of the remaining error that is worth a name (`Options::practical_share`), or shows in a map", "`evaluate --part power`";
+    DECISION_SHARE = 0.03, "fraction of squared validation error", "smallest fraction that an effect must take where samples are judged", "`evaluate FOLDER`: flat from 2 to 5 %";
+    LEFT_SHARE = TENTH, "fraction of squared validation error", "a residual map, a function of an axis, a line in time or neighbouring moments that take more are structure; a rejected effect that takes more is listed; an effect at a bound, or with unexplained structure, has to take more", "nulls of `evaluate FOLDER`; well-explained runs in steps: at most 11 %";
+    FORMULA_ERROR = 0.002, "fraction of squared error", "the formula of an effect may leave this fraction of its contribution (4.5 % in RMS; encoders none)", "`evaluate --part hidden,null`";
+    LARGER_PART = HALF, "fraction of squared error", "an effect that removes more of the residual is no remainder of another formula; more in common to all repeats is structure; an effect whose size may be zero has to remove more; a wave of which more is missing at other speeds is an alias", "the larger one of two parts; `evaluate --part hidden,null`, `--test beats`";
+    SAME_SHAPE = NEARLY_ALL, "fraction of squared column", "a column that others reproduce to this fraction has their shape: that of the model, a function of an axis, an offset of each leg", "`--test humps`, `--test legs`; mock joint A, seeds 17001 to 17012";
     SIMPLER_GAIN = 0.8, "fraction of gain", "a simpler effect is preferred where it has this fraction of the gain of the best", "`evaluate --part hidden,null`";
-    BIASED_COEFFICIENT = 0.25, "fraction of coefficient", "a coefficient that moves by this fraction with an effect is biased without it", "mock joint A, seeds 17001 to 17012";
-    BIAS_TOLERANCE = TENTH, "fraction of squared column", "an effect with a smaller part outside of the model looks like the model, or is a function of the axis", "mock joint A, seeds 17001 to 17012";
-    HYSTERESIS_SHARE = MOST, "fraction of squared error", "a hysteresis effect explains this fraction around reversals", "simulated joints: 83 to 98 %, nothing else above 63 %";
-    DELAY_HALF_WIDTHS = 2.0, "half widths of the 95 % interval", "a delay is named where it is so far from zero", "519 joints without a delay: none; 13 with 9 to 14 ms: at least 2.6";
-    DELAY_ROWS = 1.5, "rows", "a shorter delay is not named: the moment of a reading within its row is unknown", "seven mock runs, 0.9 to 1.1 rows late";
-    DETECTION_POWER = 1.3, "standard errors", "added to the critical size for 80 % power (z₀.₈ = 0.84, the rest for the scatter of the standard error)", "`evaluate --part detectable`";
-    NEEDED_WHERE_OPEN = TENTH, "increase of squared validation error", "an effect at a bound, or with unexplained structure, stays where removing it costs this much", "`evaluate --part hidden,null`";
-    NEEDED_WITHOUT_SIZE = HALF, "increase of squared validation error", "the same for an effect whose coefficients could all be zero", "`evaluate --part hidden,null`";
-    NEEDED_WITHOUT_SIZE_AND_SHAPE = 1.0, "increase of squared validation error", "the same for an effect whose size and shape are not determined", "`evaluate --part hidden,null`";
-    WHOLE_EXPLANATION = MOST, "fraction of what any function of the axis explains", "an effect that explains less is only a part of the missing effect", "`--test humps`";
+    BIASED_COEFFICIENT = 0.25, "fraction of coefficient", "a coefficient that moves by this fraction with an effect is biased without it", "mock joint A, seeds 17001 to 17012; `evaluate --part hidden --first 70500`: without it one wrong name";
+    MOST_EXPLAINED = MOST, "fraction of squared error", "an effect explains this fraction of what any function of its axis explains, or of the residual around reversals; otherwise it is only a part of the missing effect", "`--test humps`; simulated joints around reversals: presliding 83 to 98 %, nothing else above 63 %";
     PERIODS_SEEN = 2.0, "periods", "a wave that was seen less often is a curve over the angle", "`--test waves`";
     WHOLE_CURVE = 0.98, "fraction of what any function of the axis explains", "the bound for such a wave", "`--test waves`";
-    FOLLOWED_RAD = 1.0, "rad", "a wave that advances further from sample to sample is not followed, and between two means it may be an alias", "`--test beats`";
-    REPEATABLE_SHARE = HALF, "fraction of squared error", "more in common to all repeats is structure", "`evaluate --part hidden,null`";
     FLOOR_RATIO = 1.3, "ratio of RMS", "a validation error beyond this multiple of the noise floor is structure; form error in the place of a friction direction must not be better by more", "`evaluate --part hidden,null`";
     EVENT_ERRORS = 7.0, "standard deviations", "a section whose mean exceeds the scatter of sections of its length by this, and half a count of the encoders, is an event", "`evaluate --part null`: none in 800 runs; readings that jump: 7.4 to 51";
-    NEGLIGIBLE_RMS = 0.002, "fraction of RMS of the response", "a residual below this is negligible (encoders excepted)", "`evaluate --part hidden,null`";
-    FLOOR_INTERVAL_RATIO = 3.0, "ratio", "a noise floor with a wider interval is only about", "`--test repeats`";
-    AXIS_FUNCTION = NEARLY_ALL, "fraction of squared contribution", "a contribution that its map reproduces to this fraction is a function of the axis", "`--test humps`";
-    OWN_SCATTER_SHARE = TENTH, "fraction of variance", "least fraction of the scatter of a score that counts as noise", "`evaluate --part detectable`";
+    NEGLIGIBLE_RMS = 0.002, "fraction of RMS of the response", "a residual below this is negligible (encoders excepted)", "`evaluate --part hidden,null`; `--test loops`, `--test past`";
     FOLD_COVERAGE = 0.05, "fraction of squared column", "folds without a fold that hold less do not decide its coefficient", "`--test loops`";
-    BETTER_FORM = 0.01, "fraction of squared error a parameter", "another form must take this fraction for each parameter more", "`evaluate --part hidden,null`";
-    WIDE_INTERVAL = 10.0, "ratio", "a nonlinear parameter with a wider interval is not identified", "`--example coverage`";
-    RANGE_MARGIN = 0.02, "fraction of range", "so far beyond the fitted range is not beyond", "presentation";
+    WIDE_INTERVAL = 10.0, "ratio of limits", "a nonlinear parameter or a noise floor with a wider interval is not identified", "`--example coverage`, `--test repeats`";
 }
 
 thresholds! {
@@ -128,6 +115,8 @@ thresholds! {
     SMALL_REDUCTION = 0.05, "fraction of validation RMS", "a smaller reduction is small", "presentation";
     STRONG_P_VALUE = 0.01, "probability", "a larger p-value is weak evidence", "convention";
     MASKED_RATIO = 2.0, "ratio", "effects whose joint gain exceeds this multiple of the single one mask each other", "`evaluate --part hidden,null`";
+    DETECTION_POWER = 1.3, "standard errors", "added to the critical size for 80 % power (z₀.₈ = 0.84, the rest for the scatter of the standard error)", "`evaluate --part detectable`";
+    OWN_SCATTER_SHARE = TENTH, "fraction of variance", "least fraction of the scatter of a score that counts as noise", "`evaluate --part detectable`";
     TRADE_OFF_CORRELATION = 0.95, "correlation", "parameters that are correlated more trade off, and time that moves so with the temperature is confounded with it", "presentation";
     COLUMN_CORRELATION = NEARLY_ALL, "correlation", "a column that moves with the temperature may be the cause as well", "presentation";
     BEYOND_SHARE = 0.01, "fraction of points", "fewer points beyond are not listed", "presentation";
@@ -143,11 +132,11 @@ thresholds! {
 thresholds! {
     /// Thresholds of the signals, in the order of the documents: which rows are compared, and which effects a run can show.
     SIGNALS:
-    NOISE_ERRORS = 3.0, "standard errors", "what noise hardly ever reaches by chance", "normal distribution, 0.3 %";
+    NOISE_ERRORS = 3.0, "standard errors", "what noise hardly ever reaches by chance: structure of samples, what an alias misses, a step or a delay in time", "normal distribution, 0.3 %";
     SETTLED_SHARE = 0.04, "fraction of size", "speed and load of a steady state deviate less from their median", "`--test steps`";
     KEPT_SHARE = 0.2, "fraction of speed", "the halves of a steady state differ less, in addition to their scatter", "`--test steps`";
     STEADY_SPEED = 5.0, "scatters", "a mean speed of a steady state exceeds its scatter so many times; half as many where the speed oscillates, as in a slow step over gear teeth", "`--test teeth`";
-    EVEN_SPEED = 0.05, "fraction of speed", "speeds of a leg that differ less are one constant speed", "`--test legs`";
+    EVEN_SPEED = 0.05, "fraction of speed", "speeds that differ less are one constant speed", "`--test legs`, `--test beats`";
     EVEN_PART = 0.4, "fraction of leg", "least part of a leg at constant speed; on the half wave of a sine 0.28 of the speeds are nearly equal", "computed";
     RECORDING_GAP = 10.0, "samples", "a longer gap in time begins another recording", "`--test past`";
     RECORDING_JUMP = 50.0, "usual changes", "so does a larger jump of the position, if it exceeds 0.5 rad", "`--test past`";
@@ -230,13 +219,14 @@ thresholds! {
     HELD_IN_COMMON = HALF, "fraction of variance", "the twist of a clamped joint has so much in common with the torque", "`field-cases`";
 }
 
-/// The tables of docs/diagnosis.md: levels, thresholds of the decision, of the report, of the signals, and of the data
-/// checks.
-pub fn tables() -> [String; 5] {
+/// The tables of docs/diagnosis.md: levels, conventions and thresholds of the decision, thresholds of the report, of the
+/// signals, and of the data checks.
+pub fn tables() -> [String; 6] {
     let level = |l: &Level| format!("| {} | {} | {} |\n", l.name, l.value, l.meaning);
     let levels: String = LEVELS.iter().map(level).collect();
     [
         format!("| level | value | means |\n| --- | --- | --- |\n{levels}"),
+        table(CONVENTIONS),
         table(DECISION),
         table(REPORT),
         table(SIGNALS),
@@ -270,8 +260,9 @@ mod tests {
 
     #[test]
     fn no_two_thresholds_share_a_name() {
-        let mut names: Vec<&str> = DECISION
+        let mut names: Vec<&str> = CONVENTIONS
             .iter()
+            .chain(DECISION)
             .chain(REPORT)
             .chain(SIGNALS)
             .chain(CHECKS)

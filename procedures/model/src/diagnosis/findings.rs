@@ -16,7 +16,7 @@ use crate::selection::model_selection::ModelSelection;
 use crate::selection::path::SelectionStep;
 use crate::selection::refused::EvidenceResult;
 use crate::selection::removal::Withdrawn;
-use crate::thresholds::{FLOOR_RATIO, LEFT_SHARE, REPEATABLE_SHARE};
+use crate::thresholds::{FLOOR_RATIO, LARGER_PART, LEFT_SHARE};
 use crate::{ModelError, ModelSpec, Options};
 use jointbench_instrument::Kind;
 
@@ -122,7 +122,7 @@ impl<'p> Findings<'p> {
     /// not noise, even if no map shows its origin. A noise floor without an interval is too uncertain for this.
     fn repeats_itself(&self) -> bool {
         let surely = self.floor.repeatable_ci95.is_some_and(|[least, _]| least > LEFT_SHARE);
-        self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE) && surely
+        self.floor.repeatable_share.is_some_and(|share| share > LARGER_PART) && surely
             || self.floor.ci95.is_some() && self.exceeds_floor()
     }
 

@@ -7,7 +7,7 @@ use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::form_selection::{extend, reselect_forms};
 use crate::regression::linear_model::{LinearModel, Term, varpro};
 use crate::regression::partial_regression::PartialRegression;
-use crate::thresholds::BETTER_FORM;
+use crate::stats::information_criterion::is_better;
 use rayon::prelude::*;
 
 /// How many times the forms are reselected, each together with all other effects.
@@ -104,7 +104,7 @@ fn choose<'p>(mut forms: Vec<Term<'p>>, partial: &PartialRegression, problem: &P
     for (possible, sse, term) in forms {
         let is_better = chosen.as_ref().is_none_or(|(as_possible, least, simple)| {
             let more = term.size().saturating_sub(simple.size()) as f64;
-            possible == *as_possible && sse < least * (1.0 - BETTER_FORM * more) || possible && !as_possible
+            possible == *as_possible && is_better(sse, *least, more, problem.rows()) || possible && !as_possible
         });
         if is_better {
             chosen = Some((possible, sse, term));

@@ -7,7 +7,7 @@ use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::linear_model::{LinearModel, Term, allows, varpro};
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
-use crate::thresholds::BETTER_FORM;
+use crate::stats::information_criterion::is_better;
 
 /// Adds a component to an effect that is a sum of components. The component has to pass the same tests as a new
 /// effect.
@@ -78,7 +78,7 @@ pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p
                 more => more,
             };
             let possible = trial.1.allows(&partial.orthogonalized(&trial.1.columns).coefficients());
-            if possible && trial.0 < best.0 * (1.0 - BETTER_FORM * more) {
+            if possible && is_better(trial.0, best.0, more, terms.problem.rows()) {
                 best = trial;
             }
         }

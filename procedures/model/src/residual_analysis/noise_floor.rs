@@ -6,7 +6,7 @@ use crate::preprocess::{Prepared, Problem};
 use crate::report::diagnosis::NoiseFloor;
 use crate::residual_analysis::events::Event;
 use crate::stats::jackknife::half_width_95;
-use crate::thresholds::{FLOOR_INTERVAL_RATIO, PERIOD_CORRELATION};
+use crate::thresholds::{PERIOD_CORRELATION, WIDE_INTERVAL};
 use crate::words::{figure, spoken};
 use jointbench_instrument::Kind;
 
@@ -152,5 +152,5 @@ fn interval(all: &Pairs, of_block: &[Pairs]) -> Option<[f64; 2]> {
     let reach =
         half_width_95(of_block.iter().map(|block| (without(block) / whole).ln())).max(1.96 * (2.0 / all.count).sqrt());
     let ratio = if whole > 0.0 { (0.5 * reach).min(50.0).exp() } else { 1.0 };
-    (ratio <= FLOOR_INTERVAL_RATIO).then(|| [whole.sqrt() / ratio, whole.sqrt() * ratio])
+    (ratio.powi(2) <= WIDE_INTERVAL).then(|| [whole.sqrt() / ratio, whole.sqrt() * ratio])
 }

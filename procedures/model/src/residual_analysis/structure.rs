@@ -13,7 +13,7 @@ use crate::residual_analysis::functions::{Functions, functions};
 use crate::signal::Signal;
 use crate::stats::jackknife;
 use crate::stats::summary::quantile;
-use crate::thresholds::{CLEAR_ERRORS, LEFT_SHARE};
+use crate::thresholds::{LEFT_SHARE, NOISE_ERRORS};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -55,7 +55,7 @@ pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> 
     let ridge = &solution.ridge;
     let all = functions(model.problem);
     let judged: Vec<(f64, f64)> = all.par_iter().map(|axis| reduction(ridge, axis)).collect();
-    let shows = |share: f64, errors: f64| share > LEFT_SHARE && errors > CLEAR_ERRORS;
+    let shows = |share: f64, errors: f64| share > LEFT_SHARE && errors > NOISE_ERRORS;
     let axes = all.iter().zip(&judged).filter(|(_, (share, errors))| shows(*share, *errors));
     let mut found: Vec<(Option<&Functions>, Pattern, f64)> =
         axes.map(|(axis, (share, _))| (Some(axis), Pattern::Function(axis.over.clone()), *share)).collect();
@@ -118,7 +118,7 @@ fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, so
     let with = ridge.losses.iter().zip(taken(&ridge, axis)).map(|(loss, gain)| loss - gain);
     let better: Vec<f64> = last.losses.iter().zip(with).map(|(end, with)| end - with).collect();
     let (share, errors) = reduced(&last.losses, &better);
-    share > LEFT_SHARE && errors > CLEAR_ERRORS
+    share > LEFT_SHARE && errors > NOISE_ERRORS
 }
 
 /// A weighted residual with clipped outliers.

@@ -1,9 +1,10 @@
-//! Harmonics that pass faster than the samples resolve.
+//! Harmonics of which more than half a period passes for each sample, so that samples do not resolve them (Shannon
+//! 1949).
 
 use crate::linear::basis::Basis;
 use crate::preprocess::design::segments::stretches;
 use crate::regression::linear_model::LinearModel;
-use crate::thresholds::FOLLOWED_RAD;
+use std::f64::consts::PI;
 
 /// Fewer rows in a stretch do not separate a wave from noise.
 const FEWEST: usize = 10;
@@ -21,7 +22,7 @@ pub fn without_undersampled_harmonics(now: &LinearModel, mut residual: Vec<f64>)
                 let chunks = &view.chunks[stretch.clone()];
                 let way: f64 = chunks.iter().map(|c| (samples[c.end - 1] - samples[c.start]).abs()).sum();
                 let steps: usize = chunks.iter().map(|c| c.len() - 1).sum();
-                if stretch.len() >= FEWEST && order * way > FOLLOWED_RAD * steps as f64 {
+                if stretch.len() >= FEWEST && order * way > PI * steps as f64 {
                     let waves = columns.iter().map(|c| c[stretch.clone()].to_vec()).collect::<Vec<_>>();
                     let rest = Basis::of(&waves).rest(&residual[stretch.clone()]);
                     residual[stretch].copy_from_slice(&rest);

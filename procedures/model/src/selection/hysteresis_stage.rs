@@ -12,7 +12,7 @@ use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::reasons::AdditionReason;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::forward_step::ScoredCandidate;
-use crate::thresholds::HYSTERESIS_SHARE;
+use crate::thresholds::MOST_EXPLAINED;
 
 /// The hysteresis effect that this run supports, if there is one.
 pub fn hysteresis_step<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<ScoredCandidate<'p>> {
@@ -22,8 +22,7 @@ pub fn hysteresis_step<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option
     let (term, share) = reversals.best()?;
     let p_value = significance(&term, &reversals.library, &reversals.partial, options);
     let reason = AdditionReason::Reversals;
-    (share >= HYSTERESIS_SHARE && p_value <= options.alpha)
-        .then(|| ScoredCandidate::alone(term, share, p_value, reason))
+    (share >= MOST_EXPLAINED && p_value <= options.alpha).then(|| ScoredCandidate::alone(term, share, p_value, reason))
 }
 
 /// Detection limits of the hysteresis effects that are not in the model, relative to the residual around reversals.
@@ -31,7 +30,7 @@ pub fn detection_limits<'p>(now: &TwoStageModel<'p>) -> Vec<DetectionLimit<'p>> 
     let is_meant = |id: &str| now.spec.find(id).is_ok_and(|e| now.is_apart(e)) && !now.effects.iter().any(|e| e == id);
     let Some(problem) = now.prepared.memory.as_ref() else { return Vec::new() };
     let Reversals { partial, library, .. } = Reversals::new(problem, now.predict(problem), now.spec, is_meant);
-    let detectable_rms = (HYSTERESIS_SHARE / (1.0 - HYSTERESIS_SHARE) * partial.sse / problem.rows() as f64).sqrt();
+    let detectable_rms = (MOST_EXPLAINED / (1.0 - MOST_EXPLAINED) * partial.sse / problem.rows() as f64).sqrt();
     let mut seen: Vec<&str> = library.candidates.iter().map(|c| c.id()).collect();
     seen.dedup();
     seen.into_iter().map(|effect| DetectionLimit { effect, detectable_rms }).collect()

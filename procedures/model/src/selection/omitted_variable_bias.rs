@@ -10,7 +10,7 @@ use crate::regression::significance::significance;
 use crate::report::reasons::AdditionReason;
 use crate::selection::floating_search::FloatingSearch;
 use crate::selection::forward_step::ScoredCandidate;
-use crate::thresholds::{BIAS_TOLERANCE, BIASED_COEFFICIENT};
+use crate::thresholds::{BIASED_COEFFICIENT, SAME_SHAPE};
 use rayon::prelude::*;
 
 /// An effect that hardly changes the error, with the model that includes it.
@@ -38,7 +38,7 @@ impl<'p> FloatingSearch<'_, 'p> {
         for candidate in self.library.candidates.iter().filter(|c| is_open(c.id())) {
             let orthogonalized = partial.orthogonalized(&candidate.columns);
             match alike.iter_mut().find(|known| known.1.id() == candidate.id()) {
-                _ if orthogonalized.visible > BIAS_TOLERANCE => {}
+                _ if orthogonalized.visible > 1.0 - SAME_SHAPE => {}
                 Some(known) if orthogonalized.share > known.0 => *known = (orthogonalized.share, candidate),
                 Some(_) => {}
                 None => alike.push((orthogonalized.share, candidate)),

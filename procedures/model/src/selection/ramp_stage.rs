@@ -14,15 +14,18 @@ use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::reasons::AdditionReason;
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::forward_step::ScoredCandidate;
-use crate::thresholds::{DELAY_HALF_WIDTHS, DELAY_ROWS};
+use crate::thresholds::{DELAY_ROWS, NOISE_ERRORS};
 
-/// Half widths of a 95 % interval that are added to a critical size for 80 % power: z₀.₈ / z₀.₉₇₅.
-const POWER_80: f64 = 0.43;
+/// Half a 95 % interval of the normal distribution, in standard errors.
+const Z_975: f64 = 1.960;
+
+/// Standard errors that 80 % power adds to a critical size.
+const Z_800: f64 = 0.842;
 
 /// The delay that this run supports, with the model that includes it. Its coefficient divided by the inertia is the
 /// delay time.
 pub fn delay<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCandidate<'p>, TwoStageModel<'p>)> {
-    let Delayed { effect, after, coefficient, half, by_s } = with_delay(now)?;
+    let Delayed { effect, after, coefficient, error, least } = with_delay(now)?;
     let moving = after.moving.as_ref()?;
     let term = moving.terms.iter().find(|term| term.id() == effect)?.clone();
     let without = moving.without(effect);
@@ -33,28 +36,26 @@ pub fn delay<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCa
     };
     let share = 1.0 - asked(moving.linear().residual) / asked(without.linear().residual);
     let p_value = alone(&term, &PartialRegression::of(&without), options);
-    let is_delayed = coefficient < -DELAY_HALF_WIDTHS * half
-        && by_s > DELAY_ROWS * moving.problem.view.sample_s
-        && share >= options.practical_share
-        && p_value <= options.alpha;
+    let is_delayed = -coefficient > least && share >= options.practical_share && p_value <= options.alpha;
     is_delayed.then(|| (ScoredCandidate::alone(term, share, p_value, AdditionReason::Ramps), after))
 }
 
 /// The detection limit of the delay, if none was found and one could have been.
 pub fn detection_limit<'p>(now: &TwoStageModel<'p>) -> Option<DetectionLimit<'p>> {
-    let Delayed { effect, after, half, .. } = with_delay(now)?;
+    let Delayed { effect, after, error, least, .. } = with_delay(now)?;
     let column = after.moving.as_ref()?.terms.iter().find(|term| term.id() == effect)?.columns.first()?.clone();
     let rms = (dot(&column, &column) / column.len() as f64).sqrt();
-    Some(DetectionLimit { effect, detectable_rms: (DELAY_HALF_WIDTHS + POWER_80) * half * rms })
+    Some(DetectionLimit { effect, detectable_rms: (least + Z_800 * error) * rms })
 }
 
-/// A model with a delay on its ramps: the delay, its coefficient with half the 95 % interval, and its time.
+/// A model with a delay on its ramps: the delay, its coefficient with the standard error, and the least
+/// coefficient that is named.
 struct Delayed<'p> {
     effect: &'p str,
     after: TwoStageModel<'p>,
     coefficient: f64,
-    half: f64,
-    by_s: f64,
+    error: f64,
+    least: f64,
 }
 
 fn with_delay<'p>(now: &TwoStageModel<'p>) -> Option<Delayed<'p>> {
@@ -69,9 +70,9 @@ fn with_delay<'p>(now: &TwoStageModel<'p>) -> Option<Delayed<'p>> {
     let parameters = intervals(moving, now.prepared.motion).parameters;
     let of = |id: &str| parameters.iter().find(|p| p.effect == id);
     let (delayed, delay) = (of(delayed)?, of(effect)?);
-    let (coefficient, half) = (delay.value, (delay.ci95[1] - delay.ci95[0]) / 2.0);
-    let by_s = -coefficient / delayed.value;
-    (delayed.value > 0.0 && half.is_finite()).then_some(Delayed { effect, after, coefficient, half, by_s })
+    let (coefficient, error) = (delay.value, (delay.ci95[1] - delay.ci95[0]) / (2.0 * Z_975));
+    let least = (NOISE_ERRORS * error).max(DELAY_ROWS * moving.problem.view.sample_s * delayed.value);
+    (delayed.value > 0.0 && error.is_finite()).then_some(Delayed { effect, after, coefficient, error, least })
 }
 
 /// Whether only ramps can show the delay and the model has the delayed effect, which scales the delay to a time.

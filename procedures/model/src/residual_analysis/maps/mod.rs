@@ -6,7 +6,7 @@ pub(crate) mod public;
 pub(crate) mod regions;
 
 use crate::residual_analysis::maps::regions::ReferenceMagnitude;
-use crate::thresholds::AXIS_FUNCTION;
+use crate::thresholds::SAME_SHAPE;
 
 use crate::Options;
 use crate::preprocess::independent_blocks::independent_blocks;
@@ -74,7 +74,7 @@ impl Maps {
     pub fn any_function(&self, contribution: &Maps, axis: &str) -> Option<f64> {
         let own = contribution.axes.iter().chain(&contribution.by_direction);
         let pairs = own.zip(self.axes.iter().chain(&self.by_direction));
-        let same = pairs.filter(|(own, _)| own.x.name == axis && own.explained_share > AXIS_FUNCTION);
+        let same = pairs.filter(|(own, _)| own.x.name == axis && own.explained_share > SAME_SHAPE);
         same.map(|(_, map)| map.explained_share).max_by(f64::total_cmp)
     }
 

@@ -11,8 +11,9 @@ use crate::regression::linear_model::Term;
 use crate::regression::partial_regression::{PartialRegression, products};
 use crate::selection::acceptance::Candidate;
 use crate::signal::{Signal, Signals};
-use crate::thresholds::{ALIAS_SHARE, CLEAR_ERRORS, COMPARABLE_SPEED, FOLLOWED_RAD, SAME_SPEED};
+use crate::thresholds::{EVEN_SPEED, LARGER_PART, NOISE_ERRORS};
 use crate::view::View;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// More sample rows than these add no information.
@@ -60,17 +61,17 @@ impl Part {
         let mut found = vec![0.0];
         by_speed.iter().for_each(|(_, k)| found.push(found[found.len() - 1] + self.found[*k]));
         let slower = |than: f64| by_speed.partition_point(|(speed, _)| *speed < than);
-        let near = |speed: f64| slower((1.0 - SAME_SPEED) * speed)..slower((1.0 + SAME_SPEED) * speed);
+        let near = |speed: f64| slower((1.0 - EVEN_SPEED) * speed)..slower((1.0 + EVEN_SPEED) * speed);
         let gain = |speed: f64| found[near(speed).end] - found[near(speed).start];
         let Some((main, _)) = by_speed.iter().max_by(|a, b| gain(a.0).total_cmp(&gain(b.0))) else { return false };
-        let (here, end) = (near(*main), slower(COMPARABLE_SPEED * main));
-        let others = by_speed[..here.start].iter().chain(&by_speed[here.end..end.max(here.end)]);
+        let here = near(*main);
+        let others = by_speed[..here.start].iter().chain(&by_speed[here.end..]);
         let (found, expected): (Vec<f64>, Vec<f64>) = others.map(|(_, k)| (self.found[*k], self.expected[*k])).unzip();
         is_missing(&found, &expected)
     }
 
-    /// Whether the wave shows only where the means follow it too slowly, and the samples behind those means do not
-    /// contain it.
+    /// Whether the wave shows only where more than half a period passes for each mean (Shannon 1949), and the samples
+    /// behind those means do not contain it.
     fn is_beat(&self, term: &Term, problem: &Problem) -> bool {
         let view = &problem.view;
         let Some(angle) = term.effect.traits().wave.and_then(|angle| view.samples.find(angle)) else { return false };
@@ -78,11 +79,11 @@ impl Part {
         let is_fast = |rows: &Range<usize>| {
             let chunks = &view.chunks[rows.clone()];
             let way: f64 = chunks.iter().map(|c| (angle[c.end - 1] - angle[c.start]).abs()).sum();
-            order * way > FOLLOWED_RAD * chunks.len() as f64
+            order * way > PI * chunks.len() as f64
         };
         let mut fast: Vec<usize> = (0..self.stretches.len()).filter(|k| is_fast(&self.stretches[*k])).collect();
         let (whole, part): (f64, f64) = (self.found.iter().sum(), fast.iter().map(|k| self.found[*k]).sum());
-        if part < ALIAS_SHARE * whole || problem.sampled.is_empty() {
+        if part < LARGER_PART * whole || problem.sampled.is_empty() {
             return false;
         }
         let mut rows = 0;
@@ -116,8 +117,7 @@ impl Part {
     }
 }
 
-/// Whether less than `ALIAS_SHARE` of the expected reduction was found, and the difference to all of it is
-/// significant.
+/// Whether the larger part of the expected reduction is missing, and the difference to all of it is significant.
 fn is_missing(found: &[f64], expected: &[f64]) -> bool {
     let (sum, all) = (found.iter().sum::<f64>(), expected.iter().sum::<f64>());
     if all <= 0.0 {
@@ -125,7 +125,7 @@ fn is_missing(found: &[f64], expected: &[f64]) -> bool {
     }
     let share = sum / all;
     let error = found.iter().zip(expected).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt() / all;
-    share < ALIAS_SHARE && 1.0 - share > CLEAR_ERRORS * error
+    share < LARGER_PART && 1.0 - share > NOISE_ERRORS * error
 }
 
 #[cfg(test)]

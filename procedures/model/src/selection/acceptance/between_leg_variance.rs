@@ -16,7 +16,7 @@ use crate::regression::significance::chance;
 use crate::selection::acceptance::Candidate;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use crate::stats::grouped::{means, within};
-use crate::thresholds::{BETWEEN_LEGS, STEP_OVER_READINGS};
+use crate::thresholds::{NOISE_ERRORS, SAME_SHAPE};
 use jointbench_instrument::Kind;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::ops::Range;
@@ -95,12 +95,12 @@ fn shows_between(
 fn is_small(column: &[f64], residual: &[f64]) -> bool {
     let (square, along) = (dot(column, column), dot(column, residual));
     let left = (dot(residual, residual) - along * along / square).max(0.0) / residual.len() as f64;
-    (along / square).abs() < STEP_OVER_READINGS * left.sqrt()
+    (along / square).abs() < NOISE_ERRORS * left.sqrt()
 }
 
 fn is_between(column: &[f64], legs: &[Range<usize>]) -> bool {
     let of_legs = means(column, legs).into_iter().zip(legs);
-    of_legs.map(|(mean, leg)| leg.len() as f64 * mean * mean).sum::<f64>() > BETWEEN_LEGS * dot(column, column)
+    of_legs.map(|(mean, leg)| leg.len() as f64 * mean * mean).sum::<f64>() > SAME_SHAPE * dot(column, column)
 }
 
 #[cfg(test)]

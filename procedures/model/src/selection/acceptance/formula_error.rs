@@ -2,7 +2,7 @@
 
 use crate::Options;
 use crate::selection::acceptance::Candidate;
-use crate::thresholds::{FORMULA_ERROR, UNMISTAKABLE_SHARE};
+use crate::thresholds::{FORMULA_ERROR, LARGER_PART};
 use jointbench_instrument::Kind;
 
 /// Thresholds that a candidate has to reach.
@@ -30,7 +30,7 @@ impl AcceptanceThreshold<'_> {
     /// error of the other effects is no evidence.
     pub fn least_share(&self, sse: f64) -> f64 {
         let remainder = form_error(self.kind) * (self.plain - sse).max(0.0);
-        self.options.practical_share.max((remainder / sse).min(UNMISTAKABLE_SHARE))
+        self.options.practical_share.max((remainder / sse).min(LARGER_PART))
     }
 }
 
@@ -45,7 +45,7 @@ mod tests {
         // Nothing explained yet; 99 explained with an error of 0.2 %; all but nothing explained.
         assert_eq!(least(Kind::Friction, 100.0), options.practical_share);
         assert!((least(Kind::Friction, 1.0) - 0.002 * 99.0).abs() < 1e-12);
-        assert_eq!(least(Kind::Friction, 1e-6), UNMISTAKABLE_SHARE);
+        assert_eq!(least(Kind::Friction, 1e-6), LARGER_PART);
         assert_eq!(least(Kind::Encoder, 1.0), options.practical_share);
     }
 }

@@ -7,7 +7,7 @@ use crate::regression::linear_model::Term;
 use crate::residual_analysis::maps::Maps;
 use crate::selection::floating_search::FloatingSearch;
 use crate::selection::pruning::Trial;
-use crate::thresholds::{PERIODS_SEEN, WHOLE_CURVE, WHOLE_EXPLANATION};
+use crate::thresholds::{MOST_EXPLAINED, PERIODS_SEEN, WHOLE_CURVE};
 
 /// An added effect that only resembles the missing one: structure remains over its axis, and a free function of that
 /// axis would explain much more. Example: a wave over the angle fitted to a bump at one angle.
@@ -47,7 +47,7 @@ fn share_of_whole(term: &Term, problem: &Problem) -> f64 {
     let wave = term.effect.traits().wave.zip(term.shape.first());
     match wave.is_some_and(|(angle, order)| order * problem.view.turns(angle) < PERIODS_SEEN) {
         true => WHOLE_CURVE,
-        false => WHOLE_EXPLANATION,
+        false => MOST_EXPLAINED,
     }
 }
 

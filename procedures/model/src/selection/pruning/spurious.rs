@@ -7,7 +7,7 @@ use crate::regression::significance::alone;
 use crate::residual_analysis::maps::Maps;
 use crate::selection::floating_search::FloatingSearch;
 use crate::selection::pruning::Trial;
-use crate::thresholds::BIAS_TOLERANCE;
+use crate::thresholds::SAME_SHAPE;
 
 /// An added effect that only follows structure over an axis that is not its own: together with a free function of
 /// that axis it explains nothing. Example: a wave whose mean changes from step to step follows any curve over speed a
@@ -28,7 +28,7 @@ fn over<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str) -> Option<
         let left = basis.rest(&without.response());
         let partial = PartialRegression::new(basis, left, search.now.problem);
         let orthogonalized = partial.orthogonalized(&term.columns);
-        orthogonalized.visible > BIAS_TOLERANCE
+        orthogonalized.visible > 1.0 - SAME_SHAPE
             && (orthogonalized.share < options.practical_share || alone(term, &partial, options) > options.alpha)
     };
     search.added().filter(|term| term.effect.traits().regime != Regime::Hysteresis).find(is_spurious).map(Term::id)

@@ -6,7 +6,7 @@ use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState};
 use crate::selection::floating_search::FloatingSearch;
-use crate::thresholds::{NEEDED_WHERE_OPEN, NEEDED_WITHOUT_SIZE, NEEDED_WITHOUT_SIZE_AND_SHAPE};
+use crate::thresholds::{LARGER_PART, LEFT_SHARE};
 
 /// Doubts about an effect that the data leaves open.
 #[derive(Clone, Copy, Default)]
@@ -51,23 +51,24 @@ pub fn is_identified<'p>(with: &LinearModel<'p>, term: &Term<'p>, prepared: &Pre
 }
 
 /// An added effect whose size or shape the data does not determine, and whose removal hardly increases the validation
-/// error. If both are open, another cause is possible: then the effect has to be worth half of the error. If its size
-/// can be zero for any shape, it has to be worth a third. With structure from outside the library no size counts as
-/// identified, because a part of that structure can be in it.
+/// error. If its size can be zero, another cause is possible: then the effect has to be worth the larger part of the
+/// error without it. With structure from outside the library no size counts as identified, because a part of that
+/// structure can be in it.
 pub fn unidentified<'p>(search: &FloatingSearch<'_, 'p>) -> Option<&'p str> {
     let prepared = search.prepared;
     let parameters = intervals(&search.now, prepared.motion).parameters;
     let present: f64 = validation_losses(&search.now).iter().sum();
     let open = search.added().filter_map(|term| {
         let undetermined = Undetermined::of(term, &search.now, &parameters, prepared);
-        let more = validation_losses(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
-        let is_removed = match undetermined.coefficients && undetermined.shape {
-            // An effect with open size and shape is removed if another effect is confounded with it.
-            true => more < NEEDED_WITHOUT_SIZE_AND_SHAPE || !search.stand_ins(term).is_empty(),
-            false if undetermined.size => more < NEEDED_WITHOUT_SIZE,
-            false => (search.unmodelled_structure || undetermined.any()) && more < NEEDED_WHERE_OPEN,
+        let without: f64 = validation_losses(&search.now.without(term.id())).iter().sum();
+        let share = 1.0 - present / without;
+        // An effect with open size and shape is removed if another effect is confounded with it.
+        let is_open = undetermined.coefficients && undetermined.shape;
+        let is_removed = match is_open || undetermined.size {
+            true => share < LARGER_PART || is_open && !search.stand_ins(term).is_empty(),
+            false => (search.unmodelled_structure || undetermined.any()) && share < LEFT_SHARE,
         };
-        is_removed.then_some((term.id(), more))
+        is_removed.then_some((term.id(), share))
     });
     open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }

@@ -4,7 +4,7 @@
 //! nuisance columns themselves, has to explain most of the residual.
 
 use crate::selection::evidence_search::rules::Figures;
-use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
+use crate::thresholds::{DECISION_SHARE, LARGER_PART};
 
 pub(super) fn passes(figures: &Figures) -> bool {
     figures.gain > least_gain(figures.form_error_imitates)
@@ -12,7 +12,7 @@ pub(super) fn passes(figures: &Figures) -> bool {
 
 /// The smallest error reduction of an effect, which is larger if form error imitates the effect.
 pub fn least_gain(form_error_imitates: bool) -> f64 {
-    if form_error_imitates { UNMISTAKABLE_SHARE } else { DECISION_SHARE }
+    if form_error_imitates { LARGER_PART } else { DECISION_SHARE }
 }
 
 #[cfg(test)]
