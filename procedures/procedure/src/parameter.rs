@@ -14,7 +14,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// Label of the form.
     pub title: &'static str,
-    /// SI symbol; empty for a share or a count.
+    /// SI symbol; empty for a fraction or a count.
     pub unit: &'static str,
     /// Value if none is given; a curve is empty then.
     pub default: f64,
@@ -35,6 +35,8 @@ pub enum ParameterKind {
     Number,
     /// A whole number in the range.
     Integer,
+    /// A number relative to a rated or to a whole value. Files and requests have the fraction, pages show percent.
+    Fraction,
     /// Set-points that a user brings: pairs of a time in s, from 0 and rising, and a value in the range. Between the points
     /// are straight lines.
     Curve,
@@ -52,6 +54,11 @@ impl Parameter {
         Self { name, title, unit, default, min, max, kind: ParameterKind::Number }
     }
 
+    /// A fraction of a rated or of a whole value within `[min, max]`.
+    pub const fn fraction(name: &'static str, title: &'static str, default: f64, [min, max]: [f64; 2]) -> Self {
+        Self { name, title, unit: "", default, min, max, kind: ParameterKind::Fraction }
+    }
+
     /// An integer within `[min, max]`.
     pub const fn count(name: &'static str, title: &'static str, default: u32, [min, max]: [u32; 2]) -> Self {
         let kind = ParameterKind::Integer;
@@ -61,6 +68,15 @@ impl Parameter {
     /// A curve over time with values within `[min, max]`.
     pub const fn curve(name: &'static str, title: &'static str, unit: &'static str, [min, max]: [f64; 2]) -> Self {
         Self { name, title, unit, default: 0.0, min, max, kind: ParameterKind::Curve }
+    }
+
+    /// A value for people: `2 rad/s`, `0.07 (7 %)`.
+    #[must_use]
+    pub fn text(&self, value: f64) -> String {
+        match self.kind {
+            ParameterKind::Fraction => format!("{value} ({} %)", percent(value)),
+            _ => format!("{value} {}", self.unit).trim_end().to_owned(),
+        }
     }
 
     fn setting(&self, given: Option<&Value>) -> Result<Setting, ParameterFault> {
@@ -110,6 +126,11 @@ impl Parameter {
     fn range(&self) -> String {
         format!("{} to {} {}", self.min, self.max, self.unit).trim_end().to_owned()
     }
+}
+
+/// A fraction in percent, without the rounding of the multiplication: 0.07 is 7.
+fn percent(fraction: f64) -> f64 {
+    (1e12 * fraction).round() / 1e10
 }
 
 /// Why a parameter is rejected.
@@ -218,6 +239,15 @@ mod tests {
         let values = parse(r#"{"repeats": 3}"#).unwrap();
         assert_eq!((values.number("top_speed_rad_s"), values.count("repeats")), (180.0, 3));
         assert!(values.curve("reference").is_empty());
+    }
+
+    #[test]
+    fn a_fraction_is_read_in_percent() {
+        let load = Parameter::fraction("top_load", "Maximum brake current, relative to rated", 0.8, [0.05, 1.0]);
+        assert_eq!(load.text(0.07), "0.07 (7 %)");
+        assert_eq!(load.text(0.125), "0.125 (12.5 %)");
+        assert_eq!(SCHEMA[0].text(180.0), "180 rad/s");
+        assert_eq!(SCHEMA[1].text(3.0), "3");
     }
 
     #[test]

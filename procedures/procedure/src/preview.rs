@@ -276,9 +276,12 @@ impl Plan {
     fn within_limits(&self, facts: &BenchFacts) -> String {
         let mut parameters: Vec<&Parameter> =
             procedure(&self.procedure).map_or_else(Vec::new, |procedure| procedure.schema().iter().collect());
-        parameters.retain(|parameter| parameter.kind == ParameterKind::Number);
+        parameters.retain(|parameter| matches!(parameter.kind, ParameterKind::Number | ParameterKind::Fraction));
         parameters.sort_by_key(|parameter| !LOADS.contains(&parameter.name));
-        let passing = |parameter: &Parameter| Some((parameter.name, self.largest_value(parameter, facts)?));
+        let passing = |parameter: &Parameter| {
+            let value = self.largest_value(parameter, facts)?;
+            Some((parameter.name, parameter.text(value)))
+        };
         match parameters.into_iter().find_map(passing) {
             Some((name, value)) => format!("set {name} = {value} or less, or select another bench"),
             None => "reduce speed or load, or select another bench".into(),

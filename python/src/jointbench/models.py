@@ -1033,7 +1033,7 @@ ParameterState = TypeAliasType("ParameterState", Literal['ok', 'at_bound', 'fixe
 """How well a run determines a parameter."""
 
 
-ParameterType = TypeAliasType("ParameterType", Literal['number', 'integer', 'curve'])
+ParameterType = TypeAliasType("ParameterType", Literal['number', 'integer', 'fraction', 'curve'])
 
 
 class Place(BaseModel):

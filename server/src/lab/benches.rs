@@ -320,6 +320,7 @@ fn parameter_view(parameter: &Parameter, given: &Map<String, Value>) -> view::Pr
         type_: match parameter.kind {
             ParameterKind::Number => view::ParameterType::Number,
             ParameterKind::Integer => view::ParameterType::Integer,
+            ParameterKind::Fraction => view::ParameterType::Fraction,
             ParameterKind::Curve => view::ParameterType::Curve,
         },
     }

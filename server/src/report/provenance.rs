@@ -2,6 +2,7 @@
 
 use super::Report;
 use super::pairs::{fact, moment, plain, table};
+use jointbench_procedure::parameter::{Parameter, ParameterKind};
 use jointbench_procedure::procedure;
 use maud::{Markup, html};
 use serde_json::{Map, Value};
@@ -115,9 +116,16 @@ impl Report {
         let schema = procedure(&self.run.summary.procedure).map_or(&[][..], |procedure| procedure.schema());
         let setting = |(name, value): (&String, &Value)| {
             let known = schema.iter().find(|parameter| parameter.name == name);
-            known.map_or_else(|| fact(name, value), |known| (known.title.to_owned(), plain(value, known.unit)))
+            known.map_or_else(|| fact(name, value), |known| (known.title.to_owned(), setting_text(known, value)))
         };
         self.run.parameters.iter().map(setting).collect()
+    }
+}
+
+fn setting_text(parameter: &Parameter, value: &Value) -> String {
+    match (parameter.kind, value.as_f64()) {
+        (ParameterKind::Fraction, Some(value)) => parameter.text(value),
+        _ => plain(value, parameter.unit),
     }
 }
 

@@ -58,6 +58,8 @@ pub struct ProcedureParameter {
 pub enum ParameterType {
     Number,
     Integer,
+    /// A number relative to a rated or to a whole value. The API takes the fraction, pages show percent.
+    Fraction,
     /// A list of pairs of a time in s, from 0 and rising, and a value.
     Curve,
 }

@@ -1,6 +1,7 @@
 import { api } from '../api/client';
 import type { ProcedureParameter } from '../api/types';
 import { axisTitle, idText } from '../format/label';
+import { fieldUnit, inFieldUnit } from '../overview/parameterValues';
 
 /** Titles of the procedures and of their settings, as in the form that starts them. */
 class ProcedureTitles {
@@ -23,8 +24,19 @@ class ProcedureTitles {
 
 	/** A setting with its unit, as in the form; the name in words for any other fact of a run. */
 	setting(procedure: string, name: string): string {
-		const field = this.parameters[procedure]?.find((one) => one.name === name);
-		return field ? [field.title, field.unit && `[${field.unit}]`].filter(Boolean).join(' ') : axisTitle(name);
+		const field = this.field(procedure, name);
+		if (!field) return axisTitle(name);
+		const unit = fieldUnit(field);
+		return [field.title, unit && `[${unit}]`].filter(Boolean).join(' ');
+	}
+
+	/** Settings in the units of the form. */
+	inFieldUnits(procedure: string, settings: Record<string, unknown>): Record<string, unknown> {
+		return Object.fromEntries(Object.entries(settings).map(([name, value]) => [name, inFieldUnit(this.field(procedure, name), value)]));
+	}
+
+	private field(procedure: string, name: string): ProcedureParameter | undefined {
+		return this.parameters[procedure]?.find((one) => one.name === name);
 	}
 
 	/** The id in words until the titles are there, and for a procedure that the daemon no longer has. */

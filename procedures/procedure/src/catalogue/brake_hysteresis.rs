@@ -42,7 +42,7 @@ static INFO: ProcedureInfo = ProcedureInfo {
         Parameter::count("levels", "Current levels", 20, [4, 40]),
         Parameter::count("loops", "Major loops", 2, [1, 20]),
         Parameter::count("random_turns", "Reversals of the random history", 16, [4, 100]),
-        Parameter::number("top_current", "Maximum current, fraction of rated", "", 1.0, [0.05, 1.0]),
+        Parameter::fraction("top_current", "Maximum current, relative to rated", 1.0, [0.05, 1.0]),
         Parameter::number("dwell_s", "Dwell time at each current", "s", 0.9, [0.5, 20.0]),
         Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
         ACCELERATION,

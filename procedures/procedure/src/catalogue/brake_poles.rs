@@ -30,7 +30,7 @@ static INFO: ProcedureInfo = ProcedureInfo {
               poles and their torque. Then demagnetises the brake and measures again.",
     kind: Kind::Brake,
     schema: &[
-        Parameter::number("top_current", "Magnetising current, fraction of rated", "", 1.0, [0.05, 1.0]),
+        Parameter::fraction("top_current", "Magnetising current, relative to rated", 1.0, [0.05, 1.0]),
         Parameter::number("speed_rad_s", "Speed of the measured turns (brake)", "rad/s", 0.4, [0.02, 5.0]),
         Parameter::count("repeats", "Measured turns in each direction, before and after", 3, [2, 20]),
         Parameter::number("demagnetise_speed_rad_s", "Speed of demagnetising (link)", "rad/s", 1.5, [0.2, 20.0]),

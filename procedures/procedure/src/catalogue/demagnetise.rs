@@ -22,7 +22,7 @@ static INFO: ProcedureInfo = ProcedureInfo {
     schema: &[
         Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
         Parameter::number("turns", "Link turns while the current decreases", "", 3.0, [1.0, 20.0]),
-        Parameter::number("top_current", "Initial current, fraction of rated", "", 1.0, [0.05, 1.0]),
+        Parameter::fraction("top_current", "Initial current, relative to rated", 1.0, [0.05, 1.0]),
         ACCELERATION,
         sample_rate(250.0),
     ],

@@ -42,7 +42,7 @@ static INFO: ProcedureInfo = ProcedureInfo {
         Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
         Parameter::count("fast_speeds", "Number of speeds above the Stribeck velocity", 5, [2, 20]),
         Parameter::count("load_levels", "Load levels, including no load", 3, [1, 10]),
-        Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.65, [0.05, 1.0]),
+        Parameter::fraction("top_load", "Maximum brake current, relative to rated", 0.65, [0.05, 1.0]),
         Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
         Parameter::number("dwell_s", "Dwell time at each speed", "s", 1.1, [0.3, 60.0]),
         Parameter::number("warm_up_s", "Maximum warm-up time", "s", 20.0, [1.0, 3600.0]),

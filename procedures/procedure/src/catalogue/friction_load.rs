@@ -31,7 +31,7 @@ static INFO: ProcedureInfo = ProcedureInfo {
         Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
         Parameter::count("speeds", "Number of speeds above the Stribeck velocity", 3, [2, 20]),
         Parameter::count("load_levels", "Load levels, including no load", 6, [3, 20]),
-        Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.8, [0.05, 1.0]),
+        Parameter::fraction("top_load", "Maximum brake current, relative to rated", 0.8, [0.05, 1.0]),
         Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
         Parameter::number("warm_up_s", "Maximum warm-up time", "s", 20.0, [1.0, 3600.0]),
         sample_rate(250.0),

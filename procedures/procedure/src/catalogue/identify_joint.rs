@@ -51,7 +51,7 @@ static INFO: ProcedureInfo = ProcedureInfo {
             [1e-4, 100.0],
         ),
         Parameter::count("load_levels", "Load levels, including no load", 6, [3, 20]),
-        Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.8, [0.05, 1.0]),
+        Parameter::fraction("top_load", "Maximum brake current, relative to rated", 0.8, [0.05, 1.0]),
         Parameter::number("bearing_stiffness_nm_rad", "Bearing stiffness (0: unknown)", "Nm/rad", 0.0, [0.0, 1e9]),
         Parameter::count("repeats", "Repeats of the profiles", 2, [2, 50]),
         Parameter::count(

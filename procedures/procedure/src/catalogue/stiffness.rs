@@ -25,7 +25,7 @@ static INFO: ProcedureInfo = ProcedureInfo {
     kind: Kind::Stiffness,
     schema: &[
         Parameter::count("load_levels", "Load levels, including no load", 8, [3, 40]),
-        Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 1.0, [0.05, 1.0]),
+        Parameter::fraction("top_load", "Maximum brake current, relative to rated", 1.0, [0.05, 1.0]),
         Parameter::number("bearing_stiffness_nm_rad", "Bearing stiffness (0: unknown)", "Nm/rad", 0.0, [0.0, 1e9]),
         Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.5, [0.11, 20.0]),
         Parameter::number("dwell_s", "Dwell time in each direction", "s", 1.5, [0.5, 60.0]),

@@ -37,7 +37,7 @@ static INFO: ProcedureInfo = ProcedureInfo {
         Parameter::number("low_speed_rad_s", "Minimum stroke speed (motor)", "rad/s", 15.0, [1e-3, 1000.0]),
         Parameter::number("top_speed_rad_s", "Maximum stroke speed (motor)", "rad/s", 150.0, [1e-3, 1000.0]),
         Parameter::count("speeds", "Number of speeds (logarithmically spaced)", 4, [1, 20]),
-        Parameter::number("load", "Brake current, fraction of rated", "", 0.0, [0.0, 1.0]),
+        Parameter::fraction("load", "Brake current, relative to rated", 0.0, [0.0, 1.0]),
         Parameter::count("repeats", "Repeats of the profile", 2, [1, 50]),
         Parameter::number("dwell_s", "Maximum dwell time at each speed", "s", 3.0, [0.3, 60.0]),
         Parameter::number("travel_rad", "Maximum stroke length (link)", "rad", 1.2, [1e-3, 100.0]),
