@@ -25,7 +25,7 @@ const Z_800: f64 = 0.842;
 /// The delay that this run supports, with the model that includes it. Its coefficient divided by the inertia is the
 /// delay time.
 pub fn delay<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCandidate<'p>, TwoStageModel<'p>)> {
-    let Delayed { effect, after, coefficient, error, least } = with_delay(now)?;
+    let Delayed { effect, after, coefficient, least, .. } = with_delay(now)?;
     let moving = after.moving.as_ref()?;
     let term = moving.terms.iter().find(|term| term.id() == effect)?.clone();
     let without = moving.without(effect);
