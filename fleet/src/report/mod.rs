@@ -5,7 +5,7 @@ mod svg;
 
 use crate::diagnose::{EffectShare, FleetDiagnosis, GroupShare, share};
 use crate::fit::{FleetFit, PartFit, PartParameter, named, omitted};
-use jointbench_model::words::{Scale, figure, percent, prefix_of};
+use jointbench_model::words::{Scale, figure, percent};
 use std::fmt::Write as _;
 use svg::{Interval, escaped, histogram, intervals};
 
@@ -99,8 +99,12 @@ fn of_parameter(fit: &FleetFit, part: &PartFit, parameter: &PartParameter) -> St
     let of_part = fit.units.iter().filter(|fit| fit.unit.part == part.part);
     let values: Vec<f64> = of_part.filter_map(|fit| Some(fit.parameters.iter().find(is_meant)?.value)).collect();
     let largest = values.iter().fold(0.0f64, |most, v| most.max(v.abs()));
-    let (scale, prefix) = (Scale::of(largest, unit), prefix_of(largest, unit).1);
-    let (label, number) = (format!("{title} [{prefix}{unit}]"), |value: f64| scale.number(value));
+    let scale = Scale::of(largest, unit);
+    let label = match scale.unit() {
+        "" => title.clone(),
+        unit => format!("{title} [{unit}]"),
+    };
+    let number = |value: f64| scale.number(value);
     let mut html = histogram(&format!("{title}: units"), &label, &values, number);
     if let Some(p) = population {
         let [low, high] = p.ci95.map(|end| figure(end, unit));

@@ -94,6 +94,11 @@ impl Scale {
         if small * of_large.scale < 0.1 { Self::of(small, unit) } else { of_large }
     }
 
+    /// The unit with its prefix; empty for a pure number.
+    pub fn unit(&self) -> &str {
+        &self.unit
+    }
+
     /// Three digits and the unit.
     pub fn figure(&self, value: f64) -> String {
         format!("{} {}", self.number(value), self.unit).trim_end().to_owned()
